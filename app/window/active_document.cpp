@@ -55,7 +55,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
   const haptic::Scene first = firstScene(document, scene, options);
   const engine::History history = document.history;
   keeper_ = std::make_unique<SessionKeeper>(document);
-  auto client = LoopClient::start(history, document.original, first, options, keeper_.get());
+  auto client = LoopClient::start(history, document.originals, first, options, keeper_.get());
   if (!client) {
     keeper_.reset();
     return tl::unexpected(client.error());
@@ -63,7 +63,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
   loop_ = std::move(*client);
   path_ = document.path;
   // Recovered work is not saved yet.
-  saved_ = document.recovered ? document.original : history.current();
+  saved_ = document.recovered ? document.first : history.current();
   return {};
 }
 
@@ -114,7 +114,7 @@ void ActiveDocument::poll(const render::View& view, Feedback& feedback) {
   loop_->poll();
   if (auto older = keeper_->older()) {
     if (*older) {
-      loop_->prepend(**older);
+      loop_->prepend((*older)->step, (*older)->original);
       loop_->undo();
     } else {
       feedback.note(older->error());

@@ -24,6 +24,7 @@ class ChangeFigures {
   [[nodiscard]] const engine::Deviation* exact(const engine::Version& upright) const;
 
  private:
+  engine::Version begun_;  // the original that changes are measured against
   LiveChange live_;
   Background<engine::Deviation> measuring_;
   engine::Version measured_;  // the state that measuring_ works on, or of exact_

@@ -27,6 +27,13 @@ double spacingMm(const engine::Grid& grid) {
   return std::max(grid.spacingXMm(), grid.spacingYMm());
 }
 
+// The highest place of an upright field as it is felt; 0 of holes alone.
+double topMm(const engine::Version& field, const haptic::Scene& scene) {
+  const engine::Version felt = scene.invert ? field.inverted() : field;
+  const engine::HeightBounds bounds = felt.reader().bounds();
+  return bounds.empty() ? 0.0 : static_cast<double>(bounds.max) * field.grid().height_unit.mm;
+}
+
 // A mouse has no force: its depth replaces it. Two cells deep is pressing hard, at every scale of the field.
 haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
   // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
@@ -49,13 +56,13 @@ haptic::MouseFeel feelFor(const engine::Grid& grid) {
 
 }  // namespace
 
-DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Version& original)
+DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Grid& grid)
     : options_(std::move(options)),
       driver_(haptic::driverNamed(options_.device).driver),
-      original_(original) {}
+      grid_(grid) {}
 
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
-  const engine::Grid& grid = original_.grid();
+  const engine::Grid& grid = grid_;
   if (driver_ != nullptr && driver_->needs_window) {
     auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
     mouse_ = mouse.get();
@@ -96,7 +103,7 @@ engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notice
 }
 
 engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& notices) {
-  const engine::Grid& grid = original_.grid();
+  const engine::Grid& grid = grid_;
   const haptic::DeviceProfile& profile = device_->profile();
   haptic::Scene& scene = *start.scene;
   haptic::HapticLoop::Settings settings;
@@ -112,10 +119,9 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   settings.options.command_capacity = 1024;
   settings.options.record_capacity = start.records ? kRecordedTicks : 0;
   if (profile.space == haptic::DeviceSpace::kDesk) {
-    const engine::Version felt = scene.invert ? start.field.inverted() : start.field;
-    const glm::dvec3 middle{
-        0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
-        felt.reader().bounds().empty() ? 0.0 : felt.reader().bounds().max * grid.height_unit.mm};
+    top_mm_ = topMm(start.field, scene);
+    const glm::dvec3 middle{0.5 * (grid.width - 1) * grid.spacingXMm(),
+                            0.5 * (grid.height - 1) * grid.spacingYMm(), top_mm_};
     scale_at_start_ = fittedScale(profile, grid, scene, options_.rate_hz);
     settings.options.workspace = haptic::Workspace(scale_at_start_, middle);
   }
@@ -127,7 +133,7 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     scene = std::move(lowered);
     notices.push_back({problem->what, "lowered to " + problem->remedy});
   }
-  auto loop = haptic::HapticLoop::create(start.field, original_, scene, *device_, settings);
+  auto loop = haptic::HapticLoop::create(start.field, start.original, scene, *device_, settings);
   if (!loop) return tl::unexpected(loop.error());
   if (auto status = device_->start(); !status) return status;
   if (auto status = (*loop)->start(); !status) {
@@ -149,6 +155,12 @@ void DeviceLoop::send(LoopCommand&& command) {
   // The ring is only full while the loop does not run; it leaves a command that it has no place for as it is.
   // NOLINTNEXTLINE(bugprone-use-after-move)
   if (!unsent_.empty() || !loop_->send(std::move(command))) unsent_.push_back(std::move(command));
+}
+
+double DeviceLoop::liftTo(const engine::Version& field, const haptic::Scene& scene) {
+  if (device_->profile().space != haptic::DeviceSpace::kDesk) return 0.0;
+  const double before = std::exchange(top_mm_, topMm(field, scene));
+  return top_mm_ - before;
 }
 
 void DeviceLoop::poll(std::vector<Notice>& notices) {

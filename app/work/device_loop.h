@@ -37,8 +37,8 @@ struct LoopClientOptions {
 /// automatically. Threading: main.
 class DeviceLoop {
  public:
-  /// `original`, upright: what Scene::max_change is measured against.
-  DeviceLoop(LoopClientOptions options, const engine::Version& original);
+  /// For fields of a grid.
+  DeviceLoop(LoopClientOptions options, const engine::Grid& grid);
 
   /// Opens the device; a mouse fits the scene to the field. Errors: those of haptic::openDevice.
   [[nodiscard]] engine::Status openDevice(haptic::Scene& scene);
@@ -47,6 +47,7 @@ class DeviceLoop {
   /// start; the previous loop can still be read then.
   struct Start {
     engine::Version field;
+    engine::Version original;  ///< upright: what Scene::max_change is measured against
     haptic::Scene* scene = nullptr;  ///< lowered to the stable values (LoopClientOptions::lower_scene)
     haptic::Tool tool = haptic::Tool::kFeel;
     bool records = false;  ///< every tick's input (HapticLoop::pollRecord)
@@ -59,6 +60,9 @@ class DeviceLoop {
 
   /// Sends a command as soon as the ring has room, in order.
   void send(haptic::LoopCommand&& command);
+  /// How far the workspace of a device on the desk must move with a field that is restored under another form, upright
+  /// [mm of the field]: the hand stays above its highest place.
+  [[nodiscard]] double liftTo(const engine::Version& field, const haptic::Scene& scene);
   /// Sends waiting commands, arms automatically, measures the rate, adds notices of faults. Cheap; to be
   /// called often.
   void poll(std::vector<Notice>& notices);
@@ -109,7 +113,7 @@ class DeviceLoop {
 
   LoopClientOptions options_;
   const haptic::KnownDriver* driver_;  // null for a path
-  engine::Version original_;
+  engine::Grid grid_;
   std::unique_ptr<haptic::Device> device_;
   haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
   std::unique_ptr<haptic::HapticLoop> loop_;
@@ -118,6 +122,7 @@ class DeviceLoop {
   bool disarmed_ = false;                    // by the user, who did not arm since
   haptic::LoopState seen_;
   double scale_at_start_ = 1.0;  // the largest scale: see setView()
+  double top_mm_ = 0.0;          // of the field, as felt, that the workspace was moved to
   double view_azimuth_deg_ = 0.0, view_zoom_ = 1.0;
   RateMeter rate_meter_;
   std::int64_t armed_try_ns_ = 0;

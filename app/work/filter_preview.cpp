@@ -78,6 +78,11 @@ void FilterPreview::compute(LoopClient& client, Keep keep, std::vector<engine::T
 
 void FilterPreview::apply(LoopClient& client) {
   if (applying()) return;
+  if (client.newest().formOver() != form_) {
+    variants_.clear();
+    computing_.cancel();
+    form_ = client.newest().formOver();
+  }
   if (!variants_.empty() && same(variants_.back().asked, spec)) {
     adopt(client, variants_.back());
     return;
@@ -129,6 +134,16 @@ std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
 
 bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
+  // What was computed under another form cannot be adopted.
+  if (const engine::FieldForm& form = client.newest().formOver(); form != form_) {
+    form_ = form;
+    if (computing() || !variants_.empty()) {
+      computing_.cancel();
+      apply_when_done_ = false;
+      variants_.clear();
+      changed = true;
+    }
+  }
   if (so_far_) {
     const std::scoped_lock lock(so_far_->mutex);
     if (!(so_far_->field == seen_so_far_) && !computing_.cancelling()) {

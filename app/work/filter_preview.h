@@ -79,6 +79,7 @@ class FilterPreview {
   bool apply_when_done_ = false;
   double seconds_ = 0.0;
   int applied_ = 0;
+  engine::FieldForm form_;  // over the field that is previewed
   std::shared_ptr<SoFar> so_far_;
   engine::Version seen_so_far_;
   Background<Variant> computing_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/field/difference.h"
+#include "engine/session/form_codec.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
@@ -19,21 +20,29 @@ using haptic::EventKind;
 using haptic::LoopCommand;
 using namespace std::chrono_literals;
 
+// Of a form that is moved to the newest field on the main thread: some milliseconds.
+constexpr std::int64_t kMostTilesMoved = 256;
 constexpr auto kPollInterval = 1ms;   // between two reads of the state while a force fades
 constexpr auto kLongestFade = 100ms;  // a disarmed force has faded after peak / slew = 5 ms
 
 }  // namespace
 
-LoopClient::LoopClient(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+LoopClient::LoopClient(engine::History history, FormOriginals originals, const haptic::Scene& scene,
                        const LoopClientOptions& options, haptic::SessionSink* sink)
-    : original_(original), scene_(scene), steps_(std::move(history), sink), loop_(options, original) {}
+    : originals_(std::move(originals)),
+      scene_(scene),
+      steps_(std::move(history), sink),
+      loop_(options, originals_.scan().grid()) {}
 
 engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History history,
-                                                              const engine::Version& original,
+                                                              FormOriginals originals,
                                                               const haptic::Scene& scene,
                                                               const LoopClientOptions& options,
                                                               haptic::SessionSink* sink) {
-  std::unique_ptr<LoopClient> client(new LoopClient(std::move(history), original, scene, options, sink));
+  engine::JobControl job;
+  if (auto made = originals.makeAll(history, job); !made) return tl::unexpected(made.error());
+  std::unique_ptr<LoopClient> client(
+      new LoopClient(std::move(history), std::move(originals), scene, options, sink));
   if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
   // The exit path when the display is lost (render/window/window.cpp).
   static const int at_quick_exit = std::at_quick_exit([] { haptic::LastResort::fire(); });
@@ -58,6 +67,8 @@ engine::Status LoopClient::startLoop(double rate_hz) {
   latency_.restart();
   DeviceLoop::Start start;
   start.field = history().current();
+  start.original = originals_.at(start.field);
+  sent_form_ = start.field.formOver();
   start.scene = &scene_;
   start.tool = tool_;
   start.records = steps_.journal().records();
@@ -203,7 +214,7 @@ engine::Status LoopClient::setScene(const haptic::Scene& scene) {
   LoopCommand command;
   command.kind = CommandKind::kScene;
   command.id = next_id_++;
-  command.scene = std::make_unique<haptic::PreparedScene>(scene_, original_);
+  command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(newest()));
   steps_.journal().sceneSent(command.id, scene_);
   loop_.send(std::move(command));
   return {};
@@ -214,6 +225,14 @@ void LoopClient::restore(const engine::Version& version) {
   command.kind = CommandKind::kRestore;
   command.id = next_id_++;
   command.version = scene_.invert ? version.inverted() : version;
+  // Changes are limited by the original under the same form from the same tick on. A filter that is being adopted was
+  // computed under another.
+  if (const engine::FieldForm& form = version.formOver(); form != sent_form_) {
+    sent_form_ = form;
+    command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(version));
+    command.lift_mm = loop_.liftTo(version, scene_);
+    closePort();
+  }
   ++restores_open_;
   steps_.restoreRequested(command.id);
   loop_.send(std::move(command));
@@ -256,12 +275,40 @@ bool LoopClient::change(const engine::Version& base, const engine::Version& chan
     notices_.push_back({after.error().what, after.error().remedy});
     return true;
   }
-  StepKeeper::MarksChange change{std::move(data), {}};
+  StepKeeper::HandChange change{std::move(data), {}};
   if (edges && engine::sameHeights(edges->searched, now)) change.suggested = edges->numbers;
   steps_.change(std::move(name), lines ? engine::StepKind::kLines : engine::StepKind::kMark, *after, place_,
                 std::move(change));
   restore(*after);
   return true;
+}
+
+bool LoopClient::changeForm(FormChange& change) {
+  poll();
+  keepStroke();
+  const engine::Version& now = history().current();
+  if (!(now == change.base)) {
+    if (engine::measureChange(change.base, now).tiles > kMostTilesMoved) return false;
+    engine::JobControl job;
+    if (auto moved = change.moveTo(now, job); !moved) {
+      notices_.push_back({moved.error().what, moved.error().remedy});
+      return true;
+    }
+  }
+  originals_.add(change.original);
+  StepKeeper::HandChange made;
+  made.data = engine::packForm(change.form);
+  made.heights = change.step == FormStep::kMakeHeights;
+  const engine::Version after = change.changed;
+  steps_.change(change.name, engine::StepKind::kForm, after, place_, std::move(made));
+  restore(after);
+  originals_.keepFor(history(), field_);
+  return true;
+}
+
+void LoopClient::prepend(engine::Step step, const engine::Version& original) {
+  originals_.add(original);
+  steps_.prepend(std::move(step));
 }
 
 void LoopClient::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name) {

@@ -11,6 +11,8 @@
 #include "app/work/adoption_mailbox.h"
 #include "app/work/device_loop.h"
 #include "app/work/edit_latency.h"
+#include "app/work/form_change.h"
+#include "app/work/form_originals.h"
 #include "app/work/step_keeper.h"
 #include "app/work/stroke_path.h"
 #include "engine/base/error.h"
@@ -32,16 +34,20 @@ struct TakenEdges {
 /// Steps (StepKeeper). Undo and redo ask the loop to restore a version; the history moves immediately, the
 /// field when the loop answers. Undo while a stroke runs makes a step of it first.
 ///
+/// Forms. A field with a form over it is worked on as it is seen: history, field and filters have Version::seenOf(), and the
+/// original is the scan under the same form. The session stores the samples.
+///
 /// Inversion is a sign that the scene sets: field() has it, history() and upright() do not.
 ///
 /// Threading: main thread; a worker uses port(), whose requests poll() sends to the loop.
 class LoopClient final {
  public:
-  /// Opens and starts the device and the loop. `history` and `original` upright. `sink` outlives this; null:
+  /// Opens and starts the device and the loop. `history` and `originals` upright; those under forms that are missing are
+  /// made, a long job. `sink` outlives this; null:
   /// nothing is recorded. Errors: those of openDevice, HapticLoop::create and start; a scene with which the
   /// device is not stable, as in setScene().
   [[nodiscard]] static engine::Result<std::unique_ptr<LoopClient>> start(engine::History history,
-                                                                         const engine::Version& original,
+                                                                         FormOriginals originals,
                                                                          const haptic::Scene& scene,
                                                                          const LoopClientOptions& options,
                                                                          haptic::SessionSink* sink);
@@ -65,7 +71,10 @@ class LoopClient final {
     return restores_open_ > 0 ? history().current() : upright(field_);
   }
   [[nodiscard]] const engine::History& history() const noexcept { return steps_.history(); }
-  [[nodiscard]] const engine::Version& original() const noexcept { return original_; }
+  /// The original scan under the form over field().
+  [[nodiscard]] const engine::Version& original() const noexcept { return originals_.at(field_); }
+  /// The same without a form.
+  [[nodiscard]] const engine::Version& scan() const noexcept { return originals_.scan(); }
   [[nodiscard]] const haptic::Scene& scene() const noexcept { return scene_; }
   /// Where the last step changed something.
   [[nodiscard]] engine::SampleRect lastRect() const noexcept { return steps_.lastRect(); }
@@ -89,8 +98,8 @@ class LoopClient final {
   void goTo(std::int64_t state);
   [[nodiscard]] bool canUndo() const noexcept { return history().canUndo() || strokeRuns(); }
   [[nodiscard]] bool canRedo() const noexcept { return history().canRedo() && !strokeRuns(); }
-  /// Puts a step read back from a session in front of those held.
-  void prepend(engine::Step step) { steps_.prepend(std::move(step)); }
+  /// Puts a step read back from a session in front of those held; `original` is that of the state before it.
+  void prepend(engine::Step step, const engine::Version& original);
   /// Changes marks, or marks and edge lines, as one step of kind kMark or kLines: `changed` is `base`, a version of the
   /// newest field (upright(), the same memory), with marks set and cleared and with other lines. Strokes made since
   /// `base` was taken are kept. False, and no step: the lines are no longer those of `base`, `changed` is to be made
@@ -98,6 +107,10 @@ class LoopClient final {
   /// same search after the steps before it finds them again.
   [[nodiscard]] bool change(const engine::Version& base, const engine::Version& changed, std::string name,
                             const std::optional<TakenEdges>& edges = {});
+  /// Changes the form over the field as one step of kind kForm, and with it the original, in one tick. Strokes made since
+  /// it was worked out are kept. Not to be called while a filter is being adopted. False, and no step: too much changed
+  /// since; it is to be moved to the newest field first.
+  [[nodiscard]] bool changeForm(FormChange& change);
   /// The strokes of tools that edit marks which ended since the last call, in their order; only where the session is
   /// recorded.
   [[nodiscard]] std::vector<MarkStroke> takeMarkStrokes() { return std::exchange(mark_strokes_, {}); }
@@ -143,7 +156,7 @@ class LoopClient final {
   }
 
  private:
-  LoopClient(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+  LoopClient(engine::History history, FormOriginals originals, const haptic::Scene& scene,
              const LoopClientOptions& options, haptic::SessionSink* sink);
   [[nodiscard]] engine::Status startLoop(double rate_hz);
   void takeTicks();
@@ -155,7 +168,8 @@ class LoopClient final {
   // The paths of marking tools until an event become strokes.
   void endPath(const haptic::LoopEvent& event);
 
-  engine::Version original_;
+  FormOriginals originals_;
+  engine::FieldForm sent_form_;  // over the field after all commands sent
   haptic::Scene scene_;
   haptic::Tool tool_ = haptic::Tool::kFeel;
   StepKeeper steps_;

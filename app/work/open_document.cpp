@@ -16,8 +16,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUnderForm =
-    "a form lies over the field: it is shown and edited with the form, as its samples are";
+// The states of a session as they are seen; nothing is made where no form lies over one.
+engine::Result<engine::History> seenHistory(const engine::History& stored, std::size_t history_bytes,
+                                            engine::JobControl& job) {
+  bool any = false;
+  for (std::int64_t k = stored.first(); k <= stored.last(); ++k) any |= stored.state(k).form() != nullptr;
+  if (!any) return stored;
+  std::vector<engine::Version> states;
+  for (std::int64_t k = stored.first(); k <= stored.last(); ++k) {
+    const engine::Version near = states.empty() ? stored.state(k) : states.back();
+    auto seen = engine::seenNear(stored.state(k), near, job);
+    if (!seen) return tl::unexpected(seen.error());
+    states.push_back(*std::move(seen));
+  }
+  std::vector<engine::Step> steps;
+  for (std::size_t i = 0; i + 1 < states.size(); ++i)
+    steps.push_back({stored.info(stored.first() + static_cast<std::int64_t>(i) + 1), states[i], states[i + 1]});
+  return engine::History(states[static_cast<std::size_t>(stored.number() - stored.first())], stored.number(),
+                         stored.first(), std::move(steps), history_bytes);
+}
+
+// The original under the forms over the states, of a document whose history is as seen.
+engine::Status addOriginals(Document& document, engine::JobControl& job) {
+  document.originals = FormOriginals(document.original);
+  if (auto made = document.originals.makeAll(document.history, job); !made) return made;
+  auto first = engine::seenNear(document.original, document.history.current(), job);
+  if (!first) return tl::unexpected(first.error());
+  document.first = *std::move(first);
+  return {};
+}
 
 // The session itself, to continue writing to it if possible.
 engine::Result<Document> openSessionDocument(const std::string& file, std::size_t history_bytes,
@@ -43,11 +70,13 @@ engine::Result<Document> openSessionDocument(const std::string& file, std::size_
   document.scan = std::move(session.scan);
   document.needs_scan = session.storage == engine::OriginalStorage::kReferenced;
   document.original = std::move(session.original);
-  document.history = std::move(session.history);
+  auto history = seenHistory(session.history, history_bytes, job);
+  if (!history) return tl::unexpected(history.error());
+  document.history = *std::move(history);
+  if (auto added = addOriginals(document, job); !added) return tl::unexpected(added.error());
   std::vector<engine::Version> dropped;
   document.history.setBound(history_bytes, dropped);
   document.notes = std::move(session.notes);
-  if (document.history.current().form() != nullptr) document.warnings.emplace_back(kUnderForm);
   return document;
 }
 
@@ -98,11 +127,11 @@ engine::Result<Document> openDocument(const std::string& path, const ScanOptions
   document.path = path;
   document.scan = {path, *import, imported->format, stamp};
   document.warnings = std::move(imported->warnings);
-  if (imported->field.seenOf() != nullptr) document.warnings.emplace_back(kUnderForm);
-  auto samples = engine::withoutLayer(imported->field, job);
+  auto samples = engine::restored(imported->field, job);
   if (!samples) return tl::unexpected(samples.error());
   document.original = *std::move(samples);
-  document.history = engine::History(document.original, history_bytes);
+  document.history = engine::History(imported->field, history_bytes);
+  if (auto added = addOriginals(document, job); !added) return tl::unexpected(added.error());
   return document;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/work/form_originals.h"
 #include "app/work/scan_reading.h"
 #include "engine/session/session_writer.h"
 
@@ -28,8 +29,10 @@ struct Document {
   std::string path;            ///< as requested: a scan or NAME.fettle
   engine::OriginalScan scan;   ///< the original scan
   bool needs_scan = true;      ///< a session of it may refer to the scan's file; else it holds the scan
-  engine::Version original;    ///< upright
-  engine::History history;     ///< upright
+  engine::Version original;    ///< upright, as stored
+  engine::History history;     ///< upright, as seen: without the forms over its states
+  FormOriginals originals;     ///< under these forms
+  engine::Version first;       ///< the original as it is seen
   engine::SessionNotes notes;  ///< of a session
   std::vector<std::string> warnings;
   /// Writes to the session the document came from; null for a scan, and for a session that can only be read.
@@ -44,7 +47,7 @@ enum class Recovery : std::uint8_t {
 };
 
 /// Reads a scan (any importer) or session. A session that cannot be written to - another program works on it,
-/// its folder is read-only - is read alone, with a warning. History beyond `history_bytes` stays on disk.
+/// its folder is read-only - is read alone, with a warning. What lies under a form is as it is seen. History beyond `history_bytes` stays on disk.
 /// Errors: those of importField and openSession. Thread: any; a long job.
 [[nodiscard]] engine::Result<Document> openDocument(const std::string& path, const ScanOptions& reading,
                                                     Recovery recovery, std::size_t history_bytes,

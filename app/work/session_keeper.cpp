@@ -1,5 +1,7 @@
 #include "app/work/session_keeper.h"
 
+#include "engine/field/seen_field.h"
+
 namespace fettle::app {
 namespace {
 
@@ -176,8 +178,17 @@ std::optional<engine::Status> SessionKeeper::saved() {
 
 void SessionKeeper::readOlder(const engine::History& history) {
   if (!writer_ || closed_) return;
-  reading_.start(
-      [writer = writer_.get(), history](engine::JobControl& job) { return writer->loadOlder(history, job); });
+  reading_.start([writer = writer_.get(), history, scan = FormOriginals(original_).scan()](
+                     engine::JobControl& job) -> engine::Result<Older> {
+    auto step = writer->loadOlder(history, job);
+    if (!step) return tl::unexpected(step.error());
+    auto before = engine::seenNear(step->before, step->after, job);
+    if (!before) return tl::unexpected(before.error());
+    step->before = *std::move(before);
+    auto original = FormOriginals::make(scan, step->before, job);
+    if (!original) return tl::unexpected(original.error());
+    return Older{*std::move(step), *std::move(original)};
+  });
 }
 
 void SessionKeeper::poll() {

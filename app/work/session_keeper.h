@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/work/background.h"
+#include "app/work/form_originals.h"
 #include "app/work/open_document.h"
 #include "engine/session/session_writer.h"
 #include "haptic/journal/session_sink.h"
@@ -62,8 +63,13 @@ class SessionKeeper final : public haptic::SessionSink {
   /// Reads the step before the oldest of the history from the file; older() returns the result.
   void readOlder(const engine::History& history);
   [[nodiscard]] bool readingOlder() const noexcept { return reading_.busy(); }
-  /// Result of readOlder(), once: for LoopClient::prepend.
-  [[nodiscard]] std::optional<engine::Result<engine::Step>> older() { return reading_.take(); }
+  /// Result of readOlder(), once: for LoopClient::prepend. A state under a form as it is seen: made of all its samples,
+  /// where the step after it has another form.
+  struct Older {
+    engine::Step step;
+    engine::Version original;  ///< of the state before it
+  };
+  [[nodiscard]] std::optional<engine::Result<Older>> older() { return reading_.take(); }
 
   /// Whether the session has a path chosen by the user (opened from there, or saved as).
   [[nodiscard]] bool named() const noexcept { return named_; }
@@ -139,7 +145,7 @@ class SessionKeeper final : public haptic::SessionSink {
   std::chrono::steady_clock::time_point checked_at_{};  // last check of the scan's file
   Background<Writer> making_;
   Background<bool> saving_;
-  Background<engine::Step> reading_;
+  Background<Older> reading_;
 };
 
 }  // namespace fettle::app

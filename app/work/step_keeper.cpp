@@ -4,11 +4,15 @@ namespace fettle::app {
 
 using haptic::EventKind;
 
-void LoopJournal::begin(std::int64_t state, const haptic::Scene& scene) {
+void LoopJournal::begin(std::int64_t state, const haptic::Scene& scene, bool continues) {
   recorder_ = haptic::Recorder();
   recorded_ = lost_ = 0;
   scenes_.clear();
-  if (sink_ != nullptr) recorder_.add(haptic::journal::Begin{state, scene});
+  if (sink_ != nullptr) recorder_.add(haptic::journal::Begin{state, scene, continues});
+}
+
+void LoopJournal::stateRead(std::int64_t state) {
+  if (sink_ != nullptr) recorder_.add(haptic::journal::StateRead{state});
 }
 
 bool LoopJournal::takeTicks(haptic::HapticLoop& loop, StrokePath& path) {
@@ -95,7 +99,14 @@ void LoopJournal::flush() {
 void StepKeeper::begin(const haptic::Scene& scene) {
   committed_ = history_.current();
   adopting_ = false;
-  journal_.begin(history_.number(), scene);
+  journal_.begin(history_.number(), scene, begun_);
+  begun_ = true;
+}
+
+void StepKeeper::prepend(engine::Step step) {
+  const bool under_form = step.before.formOver() != nullptr;
+  history_.prepend(std::move(step));
+  if (under_form) journal_.stateRead(history_.first());
 }
 
 void StepKeeper::keepStroke(const engine::Version& field, const haptic::LoopPlace& at) {
@@ -122,7 +133,7 @@ void StepKeeper::adopted(const engine::Version& field, const haptic::LoopPlace& 
 }
 
 void StepKeeper::change(std::string name, engine::StepKind kind, const engine::Version& field,
-                        const haptic::LoopPlace& at, MarksChange change) {
+                        const haptic::LoopPlace& at, HandChange change) {
   push(std::move(name), kind, field, at, std::move(change));
 }
 
@@ -132,7 +143,7 @@ void StepKeeper::restoreRequested(std::uint64_t id) {
 }
 
 void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,
-                      const haptic::LoopPlace& at, std::optional<MarksChange> change) {
+                      const haptic::LoopPlace& at, std::optional<HandChange> change) {
   engine::StepInfo info;
   info.name = name;
   info.kind = kind;
@@ -148,7 +159,10 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
     journal_.commit(made, history_.step(state), {});
     return;
   }
-  (kind == engine::StepKind::kLines ? made.lines : made.marks) = true;
+  made.heights = change->heights;
+  made.form = kind == engine::StepKind::kForm && !made.heights;
+  made.lines = kind == engine::StepKind::kLines;
+  made.marks = kind == engine::StepKind::kMark;
   made.suggested = change->suggested;
   journal_.commit(made, history_.step(state), std::move(change->data));
 }

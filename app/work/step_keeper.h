@@ -26,8 +26,10 @@ class LoopJournal {
 
   [[nodiscard]] bool records() const noexcept { return sink_ != nullptr; }
 
-  /// A loop starts from a state of the history. Entries of the loop before were flushed.
-  void begin(std::int64_t state, const haptic::Scene& scene);
+  /// A loop starts from a state of the history. Entries of the loop before were flushed. `continues`: after another one.
+  void begin(std::int64_t state, const haptic::Scene& scene, bool continues);
+  /// A state under a form was read from the file.
+  void stateRead(std::int64_t state);
   /// Takes the ticks that the loop has recorded, and adds them to the path of the stroke. True when ticks were lost
   /// since the last call.
   [[nodiscard]] bool takeTicks(haptic::HapticLoop& loop, StrokePath& path);
@@ -82,7 +84,7 @@ class StepKeeper {
   /// Whether the loop's field differs from the last step's: a stroke runs.
   [[nodiscard]] bool differs(const engine::Version& field) const { return !(field == committed_); }
   /// Puts a step read back from a session in front of those held.
-  void prepend(engine::Step step) { history_.prepend(std::move(step)); }
+  void prepend(engine::Step step);
 
   /// A loop starts from the history's state.
   void begin(const haptic::Scene& scene);
@@ -101,14 +103,15 @@ class StepKeeper {
   void endAdoption() noexcept { adopting_ = false; }
   [[nodiscard]] bool adopting() const noexcept { return adopting_; }
 
-  /// A change of marks or lines that no tick made.
-  struct MarksChange {
-    std::string data;  ///< as of haptic::packMarkChanges or haptic::packLineChange
+  /// A change of marks, lines or the form that no tick made.
+  struct HandChange {
+    std::string data;  ///< as of haptic::packMarkChanges, haptic::packLineChange or engine::packForm
     std::optional<haptic::journal::EdgesSuggested> suggested;
+    bool heights = false;  ///< of kForm: what was seen are the samples
   };
-  /// Changes the marks (kMark) or the edge lines and marks (kLines) of the newest step's field.
+  /// Changes the marks (kMark), the edge lines and marks (kLines) or the form (kForm) of the newest step's field.
   void change(std::string name, engine::StepKind kind, const engine::Version& field,
-              const haptic::LoopPlace& at, MarksChange change);
+              const haptic::LoopPlace& at, HandChange change);
 
   /// Move in the history; return the version to be restored, if there is such a state.
   std::optional<engine::Version> undo() { return history_.undo(); }
@@ -121,7 +124,7 @@ class StepKeeper {
  private:
   // Without a change the step was made by ticks and filters.
   void push(std::string name, engine::StepKind kind, const engine::Version& after,
-            const haptic::LoopPlace& at, std::optional<MarksChange> change = {});
+            const haptic::LoopPlace& at, std::optional<HandChange> change = {});
 
   engine::History history_;
   engine::Version committed_;  // the last step's, the reference for a running stroke
@@ -130,6 +133,7 @@ class StepKeeper {
   haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
   std::string adoption_name_ = "Filter";
   bool adopting_ = false;  // the running adoption has a step
+  bool begun_ = false;     // a loop before the present one
 };
 
 }  // namespace fettle::app

@@ -71,6 +71,12 @@ class Workspace {
     shift_ = tip - scale_ * turned(device_mm);
   }
 
+  /// Moves the mapping up with a surface that has moved: the hand stays where it is above it. [mm of the field]
+  void lift(double up_mm) noexcept {
+    shift_.z += up_mm;
+    held_.z += up_mm;
+  }
+
   [[nodiscard]] double scale() const noexcept { return scale_; }
   [[nodiscard]] double feltStiffness(double field_n_per_mm) const noexcept { return field_n_per_mm * scale_; }
   [[nodiscard]] double fieldStiffness(double felt_n_per_mm) const noexcept { return felt_n_per_mm / scale_; }

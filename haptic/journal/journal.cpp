@@ -92,7 +92,8 @@ journal::Entry entryOf(const json& in) {
   const auto id = [&] { return in.at("id").get<std::uint64_t>(); };
   const auto state = [&] { return in.at("state").get<std::int64_t>(); };
   const auto count = [&] { return in.at("count").get<std::int64_t>(); };
-  if (what == "begin") return journal::Begin{state(), sceneOf(in)};
+  if (what == "begin") return journal::Begin{state(), sceneOf(in), in.value("continues", false)};
+  if (what == "read") return journal::StateRead{state()};
   if (what == "ticks") return journal::Ticks{count()};
   if (what == "lost") return journal::Lost{count()};
   if (what == "scene") return journal::SceneSet{placeOf(in), sceneOf(in)};
@@ -101,7 +102,7 @@ journal::Entry entryOf(const json& in) {
     if (!kind) throw std::out_of_range("an unknown kind of step");
     return journal::StepMade{state(),        in.at("name").get<std::string>(), *kind,
                              placeOf(in),    in.value("marks", false),         in.value("lines", false),
-                             suggestedOf(in)};
+                             suggestedOf(in), in.value("form", false),         in.value("heights", false)};
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
@@ -120,7 +121,11 @@ std::string journalText(const journal::Entry& entry) {
       Overloaded{
           [&](const journal::Begin& e) {
             out = {{"do", "begin"}, {"state", e.state}};
+            if (e.continues) out["continues"] = true;
             put(out, e.scene);
+          },
+          [&](const journal::StateRead& e) {
+            out = {{"do", "read"}, {"state", e.state}};
           },
           [&](const journal::Ticks& e) {
             out = {{"do", "ticks"}, {"count", e.count}};
@@ -138,6 +143,8 @@ std::string journalText(const journal::Entry& entry) {
                 {"do", "step"}, {"state", e.state}, {"name", e.name}, {"kind", engine::stepKindName(e.kind)}};
             if (e.marks) out["marks"] = true;
             if (e.lines) out["lines"] = true;
+            if (e.form) out["form"] = true;
+            if (e.heights) out["heights"] = true;
             if (e.suggested)
               out["suggested"] = {{"scale", e.suggested->scale},
                                   {"sensitivity", e.suggested->sensitivity},

@@ -30,6 +30,13 @@ namespace journal {
 struct Begin {
   std::int64_t state = 0;
   haptic::Scene scene;
+  /// The program had the states in memory, as at another rate. Else they are those of the file: under a form they are seen
+  /// afresh from what is stored.
+  bool continues = false;
+};
+/// A state under a form was read from the file, since memory no longer held it: it is seen afresh from what is stored.
+struct StateRead {
+  std::int64_t state = 0;
 };
 /// The next ticks' inputs; the entry's data is a block of TickPacker.
 struct Ticks {
@@ -51,7 +58,8 @@ struct EdgesSuggested {
 };
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
 /// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge
-/// lines (mark_codec.h). With `suggested` these were the suggested edges of the heights before the step: a replay
+/// lines (mark_codec.h); with `form` under the form of the entry's data (engine::packForm), with `heights` what was seen
+/// of it as samples, under none. With `suggested` these were the suggested edges of the heights before the step: a replay
 /// takes them from the data, a recipe suggests them again on another scan.
 struct StepMade {
   std::int64_t state = 0;
@@ -61,6 +69,8 @@ struct StepMade {
   bool marks = false;
   bool lines = false;
   std::optional<EdgesSuggested> suggested = {};
+  bool form = false;
+  bool heights = false;
 };
 /// The restoring of state `state` was requested ...
 struct RestoreRequested {
@@ -92,7 +102,7 @@ struct Offered {
   bool taken = false;
 };
 
-using Entry = std::variant<Begin, Ticks, Lost, SceneSet, StepMade, RestoreRequested, Restored, FilterBase,
+using Entry = std::variant<Begin, StateRead, Ticks, Lost, SceneSet, StepMade, RestoreRequested, Restored, FilterBase,
                            FilterBegun, Snapshot, Offered>;
 
 }  // namespace journal

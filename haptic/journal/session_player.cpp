@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/seen_field.h"
 #include "engine/field/upright.h"
+#include "engine/session/form_codec.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/journal/tick_codec.h"
@@ -32,8 +34,8 @@ constexpr int kMostRounds = 1000;
 class Player final : public haptic::AdoptionPort {
  public:
   Player(const engine::Session& session, engine::JobControl& job)
-      : journal_(session.journal), original_(session.original), job_(job) {
-    states_[0] = original_;
+      : journal_(session.journal), original_(session.original.withForm(nullptr)), job_(job) {
+    states_[0] = session.original;
     const engine::History& stored = session.history;
     const std::int64_t start = std::min(journalStart(session), stored.last());
     for (std::int64_t k = std::max(stored.first(), std::int64_t{1}); k <= start; ++k)
@@ -41,10 +43,13 @@ class Player final : public haptic::AdoptionPort {
   }
 
   engine::Result<PlayedSession> run() {
+    if (auto seen = seeAfresh(); !seen) return tl::unexpected(seen.error());
     job_.begin("replaying", journal_.size());
     while (next_ < journal_.size())
       if (auto done = playNext(); !done) return tl::unexpected(done.error());
-    played_.field = states_.at(played_.state);
+    auto field = engine::restored(states_.at(played_.state), own_);
+    if (!field) return tl::unexpected(field.error());
+    played_.field = *std::move(field);
     return std::move(played_);
   }
 
@@ -98,11 +103,43 @@ class Player final : public haptic::AdoptionPort {
                               "the session's stored states are not touched by this: open or export them");
   }
 
+  // A state as it is seen when it is read from the file.
+  engine::Status seeAfresh(Version& state) {
+    if (state.formOver() == nullptr) return {};
+    auto stored = engine::restored(state, own_);
+    if (stored) stored = engine::seenNear(*stored, state, own_);
+    if (!stored) return tl::unexpected(stored.error());
+    state = *std::move(stored);
+    return {};
+  }
+  engine::Status seeAfresh() {
+    for (auto& each : states_)
+      if (auto done = seeAfresh(each.second); !done) return done;
+    return {};
+  }
+
+  // The original scan under the form over a state, which it is computed near.
+  engine::Result<Version> originalOf(const Version& state) {
+    const engine::FieldForm& form = state.formOver();
+    if (form == nullptr) return original_;
+    Version& known = originals_[form];
+    if (!known.empty()) return known;
+    auto seen = engine::seenNear(original_.withForm(form), state, own_);
+    if (seen) known = *seen;
+    return seen;
+  }
+
   engine::Status play(const journal::Begin& begin, const std::string&) {
+    if (!begin.continues)
+      if (auto seen = seeAfresh(); !seen) return seen;
     const auto state = states_.find(begin.state);
     if (state == states_.end()) return mismatch("a loop begins on a state that does not exist");
-    auto loop = haptic::LoopPlayer::create(state->second, original_, begin.scene);
+    auto original = originalOf(state->second);
+    if (!original) return tl::unexpected(original.error());
+    auto loop = haptic::LoopPlayer::create(state->second, *original, begin.scene);
     if (!loop) return tl::unexpected(loop.error());
+    scene_ = begin.scene;
+    live_original_ = *std::move(original);
     loop_ = std::move(*loop);
     inverted_ = begin.scene.invert;
     played_.state = begin.state;
@@ -112,6 +149,12 @@ class Player final : public haptic::AdoptionPort {
     answered_tick_.reset();
     ++played_.loops;
     return {};
+  }
+
+  engine::Status play(const journal::StateRead& read, const std::string&) {
+    const auto state = states_.find(read.state);
+    if (state == states_.end()) return mismatch("a state is read that does not exist");
+    return seeAfresh(state->second);
   }
 
   engine::Status play(const journal::Ticks& what, const std::string& data) {
@@ -132,14 +175,21 @@ class Player final : public haptic::AdoptionPort {
   engine::Status play(const journal::SceneSet& set, const std::string&) {
     LoopCommand command;
     command.kind = CommandKind::kScene;
-    command.scene = std::make_unique<haptic::PreparedScene>(set.scene, original_);
+    command.scene = std::make_unique<haptic::PreparedScene>(set.scene, live_original_);
+    scene_ = set.scene;
     inverted_ = set.scene.invert;
     return give(std::move(command), set.at);
   }
 
   engine::Status play(const journal::StepMade& step, const std::string& data) {
     Version state;
-    if (step.marks || step.lines) {
+    if (step.form || step.heights) {
+      const auto before = states_.find(step.state - 1);
+      if (before == states_.end()) return mismatch("a form over a state that does not exist");
+      auto changed = underOtherForm(before->second, step, data);
+      if (!changed) return tl::unexpected(changed.error());
+      state = *std::move(changed);
+    } else if (step.marks || step.lines) {
       const auto before = states_.find(step.state - 1);
       if (before == states_.end()) return mismatch("marks on a state that does not exist");
       auto changed =
@@ -159,6 +209,16 @@ class Player final : public haptic::AdoptionPort {
     return {};
   }
 
+  engine::Result<Version> underOtherForm(const Version& before, const journal::StepMade& step,
+                                         const std::string& data) {
+    if (step.heights) return engine::madeHeights(before);
+    const auto form = engine::unpackForm(data, before.grid());
+    if (!form) return mismatch("a form that cannot be read");
+    const auto stored = engine::restored(before, own_);
+    if (!stored) return tl::unexpected(stored.error());
+    return engine::seenNear(stored->withForm(*form), before, own_);
+  }
+
   engine::Status play(const journal::RestoreRequested& asked, const std::string&) {
     const auto state = states_.find(asked.state);
     if (state == states_.end()) return mismatch("a state is restored that does not exist");
@@ -173,6 +233,13 @@ class Player final : public haptic::AdoptionPort {
     LoopCommand command;
     command.kind = CommandKind::kRestore;
     command.version = inverted_ ? version->second.inverted() : version->second;
+    // As LoopClient: under another form the original is another in the same tick.
+    if (version->second.formOver() != live_original_.formOver()) {
+      auto original = originalOf(version->second);
+      if (!original) return tl::unexpected(original.error());
+      live_original_ = *std::move(original);
+      command.scene = std::make_unique<haptic::PreparedScene>(scene_, live_original_);
+    }
     asked_.erase(version);
     return give(std::move(command), restored.at);
   }
@@ -188,7 +255,9 @@ class Player final : public haptic::AdoptionPort {
     const auto base = bases_.find(filter.id);
     if (base == bases_.end()) return mismatch("a filter without its input field");
     const Version input = base->second;
-    const Version original = input.reader().sign() < 0.0F ? original_.inverted() : original_;
+    auto upright = originalOf(input);
+    if (!upright) return tl::unexpected(upright.error());
+    const Version original = input.reader().sign() < 0.0F ? upright->inverted() : *upright;
     engine::JobControl own = engine::JobControl::partOf(job_);  // its stages are not shown
     auto result = engine::applyFilter(input, original, filter.spec, own);
     if (!result) return tl::unexpected(result.error());
@@ -265,8 +334,12 @@ class Player final : public haptic::AdoptionPort {
   }
 
   const std::vector<engine::JournalEntry>& journal_;
-  const Version original_;
+  const Version original_;  // without a form
+  std::map<engine::FieldForm, Version> originals_;
+  Version live_original_;  // of the loop, under the form of its field
+  Scene scene_;            // of the loop
   engine::JobControl& job_;
+  engine::JobControl own_ = engine::JobControl::partOf(job_);  // its stages are not shown
   std::size_t next_ = 0;
   PlayedSession played_;
 

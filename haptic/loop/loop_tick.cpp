@@ -166,9 +166,17 @@ void LoopTick::adopt(LoopCommand& command) noexcept {
 }
 
 void LoopTick::restore(LoopCommand& command) noexcept {
+  const bool another = command.scene != nullptr;
+  if (another) {
+    refused_before_ += static_cast<std::uint64_t>(scene_->tick.counters().refused_edits);
+    std::swap(scene_, command.scene);
+    workspace_.lift(command.lift_mm);
+  }
   engine::LiveField& field = scene_->field;
   const float sign = field.reader().sign();
   command.version = field.adopt(std::move(command.version));
+  // The placeholder is held by the scene as well: it is not freed here.
+  if (another) command.version = command.scene->field.snapshot();
   if (field.reader().sign() != sign) field.invert();
   scene_->tick.fieldChanged();
   if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();
@@ -177,6 +185,7 @@ void LoopTick::restore(LoopCommand& command) noexcept {
   stroke_.reset();
   LoopEvent event = eventNow(EventKind::kRestored, command.id);
   event.retired = std::move(command.version);
+  event.retired_scene = std::move(command.scene);
   event.rect = wholeField();
   send(std::move(event));
 }

@@ -44,7 +44,9 @@ enum class CommandKind : std::uint8_t {
   kView,       ///< its `scale` and `turn_rad` from now on, without moving the tip
   kSnapshot,   ///< answers kSnapshot: the base of a job that will be adopted
   kAdopt,      ///< continue from `version`, made from the newest kSnapshot; see LoopTick
-  kRestore,    ///< continue from exactly `version` (undo, redo); answers kRestored
+  /// Continue from exactly `version` (undo, redo); answers kRestored. With `scene` in the same tick with that scene, which
+  /// was prepared with another original, and with the workspace moved by `lift_mm`: another form lies over the version.
+  kRestore,
   kArm,        ///< made by LoopChannels::armCommand(); disarming is no command: LoopChannels::disarm()
 };
 
@@ -56,6 +58,7 @@ struct LoopCommand {
   Workspace workspace;
   double scale = 1.0;     ///< see Workspace::setView
   double turn_rad = 0.0;  ///< see Workspace::setView
+  double lift_mm = 0.0;   ///< up, in the field as it is felt
   engine::Version version;
   std::unique_ptr<PreparedScene> scene;  // not null with kScene
 };

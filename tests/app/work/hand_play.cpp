@@ -6,10 +6,16 @@
 #include <thread>
 
 #include "engine/field/live_field.h"
+#include "engine/field/seen_field.h"
 
 namespace fettle::tests {
 
 using haptic::Tool;
+
+std::uint64_t storedHash(const engine::Version& state) {
+  engine::JobControl job;
+  return engine::contentHash(*engine::restored(state, job));
+}
 
 void HandPlay::wait(std::uint64_t ticks) {
   const std::uint64_t until = client_.state().tick + ticks;
@@ -17,6 +23,7 @@ void HandPlay::wait(std::uint64_t ticks) {
     client_.poll();
     keeper_.poll();
     static_cast<void>(filters_.poll(client_, notices_));
+    if (!filters_.applying()) static_cast<void>(form_.poll(client_, notices_));
     // A window's frames look at the loop about as often while it draws.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -150,7 +157,35 @@ std::string HandPlay::scene() {
   return "scene";
 }
 
+std::string HandPlay::form() {
+  std::string what = "form put back";
+  const auto choice = random_() % 4;
+  if (client_.newest().formOver() == nullptr || choice == 0) {
+    form_.options.degree = 1 + static_cast<int>(random_() % 3);
+    form_.options.robust = random_() % 4 == 0;
+    form_.options.region = random_() % 4 == 0 ? engine::Region::kUnmarked : engine::Region::kAll;
+    form_.takeOut(client_);
+    what = "form taken out";
+  } else if (choice == 1) {
+    form_.makeHeights(client_);
+    what = "heights made";
+  } else {
+    form_.putBack(client_);
+  }
+  // A hand may work on meanwhile.
+  if (random_() % 2 == 0) static_cast<void>(stroke(random_() % 2 == 0));
+  while (form_.busy()) wait(1);
+  return what;
+}
+
+void HandPlay::takeOutPlane() {
+  form_.options = {};
+  form_.takeOut(client_);
+  while (form_.busy()) wait(1);
+}
+
 std::string HandPlay::act() {
+  if (random_() % 8 == 0) return form();
   const auto what = random_() % 16;
   if (what < 6) return stroke(true);
   if (what < 7) return stroke(false);

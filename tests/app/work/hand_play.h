@@ -6,13 +6,17 @@
 #include <vector>
 
 #include "app/work/filter_preview.h"
+#include "app/work/form_tool.h"
 #include "app/work/loop_client.h"
 #include "app/work/session_keeper.h"
 
 namespace fettle::tests {
 
+/// contentHash of what a session stores of a state: of one that is seen under a form its samples.
+[[nodiscard]] std::uint64_t storedHash(const engine::Version& state);
+
 /// A person at the window, without the window: random strokes with the mouse as stylus, undo and redo,
-/// filters applied during a stroke, marks, scenes. On the real loop, in real time.
+/// filters applied during a stroke, marks, scenes, forms taken out and put back. On the real loop, in real time.
 class HandPlay {
  public:
   HandPlay(app::LoopClient& client, app::SessionKeeper& keeper, std::uint64_t seed)
@@ -20,6 +24,8 @@ class HandPlay {
 
   /// One thing a person does; says what.
   std::string act();
+  /// A plane is taken out.
+  void takeOutPlane();
   /// This filter, applied during a stroke.
   void apply(const engine::FilterSpec& spec);
   /// Until nothing is under way: no stroke, no filter, every step handed over.
@@ -37,6 +43,7 @@ class HandPlay {
   std::string marks();
   std::string lines();
   std::string scene();
+  std::string form();
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
@@ -45,6 +52,7 @@ class HandPlay {
   app::SessionKeeper& keeper_;
   std::mt19937_64 random_;
   app::FilterPreview filters_;
+  app::FormTool form_;
   std::vector<app::Notice> notices_;
   double u_ = 0.5, v_ = 0.5;  // where the cursor is, in fractions of the field
 };

@@ -52,7 +52,7 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
       ASSERT_TRUE(opened) << opened.error().line();
       document = *std::move(opened);
       ASSERT_TRUE(document.writer);
-      EXPECT_EQ(engine::contentHash(document.history.current()), expected);
+      EXPECT_EQ(storedHash(document.history.current()), expected);
       EXPECT_EQ(document.history.number(), number);
     }
     const engine::History history = document.history;
@@ -69,7 +69,7 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
     for (int i = 0; i < 4; ++i) ++did[play.act()];
     play.settle();
     client->finish();
-    expected = engine::contentHash(client->history().current());
+    expected = storedHash(client->history().current());
     number = client->history().number();
     const engine::Status closed = keeper.close(SessionKeeper::Afterwards::kKeep);
     ASSERT_TRUE(closed) << closed.error().line();
@@ -111,7 +111,7 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   play.settle();
   for (const app::Notice& notice : play.notices()) ADD_FAILURE() << notice.what;
   client->finish();
-  const std::uint64_t expected = engine::contentHash(client->history().current());
+  const std::uint64_t expected = storedHash(client->history().current());
   ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
 
   engine::JobControl job;
@@ -150,7 +150,7 @@ TEST(SessionJournal, BeginsWithWhatACommandHadMadeOfTheScan) {
     play.apply(spec);
     play.settle();
     client->finish();
-    expected = engine::contentHash(client->history().current());
+    expected = storedHash(client->history().current());
     ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
   }
   const auto session = engine::openSession(path, {}, engine::importField, job);
@@ -194,7 +194,7 @@ TEST(SessionKeeper, UnsavedWorkIsThereAgainAndGoneWhenDiscarded) {
       ASSERT_TRUE(opened) << opened.error().line();
       document = *std::move(opened);
       EXPECT_TRUE(document.recovered);
-      EXPECT_EQ(engine::contentHash(document.history.current()), expected);
+      EXPECT_EQ(storedHash(document.history.current()), expected);
     }
     const engine::History history = document.history;
     SessionKeeper keeper(document);
@@ -204,7 +204,7 @@ TEST(SessionKeeper, UnsavedWorkIsThereAgainAndGoneWhenDiscarded) {
     while (client->history().last() < 2) static_cast<void>(play.act());
     play.settle();
     client->finish();
-    expected = engine::contentHash(client->history().current());
+    expected = storedHash(client->history().current());
     ASSERT_TRUE(keeper.close(afterwards));
     EXPECT_EQ(std::filesystem::exists(recovery), afterwards == SessionKeeper::Afterwards::kKeep);
   }

@@ -1,0 +1,87 @@
+#include "app/work/form_tool.h"
+
+#include <memory>
+#include <utility>
+
+namespace fettle::app {
+namespace {
+
+engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::FormOptions& options,
+                                    engine::JobControl& job) {
+  const auto samples = engine::withoutLayer(field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  const auto fit = engine::fitForm(*samples, options, job);
+  if (!fit) {
+    engine::Error error = fit.error();
+    if (error.kind == engine::ErrorKind::kInput)
+      error.remedy = options.region == engine::Region::kAll
+                         ? "every sample is a hole"
+                         : "mark samples, or fit by all of them";
+    return tl::unexpected(error);
+  }
+  return FormTool::Fit{options, std::make_shared<const engine::PolynomialForm>(fit->form), fit->samples, fit->rms,
+                       fit->samples > engine::PolynomialForm::terms(options.degree)};
+}
+
+}  // namespace
+
+void FormTool::measure(const LoopClient& client) {
+  working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+    auto fit = fitOf(field, what, job);
+    if (!fit) return tl::unexpected(fit.error());
+    return Work{*std::move(fit), std::nullopt};
+  });
+}
+
+void FormTool::takeOut(const LoopClient& client) {
+  working_.start([field = client.newest(), scan = client.scan(),
+                  what = options](engine::JobControl& job) -> engine::Result<Work> {
+    auto fit = fitOf(field, what, job);
+    if (!fit) return tl::unexpected(fit.error());
+    auto change = makeFormChange(FormStep::kTakeOut, fit->form, field, scan, job);
+    if (!change) return tl::unexpected(change.error());
+    return Work{*std::move(fit), *std::move(change)};
+  });
+}
+
+void FormTool::start(const LoopClient& client, FormStep step) {
+  if (client.newest().formOver() == nullptr) return;
+  working_.start([field = client.newest(), scan = client.scan(),
+                  step](engine::JobControl& job) -> engine::Result<Work> {
+    auto change = makeFormChange(step, nullptr, field, scan, job);
+    if (!change) return tl::unexpected(change.error());
+    return Work{std::nullopt, *std::move(change)};
+  });
+}
+
+bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
+  const bool dropped = working_.cancelling();
+  auto done = working_.take();
+  if (!done) return false;
+  if (dropped) return true;
+  if (!*done) {
+    if (done->error().kind != engine::ErrorKind::kCancelled)
+      notices.push_back({done->error().what, done->error().remedy});
+    return true;
+  }
+  Work work = std::move(**done);
+  if (work.fit) fit_ = work.fit;
+  if (work.fit && !work.fit->decided)
+    notices.push_back({"so few samples do not determine the form",
+                       "of those that come nearest to them it is the flattest"});
+  if (!work.change || client.changeForm(*work.change)) return true;
+  // The field was filtered meanwhile: once more, near what is known.
+  working_.start([field = client.newest(), work = std::move(work)](
+                     engine::JobControl& job) mutable -> engine::Result<Work> {
+    if (auto moved = work.change->moveTo(field, job); !moved) return tl::unexpected(moved.error());
+    return Work{std::nullopt, std::move(work.change)};
+  });
+  return true;
+}
+
+void FormTool::clear() {
+  working_.cancel();
+  fit_.reset();
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/work/background.h"
+#include "app/work/form_change.h"
+#include "app/work/loop_client.h"
+#include "engine/measure/form.h"
+
+namespace fettle::app {
+
+/// The form over the field: fitted, taken out and put back as steps, worked out in the background while the hand goes on.
+/// Threading: main.
+class FormTool {
+ public:
+  /// Edited by the panel.
+  engine::FormOptions options;
+
+  /// A fit: how far the samples that count are from the form.
+  struct Fit {
+    engine::FormOptions options;
+    engine::FieldForm form;
+    std::int64_t samples = 0;
+    double rms = 0.0;  ///< [height_unit]
+    bool decided = true;  ///< false: so few samples do not determine the form
+  };
+
+  /// Fits `options` to the samples of the newest field, with the form that lies over it: fit() has the result.
+  void measure(const LoopClient& client);
+  /// Fits, and takes the form out, in place of the one over the field, if any.
+  void takeOut(const LoopClient& client);
+  /// For a field under a form.
+  void putBack(const LoopClient& client) { start(client, FormStep::kPutBack); }
+  void makeHeights(const LoopClient& client) { start(client, FormStep::kMakeHeights); }
+  void cancel() noexcept { working_.cancel(); }
+
+  /// Takes over results. True when something visible changed.
+  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
+
+  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
+  [[nodiscard]] double progress() const noexcept { return working_.progress(); }
+  /// The last fit; empty before, and of another document.
+  [[nodiscard]] const std::optional<Fit>& fit() const noexcept { return fit_; }
+  /// Forgets the fit, of a document that is closed.
+  void clear();
+
+ private:
+  struct Work {
+    std::optional<Fit> fit;
+    std::optional<FormChange> change;
+  };
+  void start(const LoopClient& client, FormStep step);
+
+  std::optional<Fit> fit_;
+  Background<Work> working_;
+};
+
+}  // namespace fettle::app
