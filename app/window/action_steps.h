@@ -120,6 +120,8 @@ inline void navigate(Parts& p) {
     p.marking.places.drop();
   else if (p.marking.edges.on())
     p.marking.edges.drop();
+  else if (p.form.busy())
+    p.form.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
   else
@@ -291,6 +293,21 @@ inline bool filterIsLimited(const Parts& p) {
 }
 inline bool canApply(const Parts& p) {
   return hasField(p) && (!p.filters.variants().empty() || p.marking.edges.suggestion() != nullptr);
+}
+
+// --- Form
+
+inline bool hasForm(const Parts& p) {
+  return hasField(p) && p.document.client()->newest().formOver() != nullptr;
+}
+inline void formOut(Parts& p) {
+  p.form.takeOut(clientOf(p));
+}
+inline void formBack(Parts& p) {
+  if (hasForm(p)) p.form.putBack(clientOf(p));
+}
+inline void formHeights(Parts& p) {
+  if (hasForm(p)) p.form.makeHeights(clientOf(p));
 }
 
 // --- View

@@ -127,6 +127,12 @@ constexpr ActionRow kRows[] = {
               kField, moveSplit<-1>},
     ActionRow{Action::kSplitRight, "Filter", "Split line to the right", Key::kRight, kControl, kNoKey,
               kNoMenu, kField, moveSplit<1>},
+    ActionRow{Action::kFormOut, "Filter", "Take the form out of what is seen", letter('L'), kShift, kNoKey,
+              kThird, kField, formOut},
+    ActionRow{Action::kFormBack, "Filter", "Put the form back", letter('L'), kControl, kNoKey, kThird, kField,
+              formBack, nullptr, hasForm},
+    ActionRow{Action::kFormHeights, "Filter", "Make what is seen without the form the heights", letter('L'),
+              kAlt, kNoKey, kThird, kField, formHeights, nullptr, hasForm},
 
     ActionRow{Action::kDeviation, "View", "Colours show the change since the scan", letter('D'), kPlain,
               kNoKey, kFirst, kField, deviation, isOn<&Display::deviation>},

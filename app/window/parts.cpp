@@ -57,6 +57,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   releaseHands();
   feedback.questions.dropOfField();
   filters.finish(*document.client());
+  form.clear();
   marking.reset();
   change.cancel();
   costs.reset();

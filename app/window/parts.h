@@ -20,6 +20,7 @@
 #include "app/window/window_picture.h"
 #include "app/work/choice_costs.h"
 #include "app/work/filter_preview.h"
+#include "app/work/form_tool.h"
 #include "app/work/recent_files.h"
 #include "render/plan/number_text.h"
 
@@ -57,6 +58,7 @@ struct Parts {
   Marking marking;
   LineDrag line_drag;
   FilterPreview filters;
+  FormTool form;
   ChangeFigures change;
   ChoiceCosts costs;
   render::FieldUnits units;  ///< in which the open document's quantities are shown

@@ -120,6 +120,10 @@ void addFilters(const Parts& p, Report& r) {
   r["places_skipped"] = places.count(PlaceTool::State::kSkipped);
   r["draws_lines"] = p.settings.draw_lines;
   r["marking"] = p.marking.edit.busy();
+  const engine::FieldForm& form = p.document.client()->newest().formOver();
+  r["form"] = form != nullptr ? Report(form->degree) : Report();
+  r["fitting_form"] = p.form.busy();
+  r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
   r["applying"] = filters.applying();
   r["filters_applied"] = filters.applied();
 }
@@ -155,7 +159,7 @@ void addDevice(const Parts& p, Report& r) {
 bool fieldIsSettled(const Parts& p) {
   const LoopClient& client = *p.document.client();
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
-  if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() ||
+  if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
       p.marking.busy() || p.picture.empty())
     return false;
   const render::Shown& shown = p.picture.shown();

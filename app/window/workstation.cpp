@@ -33,7 +33,7 @@ std::string settingsPath(const char* file) {
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
-         p.filters.computing() || p.filters.applying() || (p.document.isOpen() && p.picture.refining());
+         p.filters.computing() || p.filters.applying() || p.form.busy() || (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace
@@ -155,7 +155,10 @@ void Workstation::takeResults() {
   p.document.poll(p.view, p.feedback);
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
+  followForm();
   bool changed = p.filters.poll(client, notices);
+  // An adoption ends first: its result belongs to the form under which it was computed.
+  if (!p.filters.applying()) changed |= p.form.poll(client, notices);
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   // Under a hand that presses, and behind a question, the view stays where it is.
   const bool busy_hand =
@@ -332,10 +335,9 @@ void Workstation::startDocument(Document document) {
   p.dropCoarse();  // the coarse picture stays until the scan is read
   p.opening.noteTouched();
   p.saving.begin(grid.samples());
-  p.change.begin(document.original);
-  const render::ValueRange heights = render::heightSpan(document.original).robust;
-  p.units = render::fieldUnits(grid, heights.low, heights.high);
-  if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
+  p.change.begin(client.original());
+  form_ = client.field().formOver();
+  noteHeights();
   // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
@@ -351,6 +353,27 @@ void Workstation::startDocument(Document document) {
                                   grid.width, grid.height, grid.spacing_x * p.units.length.per_unit,
                                   grid.spacing_y * p.units.length.per_unit, p.units.length.name);
   window_->setTitle(p.document.fileName() + " - Fettle");
+}
+
+// Units and limits that fit the heights that are seen.
+void Workstation::noteHeights() {
+  Parts& p = parts_;
+  const engine::Version& original = p.document.client()->original();
+  const render::ValueRange heights = render::heightSpan(original).robust;
+  p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
+  if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
+}
+
+// Under another form heights are others: what was found in them is found again.
+void Workstation::followForm() {
+  Parts& p = parts_;
+  const engine::FieldForm& form = p.document.client()->field().formOver();
+  if (form == form_) return;
+  form_ = form;
+  p.marking.edges.drop();
+  p.marking.places.drop();
+  noteHeights();
+  p.picture.requestRedraw();
 }
 
 void Workstation::setRate(double hz) {

@@ -61,6 +61,8 @@ class Workstation {
   void load(const std::string& path, Recovery recovery);
   void takeOpened();
   void startDocument(Document document);
+  void noteHeights();
+  void followForm();
   void resumeAfterSave(const Afterwards& afterwards);
 
   void carryOut(PanelRequests requests);
@@ -79,6 +81,7 @@ class Workstation {
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as in the file
+  engine::FieldForm form_;  // over the field of the last frame
   std::uint64_t frames_ = 0;
   engine::Status end_;
 };

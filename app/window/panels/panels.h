@@ -27,6 +27,8 @@ void placePanel(const PanelContext& context, PlaceTool& places);
 /// `draws`: whether strokes of the mark tool become edge lines.
 void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
+/// The form that lies over the field, and the one that is to.
+void formPanel(const PanelContext& context, FormTool& form);
 void historyPanel(const PanelContext& context, MarkEdit& edit);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,

@@ -48,6 +48,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     linePanel(context, parts.marking.lines, settings.draw_lines);
   }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
+  if (section(settings, "Form", false)) formPanel(context, parts.form);
   if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(settings, "Display", false))
