@@ -47,6 +47,10 @@ void WindowPicture::fit(render::View& view) {
 engine::Status WindowPicture::show(render::Shown shown) {
   if (same(shown, shown_)) return {};
   if (auto status = live_->update(shown); !status) return status;
+  // Without a form the heights are others.
+  const bool other_form = !shown_.versions.empty() && !shown.versions.empty() &&
+                          shown_.versions.front().formOver() != shown.versions.front().formOver();
+  if (other_form) live_->refreshRanges();
   shown_ = std::move(shown);
   needs_redraw_ = true;
   return {};

@@ -59,8 +59,8 @@ void formPanel(const PanelContext& context, FormTool& form) {
     actionButton("Make it heights", Action::kFormHeights, context.act);
   }
   if (const auto& fit = form.fit())
-    writeWrapped(fmt::format("{}, {} samples: rms of what is left {}", formName(*fit->form), fit->samples,
-                             lengthText(fit->rms, context.units.change, 3)));
+    writeWrapped(fmt::format("{} of {} samples\nrms of what is left {}", formName(*fit->form), fit->samples,
+                             lengthText(fit->rms, context.units.height, 3)));
 }
 
 }  // namespace fettle::app

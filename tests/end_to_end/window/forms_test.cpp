@@ -1,0 +1,109 @@
+// The form of a bent part: taken out of what is seen and touched, put back, made heights.
+#include <csignal>
+#include <fstream>
+#include <vector>
+
+#include "engine/field/builder.h"
+#include "engine/formats/formats.h"
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+double spanOf(const State& state) {
+  return state["colours"][1].get<double>() - state["colours"][0].get<double>();
+}
+
+// The scan of the fixture on a bent plate, a hundred times as deep as its steps.
+void bend(const std::string& scan) {
+  const engine::Version part = load(scan);
+  const engine::Grid& grid = part.grid();
+  std::vector<float> z(static_cast<std::size_t>(grid.samples()));
+  part.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const double u = 2.0 * c / (grid.width - 1) - 1.0, v = 2.0 * r / (grid.height - 1) - 1.0;
+      z[static_cast<std::size_t>(r * grid.width + c)] += static_cast<float>(6.0 * u * u - 4.0 * u * v + 3.0 * v);
+    }
+  engine::JobControl job;
+  ASSERT_TRUE(engine::exportField(engine::makeField(grid, z, {}), scan, {}, job));
+}
+
+TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{
+      {"panels",
+       {{"Form", true}, {"Filters", false}, {"Tool", false}, {"Status", false}, {"Change since the scan", false}}}};
+  bend(scan);
+  const std::string session = folder.file("work.fettle"), without = folder.file("without.tif"),
+                    stroked = folder.file("stroked.tif");
+  {
+    const auto program = start({scan});
+    User user(display, *program, "form");
+    const State first = opened(*program);
+    EXPECT_TRUE(first["form"].is_null());
+    user.at({20, 790});
+    const Screen bent = user.look("bent");
+    (void)user.click("plane");
+    (void)user.click("polynomial 2");
+    const State fitted = user.click("Fit");
+    EXPECT_TRUE(fitted["form_rms"].is_number());
+    EXPECT_EQ(fitted["steps"], 0);
+    EXPECT_TRUE(user.reads("rms of what is left"));
+    const State out = user.click("Take out");
+    EXPECT_EQ(out["form"], 2);
+    EXPECT_EQ(out["steps"], 1);
+    EXPECT_LT(spanOf(out), 0.8 * spanOf(first));
+    EXPECT_TRUE(user.reads("taken out: polynomial of degree 2"));
+    EXPECT_TRUE(user.reads("Form out: polynomial of degree 2"));
+    user.at({20, 790});
+    const Screen flat = user.changed("without its form", bent);
+    // Felt where it is seen: a stroke is a step.
+    (void)user.key("7");
+    (void)user.press("s");
+    (void)program->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
+    EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 6)["steps"], 2);
+    (void)user.look("stroke");
+    (void)user.key("Escape");
+    (void)saveAs(user, stroked);
+    EXPECT_EQ(user.key("ctrl+z")["steps"], 1);
+    const State back = user.key("ctrl+l");
+    EXPECT_TRUE(back["form"].is_null());
+    EXPECT_EQ(back["steps"], 2);
+    EXPECT_TRUE(user.reads("Form back: polynomial of degree 2"));
+    EXPECT_NEAR(spanOf(back), spanOf(first), 1e-6 * spanOf(first));
+    (void)saveAs(user, without);
+    const State again = user.key("ctrl+z");
+    EXPECT_EQ(again["form"], 2);
+    EXPECT_EQ(again["steps"], 1);
+    (void)saveAs(user, session);
+    program->signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    expectSilence(*program);
+  }
+  // What was not touched has its bits, with the form.
+  EXPECT_EQ(compare(load(scan), load(without)).changed, 0);
+  const Differences strokes = compare(load(scan), load(stroked));
+  EXPECT_GT(strokes.changed, 0);
+  EXPECT_LT(strokes.last_row - strokes.first_row, 60);
+  EXPECT_LT(strokes.changed, 320 * 320 / 10);
+  {
+    // Opened again it is seen as it was left; its heights are made.
+    const auto program = start({session});
+    User user(display, *program, "formed");
+    const State seen = opened(*program);
+    EXPECT_EQ(seen["form"], 2);
+    EXPECT_EQ(seen["notices"], State::array());
+    const State heights = user.key("alt+l");
+    EXPECT_TRUE(heights["form"].is_null());
+    EXPECT_EQ(heights["steps"], 2);
+    EXPECT_NEAR(spanOf(heights), spanOf(seen), 1e-6 * spanOf(seen));
+    program->signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    expectSilence(*program);
+  }
+}
+
+}  // namespace
+}  // namespace fettle::tests
