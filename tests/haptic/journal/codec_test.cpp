@@ -146,6 +146,10 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::FilterBegun{1, spec},
       haptic::journal::Snapshot{there},
       haptic::journal::Offered{there, true},
+      haptic::journal::StateRead{4},
+      haptic::journal::Begin{3, anyScene(random), true},
+      haptic::journal::StepMade{9, "Form out: plane", engine::StepKind::kForm, there, false, false, {}, true},
+      haptic::journal::StepMade{10, "Heights", engine::StepKind::kForm, there, false, false, {}, false, true},
       haptic::journal::FilterBegun{2, edge_preserving},
   };
   for (const haptic::journal::Entry& entry : all) {

@@ -253,6 +253,45 @@ TEST(LoopTick, UndoWhileTouchingIsExactAndRedoHasTheRunningStroke) {
   EXPECT_TRUE(bench.field() == touched);
 }
 
+// As when a form is taken out: the field lies elsewhere, and so does what limits its changes.
+TEST(LoopTick, AnotherOriginalLimitsChangesFromTheTickOfItsVersionOn) {
+  constexpr double kMost = 0.01;
+  const engine::Version start = bumpy();
+  reserve(start);
+  engine::LiveField live(start, engine::Growth::kAllowed);
+  const engine::Grid& grid = start.grid();
+  std::vector<float> z(static_cast<std::size_t>(grid.samples()));
+  start.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
+  for (float& height : z) height += 100.0F;
+  ASSERT_TRUE(live.writeHeights(0, 0, grid.width, grid.height, z.data(), grid.width));
+  const engine::Version raised = live.snapshot();
+  reserve(start);
+  Scene scene = sceneWithBrush(1.0);
+  scene.max_change = kMost;
+  LoopBench bench(start, start, scene, testOptions(Tool::kSmooth));
+  for (int i = 0; i < 50; ++i) bench.tickAt({3.0 + 0.5 * i, 30.0, -0.8});
+  const engine::Version touched = bench.field();
+  static_cast<void>(bench.poll());
+  ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) {
+    c.version = raised;
+    c.scene = std::make_unique<PreparedScene>(scene, raised);
+  }));
+  bench.tickAt({30.0, 40.0, 99.2});
+  LoopEvent event = bench.newest(EventKind::kRestored);
+  EXPECT_TRUE(event.retired == touched);
+  ASSERT_NE(event.retired_scene, nullptr);
+  for (int i = 0; i < 200; ++i) bench.tickAt({30.0 + 0.5 * i, 40.0, 99.2});
+  std::vector<float> edited(z.size());
+  bench.field().reader().readHeights(0, 0, grid.width, grid.height, edited.data(), grid.width);
+  std::int64_t changed = 0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    changed += edited[i] != z[i];
+    // To the rounding of heights about 100.
+    ASSERT_LE(std::abs(edited[i] - z[i]), kMost + 8e-6) << i;
+  }
+  EXPECT_GT(changed, 10);
+}
+
 TEST(LoopTick, DryPoolRefusesEditsCountsThemAndLeavesTheFieldWhole) {
   const engine::Version start = bumpy();
   // The field's own slab may have tiles left: take them all.

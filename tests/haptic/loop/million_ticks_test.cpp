@@ -46,6 +46,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
   LoopBench bench(start, start, defaultScene(), testOptions(Tool::kSmooth));
   ASSERT_TRUE(bench.send(CommandKind::kArm));
   engine::Version undo_to = start;
+  Scene scene_now = defaultScene();
   std::uint64_t adopted = 0, restored = 0, scenes = 0;
   const std::uint64_t calls_before = fettle::tests::AllocationGuard::calls();
   for (std::uint64_t i = 0; i < kTicks; ++i) {
@@ -71,10 +72,15 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
       ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [&](LoopCommand& c) { c.id = i; }));
     }
     if (i % 7000 == 50) {
-      ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) { c.version = undo_to; }));
+      ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) {
+        c.version = undo_to;
+        // Under another form: with another original.
+        if (i % 14000 == 50) c.scene = std::make_unique<PreparedScene>(scene_now, start);
+      }));
     }
     if (i % 20000 == 10) {
-      Scene scene = defaultScene();
+      Scene& scene = scene_now;
+      scene = defaultScene();
       const auto k = i / 20000;
       scene.level = static_cast<ContactLevel>(k % 3);
       scene.brush_radius_samples = static_cast<double>(k % 5) * 1.7;
