@@ -16,6 +16,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/original_scan.h"
+#include "app/commands/output_checks.h"
 #include "app/commands/place_report.h"
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
@@ -27,6 +28,7 @@
 #include "engine/base/lower_case.h"
 #include "engine/base/memory.h"
 #include "engine/base/stopwatch.h"
+#include "engine/compare/compare.h"
 #include "engine/field/piece.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -42,6 +44,8 @@ struct FilterArguments {
   int window = 3;
   double sigma = 0.0;
   std::string range_sigma;
+  std::string cutoff;
+  std::string residual;
   int passes = 1;
   std::string keep;
   std::string only;
@@ -70,6 +74,15 @@ engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   spec.kind = filter.kind;
   spec.window = options.window;
   spec.sigma = options.sigma;
+  if (filter.nesting_word == "cutoff" && !options.cutoff.empty()) {
+    // In millimetres: the default unit of a grid.
+    const auto cutoff = parseHeight(options.cutoff, engine::Grid{}, "--cutoff");
+    if (!cutoff) return tl::unexpected(cutoff.error());
+    spec.nesting_mm = *cutoff;
+  } else if (!options.cutoff.empty()) {
+    return engine::inputError(fmt::format("{} has no cut-off", filter.word), "--cutoff",
+                              "take --filter areal-gaussian or robust-gaussian");
+  }
   spec.passes = options.passes;
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
@@ -139,6 +152,12 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const engine::Stopwatch save_watch;
   if (auto status = saveField(filtered->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(continued(status.error(), task.out, *std::move(kept)));
+  if (!options.residual.empty()) {
+    const auto residual = engine::deviationField(filtered->field, field, job);
+    if (!residual) return tl::unexpected(continued(residual.error(), task.out, *std::move(kept)));
+    if (auto status = saveField(*residual, options.residual, job); !status)
+      return tl::unexpected(continued(status.error(), task.out, *std::move(kept)));
+  }
   const double write_seconds = save_watch.seconds();
   if (*kept) (*kept)->finish();
 
@@ -147,6 +166,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   Report report{{"filter", options.filter}};
   if (filter.window.exists()) report["window"] = spec.window;
   if (filter.sigma.exists()) report["sigma"] = spec.sigma;
+  if (filter.nesting.exists()) report[std::string(filter.nesting_word)] = spec.nesting_mm;
   if (filter.range_sigma.exists()) report["range_sigma"] = spec.range_sigma;
   if (const engine::EdgeLines& lines = field.lines(); lines != nullptr) {
     if (!filter.knows_lines)
@@ -165,6 +185,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"seconds", seconds},
                  {"samples_per_second", samples / seconds},
                  {"hash", hashOf(filtered->field)}});
+  if (!options.residual.empty()) report["residual"] = options.residual;
   addKept(report, kept->get(), spec.passes);
   if (estimate) {
     report["write_seconds"] = write_seconds;
@@ -308,10 +329,10 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (options.resume.resume) return refused("--resume", "nothing is filtered that could be kept");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
-  const std::pair<bool, const char*> numbers[] = {{options.window != 3, "--window"},
-                                                  {options.sigma != 0.0, "--sigma"},
-                                                  {options.passes != 1, "--passes"},
-                                                  {!options.range_sigma.empty(), "--range-sigma"}};
+  const std::pair<bool, const char*> numbers[] = {
+      {options.window != 3, "--window"},     {options.sigma != 0.0, "--sigma"},
+      {options.passes != 1, "--passes"},     {!options.range_sigma.empty(), "--range-sigma"},
+      {!options.cutoff.empty(), "--cutoff"}, {!options.residual.empty(), "--residual"}};
   for (const auto& [given, option] : numbers)
     if (given) return refused(option, "the numbers of the filter are suggested with it");
   if (!options.max_change.empty())
@@ -408,6 +429,18 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
   for (const BatchTask& task : *tasks)
     if (auto status = checkOriginal(options.original, !options.max_change.empty(), task.out); !status)
       return tl::unexpected(status.error());
+  if (!options.residual.empty()) {
+    if (options.files.many() || isStream(options.residual))
+      return engine::inputError(
+          "a residual is written of one scan, to a file", "--residual",
+          "leave it out, and give IN, OUT and less of it by fettle compare --deviation");
+    if (auto status = checkOutputs({{options.residual, OutputKind::kField, {}}},
+                                   {tasks->front().in, tasks->front().out, options.keep, options.only,
+                                    options.lines, options.original},
+                                   Replacing::kNoWork, job);
+        !status)
+      return tl::unexpected(status.error());
+  }
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   if (auto status = checkResume(options.resume, *tasks); !status) return tl::unexpected(status.error());
   auto compute = chooseCompute(options.compute, engine::filterOf(spec->kind));
@@ -474,6 +507,11 @@ void addFilter(Command root, Chosen& chosen) {
        .kind = ValueKind::kLength,
        .otherwise =
            fmt::format("{} standard deviations of noise_finest of fettle info", fmt::join(ranges, ", "))},
+      {.name = "--cutoff",
+       .to = &options->cutoff,
+       .text = "Wavelength of which half stays; shorter ones are removed (areal-gaussian, robust-gaussian)",
+       .kind = ValueKind::kLength,
+       .shown = "MM"},
       {.name = "--passes",
        .to = &options->passes,
        .text = "Times that the filter is applied to its own result",
@@ -493,6 +531,11 @@ void addFilter(Command root, Chosen& chosen) {
            "Edge lines, .csv, .geojson, .gpkg or .dxf: {} keep the two sides of a step apart there",
            engine::filterWords(engine::knowsLines)),
        .kind = ValueKind::kLines},
+      {.name = "--residual",
+       .to = &options->residual,
+       .text =
+           "Also write what is taken away, IN less OUT, as a separate scan: the roughness beside a waviness",
+       .kind = ValueKind::kOutput},
       {.name = "--max-change",
        .to = &options->max_change,
        .text = "Largest change of a sample from the original: that of a session, else --original, else IN",
@@ -535,6 +578,8 @@ void addFilter(Command root, Chosen& chosen) {
       {{"fettle filter scan.tif clean.tif --filter tgv", "The best without a hand"},
        {"fettle filter scan.tif clean.tif --filter median --window 5 --keep marks.png --max-change 50um",
         "A median that leaves marked samples as they are, and no sample farther than that from the scan"},
+       {"fettle filter scan.tif waviness.tif --filter areal-gaussian --cutoff 0.8 --residual roughness.tif",
+        "Waviness and roughness by a cut-off of 0.8 mm (ISO 16610-61)"},
        {"fettle filter scan.tif --suggest --tolerance 12um", "Which filter is good enough, and why"}});
 }
 

@@ -164,8 +164,10 @@ void printOneMeasured(const Report& report) {
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());
-  if (report.contains("s_filter")) fmt::print("S-filter {:.6g} mm\n", report["s_filter"].get<double>());
-  if (report.contains("l_filter")) fmt::print("L-filter {:.6g} mm\n", report["l_filter"].get<double>());
+  for (const auto& [title, key] : {std::pair("S-filter", "s_filter"), std::pair("L-filter", "l_filter")})
+    if (report.contains(key))
+      fmt::print("{} {:.6g} mm, {}\n", title, report[key].get<double>(),
+                 report.value(fmt::format("{}_kind", key), std::string("areal-gaussian")));
   printAreal(report);
 }
 

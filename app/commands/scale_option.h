@@ -16,9 +16,11 @@ namespace fettle::app {
 struct ScaleArguments {
   std::string s_filter;
   std::string l_filter;
+  std::string s_kind = "areal-gaussian";  ///< words of the filters by cut-off
+  std::string l_kind = "areal-gaussian";
 };
 
-/// --s-filter, --l-filter.
+/// --s-filter, --l-filter, and their kinds.
 void addScaleOptions(Command command, ScaleArguments& arguments);
 
 /// A field as it is measured: `field` about `form`.
@@ -30,13 +32,13 @@ struct ScaleLimited {
 };
 
 /// S-filter, form (F-operation) and L-filter, in the order of ISO 25178-3: the S-F or S-L surface. Errors: as
-/// engine::gaussianFiltered and formOf, naming the option; an L-filter not longer than the S-filter (kInput).
+/// engine::gaussianFiltered, engine::applyFilter and formOf, naming the option; an L-filter not longer than the S-filter (kInput).
 [[nodiscard]] engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const std::string& scan,
                                                         const engine::Imported& imported,
                                                         const FormArguments& form,
                                                         const ScaleArguments& scale, engine::JobControl& job);
 
-/// s_filter and l_filter [mm], of those that are there.
+/// s_filter and l_filter [mm], and their kinds where these are not areal-gaussian, of those that are there.
 void addScale(Report& report, const ScaleArguments& scale);
 
 }  // namespace fettle::app

@@ -8,6 +8,8 @@ std::vector<ReportSchema> changing() {
       {"window?", "integer", "samples"},
       {"sigma?", "number", "samples"},
       {"range_sigma?", "number", "height unit"},
+      {"cutoff?", "number", "mm"},
+      {"residual?", "string", "with --residual"},
       {"lines?", "integer", "edge lines that it kept to"},
       {"line_points?", "integer", ""},
       {"compute", "string", "cpu or gpu"},

@@ -209,6 +209,8 @@ std::vector<ReportSchema> inspecting() {
                  {"filled?", "integer", "of a session: samples of the scan that were filled, in the region"},
                  {"s_filter?", "number", "cut-off of --s-filter, mm"},
                  {"l_filter?", "number", "cut-off of --l-filter, mm"},
+                 {"s_filter_kind?", "string", "where it is not areal-gaussian"},
+                 {"l_filter_kind?", "string", "where it is not areal-gaussian"},
                  {"unit_mm", "number", "millimetres in a height unit"},
                  {"lateral_unit", "string", "of lengths along the surface"},
                  {"lateral_unit_mm", "number", "millimetres in it"},

@@ -122,6 +122,29 @@ TEST_F(Commands, FilterGivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST_F(Commands, FilterByCutOffWritesWavinessAndRoughness) {
+  const auto report = fettleJson({"filter", scan(), file("w.tif"), "--filter", "areal-gaussian", "--cutoff",
+                                  "2500um", "--residual", file("r.tif")});
+  EXPECT_EQ(report["cutoff"], 2.5);
+  EXPECT_EQ(report["residual"], file("r.tif"));
+  // The residual is what compare states between the two.
+  EXPECT_EQ(fettle({"compare", file("w.tif"), scan(), "--deviation", file("d.tif")}).status, 0);
+  EXPECT_EQ(fettleJson({"info", file("r.tif")})["hash"], fettleJson({"info", file("d.tif")})["hash"]);
+  EXPECT_EQ(fettleJson({"filter", scan(), file("w.tif"), "--filter", "areal-gaussian", "--cutoff", "2.5",
+                        "--threads", "1"})["hash"],
+            report["hash"]);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& where) {
+    std::vector<std::string> arguments{"filter", scan(), file("w.tif"), "--filter"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expectRefused(fettle(arguments), where);
+  };
+  refused({"areal-gaussian"}, "cutoff");
+  refused({"robust-gaussian", "--cutoff", "1nm"}, "two samples");
+  refused({"box", "--cutoff", "1"}, "--cutoff");
+  refused({"box", "--residual", scan()}, "input");
+  refused({"box", "--residual", "-"}, "--residual");
+}
+
 TEST_F(Commands, FilterTakesARangeSigmaWithAUnitOrFromTheNoise) {
   const auto range = [&](const std::string& given) {
     std::vector<std::string> arguments{"filter", scan(), file("b.tif"), "--filter", "bilateral"};

@@ -173,6 +173,11 @@ TEST(Measure, FiltersLimitTheScales) {
   const auto report = fettleJson({"measure", scan, "--unit", "mm", "--s-filter", "0.2", "--l-filter", "5"});
   EXPECT_EQ(report["s_filter"], 0.2);
   EXPECT_EQ(report["l_filter"], 5.0);
+  // Of a smooth wave the robust filters leave more than the linear ones, whose half is not theirs.
+  EXPECT_NEAR(sq({"--l-filter", "5", "--l-filter-kind", "robust-gaussian"}) / all, 1.0, 0.1);
+  EXPECT_NEAR(sq({"--s-filter", "0.2", "--s-filter-kind", "robust-gaussian"}) / all, 1.0, 0.05);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--l-filter-kind", "robust-gaussian"}),
+                "--l-filter");
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "0.1"}), "--s-filter");
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "5", "--l-filter", "2"}),
                 "--l-filter");

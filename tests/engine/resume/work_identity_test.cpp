@@ -15,10 +15,15 @@ namespace {
 // Work kept by one version of the program is continued by the next: if a filter's bits change, so must the revision.
 TEST(FilterRevision, IsRaisedWhenTheBitsOfAnyFilterChange) {
   ASSERT_EQ(kFilterRevision, 1) << "enter the hashes of the new revision";
-  const std::map<std::string_view, std::uint64_t> hashes{
-      {"box", 0xd559f1db0d8fd2f8},       {"gaussian", 0x0f1f7ad2ce0ba8bf}, {"median", 0x11b24cbfe7f5878c},
-      {"bilateral", 0xd1b0127cbb592737}, {"tv", 0x79c5eddeb71525a3},       {"tgv", 0x4b5f30f22bf2dd30},
-      {"planes", 0x431bb46cc050bf4a}};
+  const std::map<std::string_view, std::uint64_t> hashes{{"box", 0xd559f1db0d8fd2f8},
+                                                         {"gaussian", 0x0f1f7ad2ce0ba8bf},
+                                                         {"median", 0x11b24cbfe7f5878c},
+                                                         {"bilateral", 0xd1b0127cbb592737},
+                                                         {"tv", 0x79c5eddeb71525a3},
+                                                         {"tgv", 0x4b5f30f22bf2dd30},
+                                                         {"planes", 0x431bb46cc050bf4a},
+                                                         {"areal-gaussian", 0x1a70be18ea45fe5b},
+                                                         {"robust-gaussian", 0x31e02a91bbb60c14}};
   const Version scan = scanWithEverything(330, 290);
   for (const Filter& filter : filters()) {
     JobControl job;

@@ -129,6 +129,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   edge_preserving.kind = engine::FilterKind::kTotalVariation;
   edge_preserving.window = 21;
   edge_preserving.range_sigma = 0.1 + 0.7;
+  edge_preserving.nesting_mm = 1.0 / 7.0;
   const haptic::LoopPlace there{1234567890123, true}, before{7, false};
   const std::vector<haptic::journal::Entry> all = {
       haptic::journal::Begin{3, anyScene(random)},
@@ -168,6 +169,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   ASSERT_TRUE(other);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.nesting_mm, edge_preserving.nesting_mm);
 }
 
 TEST(Journal, AStepOfBeforeHasNoNumbersOfASuggestionAndKeepsItsText) {
