@@ -168,6 +168,46 @@ TEST(SessionUnderForms, OfAnotherNameOpensAsItIsSeen) {
   EXPECT_EQ(document->history.current(), document->first);
 }
 
+// What is seen of a session that is opened is that of what is stored, which differs from what was felt by a rounding.
+TEST(SessionUnderForms, IsSeenFromWhatIsStoredWhenItIsOpenedAgain) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  engine::JobControl job;
+  ASSERT_TRUE(engine::exportField(highPart(), path, {}, job));
+  std::uint64_t felt = 0, expected = 0;
+  for (int life = 0; life < 2; ++life) {
+    auto document = app::openDocument(path, {}, app::Recovery::kLeave, kMuch, job);
+    ASSERT_TRUE(document) << document.error().line();
+    const engine::History history = document->history;
+    const app::FormOriginals originals = document->originals;
+    app::SessionKeeper keeper(*document);
+    auto client = app::LoopClient::start(history, originals, brushScene(), {}, &keeper);
+    ASSERT_TRUE(client) << client.error().line();
+    HandPlay play(**client, keeper, 9);
+    if (life == 0) {
+      play.takeOutPlane();
+      engine::FilterSpec spec;
+      spec.window = 5;
+      play.apply(spec);
+      play.settle();
+      ASSERT_TRUE((*client)->setRate(1500.0));
+      felt = engine::contentHash((*client)->history().current());
+    } else {
+      EXPECT_NE(engine::contentHash((*client)->history().current()), felt);
+    }
+    if (life == 1) play.makeHeights();
+    play.settle();
+    (*client)->finish();
+    expected = storedHash((*client)->history().current());
+    ASSERT_TRUE(keeper.close(app::SessionKeeper::Afterwards::kKeep));
+  }
+  engine::SessionOpenOptions all;
+  all.history_bytes = engine::History::kNoBound;
+  const auto played = haptic::playSession(*engine::openSession(path, all, engine::importField, job), job);
+  ASSERT_TRUE(played) << played.error().line();
+  EXPECT_EQ(engine::contentHash(played->field), expected);
+}
+
 // Steps that memory no longer holds are read from the file again, across forms.
 TEST(SessionUnderForms, GoesBackToStepsThatOnlyTheFileHas) {
   const TempFolder folder;
@@ -210,14 +250,10 @@ TEST(SessionUnderForms, GoesBackToStepsThatOnlyTheFileHas) {
     (*client)->undo();
     play.settle();
     EXPECT_EQ(storedHash((*client)->history().current()), hashes[static_cast<std::size_t>(state - 1)]) << state;
-    // Work from there and back: the replay goes the same way.
-    if (state == 3) {
-      (*client)->redo();
-      play.settle();
-      (*client)->undo();
-      play.settle();
-    }
+    // The heights of a state that was read are those of what is stored, not of what was felt before.
+    if (state == 3) break;
   }
+  play.makeHeights();
   for (int i = 0; i < 4; ++i) static_cast<void>(play.act());
   play.settle();
   (*client)->finish();

@@ -184,6 +184,11 @@ void HandPlay::takeOutPlane() {
   while (form_.busy()) wait(1);
 }
 
+void HandPlay::makeHeights() {
+  form_.makeHeights(client_);
+  while (form_.busy()) wait(1);
+}
+
 std::string HandPlay::act() {
   if (random_() % 8 == 0) return form();
   const auto what = random_() % 16;

@@ -26,6 +26,8 @@ class HandPlay {
   std::string act();
   /// A plane is taken out.
   void takeOutPlane();
+  /// What is seen becomes the heights.
+  void makeHeights();
   /// This filter, applied during a stroke.
   void apply(const engine::FilterSpec& spec);
   /// Until nothing is under way: no stroke, no filter, every step handed over.
