@@ -33,7 +33,8 @@ std::string settingsPath(const char* file) {
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
-         p.filters.computing() || p.filters.applying() || p.form.busy() || (p.document.isOpen() && p.picture.refining());
+         p.filters.computing() || p.filters.applying() || p.form.busy() ||
+         (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ class Workstation {
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as in the file
-  engine::FieldForm form_;  // over the field of the last frame
+  engine::FieldForm form_;   // over the field of the last frame
   std::uint64_t frames_ = 0;
   engine::Status end_;
 };

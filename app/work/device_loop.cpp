@@ -57,9 +57,7 @@ haptic::MouseFeel feelFor(const engine::Grid& grid) {
 }  // namespace
 
 DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Grid& grid)
-    : options_(std::move(options)),
-      driver_(haptic::driverNamed(options_.device).driver),
-      grid_(grid) {}
+    : options_(std::move(options)), driver_(haptic::driverNamed(options_.device).driver), grid_(grid) {}
 
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   const engine::Grid& grid = grid_;

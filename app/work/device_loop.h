@@ -47,7 +47,7 @@ class DeviceLoop {
   /// start; the previous loop can still be read then.
   struct Start {
     engine::Version field;
-    engine::Version original;  ///< upright: what Scene::max_change is measured against
+    engine::Version original;        ///< upright: what Scene::max_change is measured against
     haptic::Scene* scene = nullptr;  ///< lowered to the stable values (LoopClientOptions::lower_scene)
     haptic::Tool tool = haptic::Tool::kFeel;
     bool records = false;  ///< every tick's input (HapticLoop::pollRecord)

@@ -14,13 +14,12 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
   if (!fit) {
     engine::Error error = fit.error();
     if (error.kind == engine::ErrorKind::kInput)
-      error.remedy = options.region == engine::Region::kAll
-                         ? "every sample is a hole"
-                         : "mark samples, or fit by all of them";
+      error.remedy = options.region == engine::Region::kAll ? "every sample is a hole"
+                                                            : "mark samples, or fit by all of them";
     return tl::unexpected(error);
   }
-  return FormTool::Fit{options, std::make_shared<const engine::PolynomialForm>(fit->form), fit->samples, fit->rms,
-                       fit->samples > engine::PolynomialForm::terms(options.degree)};
+  return FormTool::Fit{options, std::make_shared<const engine::PolynomialForm>(fit->form), fit->samples,
+                       fit->rms, fit->samples > engine::PolynomialForm::terms(options.degree)};
 }
 
 }  // namespace
@@ -46,12 +45,12 @@ void FormTool::takeOut(const LoopClient& client) {
 
 void FormTool::start(const LoopClient& client, FormStep step) {
   if (client.newest().formOver() == nullptr) return;
-  working_.start([field = client.newest(), scan = client.scan(),
-                  step](engine::JobControl& job) -> engine::Result<Work> {
-    auto change = makeFormChange(step, nullptr, field, scan, job);
-    if (!change) return tl::unexpected(change.error());
-    return Work{std::nullopt, *std::move(change)};
-  });
+  working_.start(
+      [field = client.newest(), scan = client.scan(), step](engine::JobControl& job) -> engine::Result<Work> {
+        auto change = makeFormChange(step, nullptr, field, scan, job);
+        if (!change) return tl::unexpected(change.error());
+        return Work{std::nullopt, *std::move(change)};
+      });
 }
 
 bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
@@ -71,8 +70,8 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
                        "of those that come nearest to them it is the flattest"});
   if (!work.change || client.changeForm(*work.change)) return true;
   // The field was filtered meanwhile: once more, near what is known.
-  working_.start([field = client.newest(), work = std::move(work)](
-                     engine::JobControl& job) mutable -> engine::Result<Work> {
+  working_.start([field = client.newest(),
+                  work = std::move(work)](engine::JobControl& job) mutable -> engine::Result<Work> {
     if (auto moved = work.change->moveTo(field, job); !moved) return tl::unexpected(moved.error());
     return Work{std::nullopt, std::move(work.change)};
   });

@@ -23,7 +23,7 @@ class FormTool {
     engine::FormOptions options;
     engine::FieldForm form;
     std::int64_t samples = 0;
-    double rms = 0.0;  ///< [height_unit]
+    double rms = 0.0;     ///< [height_unit]
     bool decided = true;  ///< false: so few samples do not determine the form
   };
 

@@ -31,7 +31,8 @@ engine::Result<engine::History> seenHistory(const engine::History& stored, std::
   }
   std::vector<engine::Step> steps;
   for (std::size_t i = 0; i + 1 < states.size(); ++i)
-    steps.push_back({stored.info(stored.first() + static_cast<std::int64_t>(i) + 1), states[i], states[i + 1]});
+    steps.push_back(
+        {stored.info(stored.first() + static_cast<std::int64_t>(i) + 1), states[i], states[i + 1]});
   return engine::History(states[static_cast<std::size_t>(stored.number() - stored.first())], stored.number(),
                          stored.first(), std::move(steps), history_bytes);
 }

@@ -178,8 +178,8 @@ std::optional<engine::Status> SessionKeeper::saved() {
 
 void SessionKeeper::readOlder(const engine::History& history) {
   if (!writer_ || closed_) return;
-  reading_.start([writer = writer_.get(), history, scan = FormOriginals(original_).scan()](
-                     engine::JobControl& job) -> engine::Result<Older> {
+  reading_.start([writer = writer_.get(), history,
+                  scan = FormOriginals(original_).scan()](engine::JobControl& job) -> engine::Result<Older> {
     auto step = writer->loadOlder(history, job);
     if (!step) return tl::unexpected(step.error());
     auto before = engine::seenNear(step->before, step->after, job);

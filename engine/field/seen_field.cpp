@@ -203,8 +203,7 @@ Result<SeenField> SeenField::at(const Version& version, JobControl& job) const {
   if (version.form() == nullptr || version.form() != restored_.form() ||
       version.memory() != restored_.memory())
     return of(version, job);
-  const auto seen =
-      withSeen(seen_.withSeenOf(nullptr), version, tilesNotShared(restored_, version), job);
+  const auto seen = withSeen(seen_.withSeenOf(nullptr), version, tilesNotShared(restored_, version), job);
   if (!seen) return tl::unexpected(seen.error());
   const Version known = knowing(*seen, version);
   return SeenField(version, known, known);
@@ -265,8 +264,7 @@ Result<Version> StoredStates::of(const Version& state, JobControl& job) {
 
 Result<Version> seenNear(const Version& version, const Version& near, JobControl& job) {
   const bool at = version.form() != nullptr && near.seenOf() != nullptr &&
-                  near.seenOf()->form() == version.form() &&
-                  near.seenOf()->memory() == version.memory();
+                  near.seenOf()->form() == version.form() && near.seenOf()->memory() == version.memory();
   const auto seen = at ? SeenField(*near.seenOf(), *near.seenAs(), *near.seenAs()).at(version, job)
                        : SeenField::of(version, job);
   if (!seen) return tl::unexpected(seen.error());

@@ -100,9 +100,9 @@ journal::Entry entryOf(const json& in) {
   if (what == "step") {
     const auto kind = engine::stepKindFromName(in.at("kind").get_ref<const std::string&>());
     if (!kind) throw std::out_of_range("an unknown kind of step");
-    return journal::StepMade{state(),        in.at("name").get<std::string>(), *kind,
-                             placeOf(in),    in.value("marks", false),         in.value("lines", false),
-                             suggestedOf(in), in.value("form", false),         in.value("heights", false)};
+    return journal::StepMade{state(),         in.at("name").get<std::string>(), *kind,
+                             placeOf(in),     in.value("marks", false),         in.value("lines", false),
+                             suggestedOf(in), in.value("form", false),          in.value("heights", false)};
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};

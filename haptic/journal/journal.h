@@ -102,8 +102,8 @@ struct Offered {
   bool taken = false;
 };
 
-using Entry = std::variant<Begin, StateRead, Ticks, Lost, SceneSet, StepMade, RestoreRequested, Restored, FilterBase,
-                           FilterBegun, Snapshot, Offered>;
+using Entry = std::variant<Begin, StateRead, Ticks, Lost, SceneSet, StepMade, RestoreRequested, Restored,
+                           FilterBase, FilterBegun, Snapshot, Offered>;
 
 }  // namespace journal
 

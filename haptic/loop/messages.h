@@ -47,7 +47,7 @@ enum class CommandKind : std::uint8_t {
   /// Continue from exactly `version` (undo, redo); answers kRestored. With `scene` in the same tick with that scene, which
   /// was prepared with another original, and with the workspace moved by `lift_mm`: another form lies over the version.
   kRestore,
-  kArm,        ///< made by LoopChannels::armCommand(); disarming is no command: LoopChannels::disarm()
+  kArm,  ///< made by LoopChannels::armCommand(); disarming is no command: LoopChannels::disarm()
 };
 
 /// main -> loop. Every field but those its kind names is ignored.

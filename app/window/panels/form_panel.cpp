@@ -15,8 +15,8 @@ void writeWrapped(const std::string& text) {
 }
 
 void degreeField(engine::FormOptions& options) {
-  constexpr const char* kForms[] = {"mean height", "plane", "polynomial 2", "polynomial 3", "polynomial 4",
-                                    "polynomial 5"};
+  constexpr const char* kForms[] = {"mean height",  "plane",        "polynomial 2",
+                                    "polynomial 3", "polynomial 4", "polynomial 5"};
   static_assert(std::size(kForms) == engine::PolynomialForm::kMostDegree + 1);
   (void)field("form", [&] { return ImGui::Combo("##form", &options.degree, kForms, std::size(kForms)); });
 }

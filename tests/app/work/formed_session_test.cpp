@@ -249,7 +249,8 @@ TEST(SessionUnderForms, GoesBackToStepsThatOnlyTheFileHas) {
     }
     (*client)->undo();
     play.settle();
-    EXPECT_EQ(storedHash((*client)->history().current()), hashes[static_cast<std::size_t>(state - 1)]) << state;
+    EXPECT_EQ(storedHash((*client)->history().current()), hashes[static_cast<std::size_t>(state - 1)])
+        << state;
     // The heights of a state that was read are those of what is stored, not of what was felt before.
     if (state == 3) break;
   }

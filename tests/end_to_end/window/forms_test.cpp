@@ -25,16 +25,20 @@ void bend(const std::string& scan) {
   for (int r = 0; r < grid.height; ++r)
     for (int c = 0; c < grid.width; ++c) {
       const double u = 2.0 * c / (grid.width - 1) - 1.0, v = 2.0 * r / (grid.height - 1) - 1.0;
-      z[static_cast<std::size_t>(r * grid.width + c)] += static_cast<float>(6.0 * u * u - 4.0 * u * v + 3.0 * v);
+      z[static_cast<std::size_t>(r * grid.width + c)] +=
+          static_cast<float>(6.0 * u * u - 4.0 * u * v + 3.0 * v);
     }
   engine::JobControl job;
   ASSERT_TRUE(engine::exportField(engine::makeField(grid, z, {}), scan, {}, job));
 }
 
 TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
-  std::ofstream(folder.path() / "fettle" / "window.json") << State{
-      {"panels",
-       {{"Form", true}, {"Filters", false}, {"Tool", false}, {"Status", false}, {"Change since the scan", false}}}};
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"panels",
+                                                                    {{"Form", true},
+                                                                     {"Filters", false},
+                                                                     {"Tool", false},
+                                                                     {"Status", false},
+                                                                     {"Change since the scan", false}}}};
   bend(scan);
   const std::string session = folder.file("work.fettle"), without = folder.file("without.tif"),
                     stroked = folder.file("stroked.tif");
