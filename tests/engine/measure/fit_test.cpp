@@ -1,0 +1,453 @@
+#include "engine/measure/fit.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <glm/geometric.hpp>
+
+#include "engine/field/builder.h"
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kFitHole = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFitDegree = std::numbers::pi / 180.0;
+
+// Heights of a shape over (x, y), by bisection along z between two bounds: a plain twin of what is fitted.
+double heightOn(const Shape& shape, double x, double y, double low, double high) {
+  const auto at = [&](double z) { return distanceFrom(shape, {x, y, z}); };
+  if (!(at(low) <= 0.0 && at(high) >= 0.0)) return kFitHole;
+  for (int k = 0; k < 80; ++k) {
+    const double middle = 0.5 * (low + high);
+    (at(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+struct FitField {
+  int width = 60, height = 50;
+  double spacing_x = 0.1, spacing_y = 0.1;
+};
+
+Version fieldWith(const FitField& of, const std::function<double(double, double)>& z, double noise = 0.0,
+                  std::uint64_t seed = 1) {
+  Grid grid;
+  grid.width = of.width;
+  grid.height = of.height;
+  grid.spacing_x = of.spacing_x;
+  grid.spacing_y = of.spacing_y;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<float> heights;
+  for (int r = 0; r < of.height; ++r)
+    for (int c = 0; c < of.width; ++c)
+      heights.push_back(static_cast<float>(z(c * of.spacing_x, r * of.spacing_y) + noise * normal(random)));
+  return makeField(grid, heights);
+}
+
+FitRegion wholeOf(const Version& field) {
+  JobControl job;
+  auto region = wholeRegion(field, Region::kAll, job);
+  return region ? *std::move(region) : FitRegion{};
+}
+
+Result<ShapeFit> fitOf(const Version& field, ShapeKind kind, const FitOptions& options = {}) {
+  JobControl job;
+  return fitShape(FitSamples(field, wholeOf(field)), kind, options, job);
+}
+
+// A part of each shape as seen from above, 6 x 5 mm around (3, 2.5); the bounds of z for heightOn.
+struct SeenShape {
+  std::string name;
+  Shape shape;
+  double low = -50.0, high = 50.0;
+};
+std::vector<SeenShape> seenShapes() {
+  const auto axis = [](double x, double y, double z) { return glm::normalize(glm::dvec3(x, y, z)); };
+  return {
+      {"plane", {ShapeKind::kPlane, {3.0, 2.5, 0.2}, axis(0.2, -0.1, 1.0)}, -9, 9},
+      {"ball", {ShapeKind::kSphere, {2.7, 2.9, -3.0}, {0, 0, 1}, 6.0}, -3, 9},
+      {"hollow ball", {ShapeKind::kSphere, {2.7, 2.9, 7.0}, {0, 0, 1}, 6.0, 0, 0, true}, -9, 7},
+      {"cylinder", {ShapeKind::kCylinder, {3.0, 2.5, -4.0}, axis(1.0, 0.4, 0.1), 6.0}, -3, 9},
+      {"hollow cylinder",
+       {ShapeKind::kCylinder, {3.0, 2.5, 8.0}, axis(0.1, 1.0, -0.2), 6.0, 0, 0, true},
+       -9,
+       7},
+      {"cone", {ShapeKind::kCone, {-9.0, 2.0, -2.0}, axis(1.0, 0.1, -0.1), 0, 0, 20.0 * kFitDegree}, -2.2, 9},
+      {"countersink",
+       {ShapeKind::kCone, {3.1, 2.4, -2.0}, axis(0.02, 0.01, 1.0), 0, 0, 45.0 * kFitDegree, true},
+       -9,
+       9},
+      {"ring", {ShapeKind::kTorus, {3.0, 2.5, 0.0}, axis(0.03, 0.02, 1.0), 4.0, 3.0}, 0.05, 4},
+      {"hollow ring",
+       {ShapeKind::kTorus, {3.0, -4.0, 5.0}, axis(1.0, 0.1, 0.05), 8.0, 3.5, 0, true},
+       -9,
+       -2.0},
+  };
+}
+
+Version seenField(const SeenShape& seen, double noise = 0.0, std::uint64_t seed = 1,
+                  const FitField& of = {}) {
+  return fieldWith(
+      of, [&](double x, double y) { return heightOn(seen.shape, x, y, seen.low, seen.high); }, noise, seed);
+}
+
+double directionOff(const Shape& a, const Shape& b) {
+  return glm::length(glm::cross(a.direction, b.direction));
+}
+
+// Samples of a shape, rounded to float (2^-22 of a height of up to 4), are fitted to what rounding lets through.
+TEST(Fit, FindsEachShapeFromItsExactSamples) {
+  for (const SeenShape& seen : seenShapes()) {
+    const Version field = seenField(seen);
+    for (const bool robust : {false, true})
+      for (const bool vertical : {false, true}) {
+        const auto fit = fitOf(field, seen.shape.kind, {.vertical = vertical, .robust = robust});
+        ASSERT_TRUE(fit) << seen.name << ' ' << fit.error().line();
+        EXPECT_LT(fit->rms_mm, 1e-6) << seen.name;
+        EXPECT_NEAR(fit->shape.radius, seen.shape.radius, 2e-5) << seen.name;
+        EXPECT_NEAR(fit->shape.tube_radius, seen.shape.tube_radius, 2e-5) << seen.name;
+        EXPECT_NEAR(fit->shape.half_angle, seen.shape.half_angle, 1e-6) << seen.name;
+        EXPECT_EQ(fit->shape.hollow, seen.shape.hollow) << seen.name;
+        if (seen.shape.kind != ShapeKind::kSphere) {
+          EXPECT_LT(directionOff(fit->shape, seen.shape), 2e-6) << seen.name;
+        }
+        if (seen.shape.kind == ShapeKind::kSphere || seen.shape.kind == ShapeKind::kCone ||
+            seen.shape.kind == ShapeKind::kTorus) {
+          EXPECT_LT(glm::length(fit->shape.point - seen.shape.point), 3e-5) << seen.name;
+        } else {
+          EXPECT_NEAR(distanceFrom(seen.shape, fit->shape.point), distanceFrom(seen.shape, seen.shape.point),
+                      2e-5);
+        }
+      }
+  }
+}
+
+// The family's distances are those of the plain formulas, and its derivatives those of small differences.
+TEST(Fit, DistancesAndTheirSlopesAreThoseOfThePlainTwin) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> place(0.0, 6.0);
+  for (const SeenShape& seen : seenShapes())
+    for (int k = 0; k < 200; ++k) {
+      const double x = place(random), y = place(random), z = heightOn(seen.shape, x, y, seen.low, seen.high);
+      if (std::isnan(z)) continue;
+      const glm::dvec3 p(x, y, z + 0.2 * (place(random) - 3.0) / 3.0);
+      // Of a cone beyond its apex the two lines differ.
+      if (seen.name == "countersink" && glm::length(p - seen.shape.point) < 0.5) continue;
+      const FitSurface surface =
+          FitSurface::of(seen.shape, {4.5, 3.0, heightOn(seen.shape, 4.5, 3.0, seen.low, seen.high)});
+      const FitSurface::At at = surface.at(p);
+      EXPECT_NEAR(at.distance, distanceFrom(seen.shape, p), 1e-12) << seen.name;
+      EXPECT_NEAR(glm::length(at.gradient), 1.0, 1e-9) << seen.name;
+      constexpr double kStep = 1e-6;
+      for (double FitSurface::*number : {&FitSurface::theta, &FitSurface::ring, &FitSurface::tube}) {
+        FitSurface up = surface, down = surface;
+        up.*number += kStep;
+        down.*number -= kStep;
+        const double slope = (up.at(p).distance - down.at(p).distance) / (2.0 * kStep);
+        const double stated = number == &FitSurface::theta  ? at.by_theta
+                              : number == &FitSurface::ring ? at.by_ring
+                                                            : at.by_tube;
+        EXPECT_NEAR(stated, slope, 1e-6 * (1.0 + std::abs(slope))) << seen.name;
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 more = p, less = p;
+        more[axis] += kStep;
+        less[axis] -= kStep;
+        EXPECT_NEAR(at.gradient[axis],
+                    (surface.at(more).distance - surface.at(less).distance) / (2.0 * kStep), 1e-7);
+      }
+    }
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kFitSeeds = 5;  // for their paths; shares of 1,000 are counted where they take seconds
+#else
+constexpr int kFitSeeds = 1000;
+#endif
+
+// 1,000 simulated scans of each shape under 5 um of noise: how often the truth lies within one, two and three standard
+// errors. Of Gaussian errors 683 +- 45 (three of sqrt(1000 p (1 - p))), 954 +- 20, at least 991.
+// The table is printed: build/release/tests/engine/measure/measure_test --gtest_filter='FitUncertainty*'
+TEST(FitUncertainty, CoversAtOneTwoAndThreeTimes) {
+  struct Figure {
+    const char* name;
+    std::function<double(const Shape&)> value;
+    std::function<double(const ShapeFit::Errors&)> error;
+  };
+  const Figure radius{"radius", [](const Shape& s) { return s.radius; },
+                      [](const auto& e) { return e.radius; }};
+  const Figure point_z{"point z", [](const Shape& s) { return s.point.z; },
+                       [](const auto& e) { return e.point.z; }};
+  const Figure point_x{"point x", [](const Shape& s) { return s.point.x; },
+                       [](const auto& e) { return e.point.x; }};
+  const Figure axis_z{"direction z", [](const Shape& s) { return s.direction.z; },
+                      [](const auto& e) { return e.direction.z; }};
+  const Figure tube{"tube radius", [](const Shape& s) { return s.tube_radius; },
+                    [](const auto& e) { return e.tube_radius; }};
+  const Figure angle{"half angle", [](const Shape& s) { return s.half_angle; },
+                     [](const auto& e) { return e.half_angle; }};
+  struct Case {
+    std::size_t shape;
+    std::vector<Figure> figures;
+    FitOptions options;
+  };
+  const std::vector<SeenShape> seen = seenShapes();
+  const std::vector<Case> cases{{0, {axis_z}, {}},
+                                {1, {radius, point_z, point_x}, {}},
+                                {1, {radius}, {.vertical = true}},
+                                {1, {radius}, {.robust = true}},
+                                {3, {radius, axis_z}, {}},
+                                {3, {radius, axis_z}, {.vertical = true}},
+                                {6, {angle, point_z, axis_z}, {}},
+                                {7, {radius, tube, axis_z}, {}}};
+  for (const Case& one : cases) {
+    const SeenShape& of = seen[one.shape];
+    std::vector<std::array<int, 3>> covered(one.figures.size());
+    std::vector<double> squares(one.figures.size()), stated(one.figures.size());
+    for (int seed = 0; seed < kFitSeeds; ++seed) {
+      const Version field = seenField(of, 0.005, static_cast<std::uint64_t>(seed) + 1, {24, 20, 0.25, 0.25});
+      FitOptions options = one.options;
+      options.noise_mm = 0.005;
+      const auto fit = fitOf(field, of.shape.kind, options);
+      ASSERT_TRUE(fit) << of.name << ' ' << seed << ' ' << fit.error().line();
+      const ShapeFit::Errors errors = fit->errors();
+      for (std::size_t f = 0; f < one.figures.size(); ++f) {
+        const double error = std::abs(one.figures[f].value(fit->shape) - one.figures[f].value(of.shape));
+        const double by = one.figures[f].error(errors);
+        for (int k = 0; k < 3; ++k) covered[f][static_cast<std::size_t>(k)] += error <= (k + 1) * by ? 1 : 0;
+        squares[f] += error * error / kFitSeeds;
+        stated[f] += by / kFitSeeds;
+      }
+    }
+    for (std::size_t f = 0; f < one.figures.size(); ++f) {
+      std::printf("%-10s %-10s %-7s %-12s %4d %4d %4d  error %.3g, stated %.3g\n", of.name.c_str(),
+                  one.options.vertical ? "vertical" : "orthogonal", one.options.robust ? "robust" : "",
+                  one.figures[f].name, covered[f][0], covered[f][1], covered[f][2], std::sqrt(squares[f]),
+                  stated[f]);
+      if (kFitSeeds < 1000) continue;
+      EXPECT_NEAR(covered[f][0], 683, 45) << of.name << ' ' << one.figures[f].name;
+      EXPECT_NEAR(covered[f][1], 954, 20) << of.name << ' ' << one.figures[f].name;
+      EXPECT_GE(covered[f][2], 991) << of.name << ' ' << one.figures[f].name;
+    }
+  }
+}
+
+// Two planes: the angle and the distance between them under the same noise.
+TEST(FitUncertainty, CoversOfAngleAndDistance) {
+  std::array<int, 3> of_angle{}, of_distance{};
+  const double slope = std::tan(30.0 * kFitDegree);
+  for (int seed = 0; seed < kFitSeeds; ++seed) {
+    const auto plane = [&](double rise, double up, int which) {
+      return fitOf(fieldWith(
+                       {20, 20, 0.25, 0.25}, [&](double x, double) { return rise * x + up; }, 0.005,
+                       static_cast<std::uint64_t>(2 * seed + which)),
+                   ShapeKind::kPlane, {.noise_mm = 0.005});
+    };
+    const auto level = plane(0.0, 0.0, 0), tilted = plane(slope, 0.0, 1), above = plane(0.0, 1.0, 1);
+    ASSERT_TRUE(level && tilted && above);
+    const ShapeRelation turned = relationOf(*level, *tilted), step = relationOf(*level, *above);
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      of_angle[at] += std::abs(turned.angle_deg.value - 30.0) <= (k + 1) * turned.angle_deg.error ? 1 : 0;
+      of_distance[at] += std::abs(step.distance_mm.value - 1.0) <= (k + 1) * step.distance_mm.error ? 1 : 0;
+    }
+  }
+  for (const auto& [name, covered] : {std::pair("angle", of_angle), std::pair("distance", of_distance)}) {
+    std::printf("%-10s %4d %4d %4d\n", name, covered[0], covered[1], covered[2]);
+    if (kFitSeeds < 1000) continue;
+    EXPECT_NEAR(covered[0], 683, 45) << name;
+    EXPECT_NEAR(covered[1], 954, 20) << name;
+    EXPECT_GE(covered[2], 991) << name;
+  }
+}
+
+// Noise that 3 x 3 neighbours share: the scatter of sums over parts of the region says so.
+TEST(FitUncertainty, CountsNoiseThatNeighboursShare) {
+  const SeenShape of = seenShapes()[3];
+  int once = 0;
+  double correlation = 0.0;
+  const int seeds = kFitSeeds / 5;
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+    std::normal_distribution<double> normal(0.0, 0.015);
+    std::vector<double> white(62 * 62);
+    for (double& w : white) w = normal(random);
+    const Version field = fieldWith({60, 60, 0.1, 0.083}, [&](double x, double y) {
+      const auto c = static_cast<std::size_t>(std::lround(x / 0.1)),
+                 r = static_cast<std::size_t>(std::lround(y / 0.083));
+      double sum = 0.0;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) sum += white[(r + i) * 62 + c + j] / 9.0;
+      return heightOn(of.shape, x, y, of.low, of.high) + sum;
+    });
+    const auto fit = fitOf(field, ShapeKind::kCylinder, {.noise_mm = 0.001});
+    ASSERT_TRUE(fit);
+    once += std::abs(fit->shape.radius - of.shape.radius) <= fit->errors().radius ? 1 : 0;
+    correlation += fit->correlation / seeds;
+  }
+  std::printf("shared by 3 x 3: %d of %d within one error, variance times %.2f\n", once, seeds, correlation);
+  if (kFitSeeds < 1000) return;
+  // As many as of independent noise, less four in a hundred for what parts of five samples do not see: 200 (0.683 - 0.04)
+  // - 3 sqrt(200 0.68 0.32).
+  EXPECT_GE(once, 109);
+  // Without it a third of the error: the variance of a mean grows ninefold.
+  EXPECT_GT(correlation, 4.0);
+}
+
+TEST(Fit, IsTheSameForAnyNumberOfThreads) {
+  const Version field = seenField(seenShapes()[7], 0.005, 3, {150, 120, 0.04, 0.04});
+  for (const bool robust : {false, true}) {
+    std::vector<double> numbers;
+    for (const std::size_t threads : {1, 2, 5}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const auto fit = fitOf(field, ShapeKind::kTorus, {.robust = robust});
+      ASSERT_TRUE(fit) << fit.error().line();
+      const std::vector<double> these{fit->shape.radius, fit->shape.point.x, fit->covariance[0],
+                                      fit->correlation};
+      if (numbers.empty()) numbers = these;
+      EXPECT_EQ(these, numbers);
+    }
+  }
+}
+
+// What holds other things than the shape: spikes of 1e6, a step, holes.
+TEST(Fit, RobustIgnoresSpikesStepsAndHoles) {
+  for (const SeenShape& seen : seenShapes()) {
+    const Version field = fieldWith(
+        {60, 50, 0.1, 0.1},
+        [&](double x, double y) {
+          const double z = heightOn(seen.shape, x, y, seen.low, seen.high);
+          const int c = static_cast<int>(std::lround(x / 0.1)), r = static_cast<int>(std::lround(y / 0.1));
+          if ((3 * c + 7 * r) % 41 == 0) return 1e6;
+          if ((c + r) % 23 == 0) return kFitHole;
+          return x > 4.6 && y > 3.2 ? z + 0.7 : z;
+        },
+        0.002);
+    const auto fit = fitOf(field, seen.shape.kind, {.vertical = true, .robust = true, .noise_mm = 0.002});
+    ASSERT_TRUE(fit) << seen.name << ' ' << fit.error().line();
+    const ShapeFit::Errors errors = fit->errors();
+    EXPECT_NEAR(fit->shape.radius, seen.shape.radius, 5.0 * errors.radius) << seen.name;
+    EXPECT_NEAR(fit->shape.tube_radius, seen.shape.tube_radius, 5.0 * errors.tube_radius) << seen.name;
+    EXPECT_NEAR(fit->shape.half_angle, seen.shape.half_angle, 5.0 * errors.half_angle) << seen.name;
+    EXPECT_NEAR(fit->rms_mm, 0.002, 4e-4) << seen.name;
+    EXPECT_GT(fit->left_out, 100) << seen.name;
+  }
+}
+
+// The spacing in y four times that in x; all far from 0: the origin of the grid is not used, heights at 4,000 mm are
+// floats 2.4e-4 apart.
+TEST(Fit, HoldsAtUnequalSpacingAndGreatHeights) {
+  const SeenShape seen = seenShapes()[1];
+  const Version unequal = seenField(seen, 0.0, 1, {120, 13, 0.05, 0.4});
+  const auto fit = fitOf(unequal, ShapeKind::kSphere);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->shape.radius, 6.0, 2e-5);
+  const Version high = fieldWith({60, 50, 0.1, 0.1}, [&](double x, double y) {
+    return 4000.0 + heightOn(seen.shape, x, y, seen.low, seen.high);
+  });
+  const auto far = fitOf(high, ShapeKind::kSphere);
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->shape.radius, 6.0, 5.0 * far->errors().radius);
+  EXPECT_GT(far->errors().radius, 1e-6);
+}
+
+TEST(Fit, RefusesByNameWhatTheSamplesDoNotDetermine) {
+  const auto flat = [](double x, double) { return 0.1 * x; };
+  const FitField small{3, 1, 1.0, 1.0}, row{50, 1, 0.1, 0.1}, usual{};
+  struct Refusal {
+    Version field;
+    ShapeKind kind;
+    const char* text;
+  };
+  const Version ball = seenField(seenShapes()[1], 0.002), cylinder = seenField(seenShapes()[3], 0.002);
+  for (const Refusal& one :
+       {Refusal{fieldWith(small, flat), ShapeKind::kSphere, "3 samples for 4 numbers"},
+        {fieldWith(small, flat), ShapeKind::kPlane, "direction"},
+        {fieldWith(row, flat), ShapeKind::kPlane, "direction"},
+        {fieldWith(row, [](double x, double) { return std::sin(x); }), ShapeKind::kCylinder,
+         "do not determine"},
+        {fieldWith(usual, flat, 0.002), ShapeKind::kSphere, "a radius"},
+        {fieldWith(usual, flat, 0.002), ShapeKind::kCylinder, "a radius"},
+        {fieldWith(usual, flat), ShapeKind::kCylinder, "do not determine"},
+        {fieldWith(usual, flat, 0.002), ShapeKind::kCone, "do not determine"},
+        {fieldWith(usual, flat, 0.002), ShapeKind::kTorus, "do not determine"},
+        {cylinder, ShapeKind::kCone, "an apex"},
+        {cylinder, ShapeKind::kTorus, "do not determine"},
+        {ball, ShapeKind::kTorus, "do not determine"},
+        {fieldWith(usual, [](double, double) { return kFitHole; }), ShapeKind::kPlane, "0 samples"}}) {
+    const auto fit = fitOf(one.field, one.kind, {.noise_mm = 0.002});
+    ASSERT_FALSE(fit) << one.text << ' ' << static_cast<int>(one.kind) << ' ' << fit->shape.radius;
+    EXPECT_NE(fit.error().what.find(one.text), std::string::npos) << fit.error().line();
+  }
+  // Three samples that are not on a line determine a plane; their noise gives it an error.
+  const auto three =
+      fitOf(fieldWith({2, 2, 1.0, 1.0}, [](double x, double y) { return x + y > 1.5 ? kFitHole : x; }),
+            ShapeKind::kPlane, {.noise_mm = 0.01});
+  ASSERT_TRUE(three) << three.error().line();
+  EXPECT_NEAR(three->shape.direction.x, -std::sqrt(0.5), 1e-6);
+  EXPECT_GT(three->errors().direction.x, 1e-3);
+}
+
+TEST(Fit, AutomaticTakesTheSimplestShapeThatHolds) {
+  JobControl job;
+  const std::vector<ShapeKind> all{ShapeKind::kPlane, ShapeKind::kSphere, ShapeKind::kCylinder,
+                                   ShapeKind::kCone, ShapeKind::kTorus};
+  for (const SeenShape& seen : seenShapes())
+    for (std::uint64_t seed = 1; seed < 4; ++seed) {
+      const Version field = seenField(seen, 0.005, seed);
+      const auto chosen = fitBestShape(field, wholeOf(field), all, {.noise_mm = 0.005}, job);
+      ASSERT_TRUE(chosen);
+      EXPECT_EQ(chosen->fit.shape.kind, seen.shape.kind)
+          << seen.name << ' ' << infoOf(chosen->fit.shape.kind).word;
+    }
+  // A tenth of the noise of curvature over the field is a plane.
+  const Version nearly = fieldWith(
+      {}, [](double x, double y) { return 2e-4 * ((x - 3) * (x - 3) - y * y); }, 0.005);
+  const auto chosen = fitBestShape(nearly, wholeOf(nearly), all, {.noise_mm = 0.005}, job);
+  ASSERT_TRUE(chosen);
+  EXPECT_EQ(chosen->fit.shape.kind, ShapeKind::kPlane);
+}
+
+// A roof of two planes with an edge line on its ridge, drawn by hand, and a gap in it.
+TEST(FitRegions, LieBetweenLines) {
+  const Version field = fieldWith({40, 30, 1.0, 1.0}, [](double x, double) { return -std::abs(x - 20.0); });
+  EdgeLine line;
+  for (int r = -1; r < 31; ++r)
+    if (r < 10 || r > 12) line.points.push_back({.position = {20.0, static_cast<double>(r)}});
+  JobControl job;
+  const std::vector<EdgeLine> whole{line};
+  const auto regions = regionsBetween(field, whole, {.margin = 2.0}, job);
+  ASSERT_TRUE(regions);
+  ASSERT_EQ(regions->size(), 2U);
+  // Columns 0 to 17 and 23 to 39.
+  EXPECT_EQ((*regions)[0].samples, 18 * 30);
+  EXPECT_EQ((*regions)[1].samples, 17 * 30);
+  EXPECT_EQ(regionAt(*regions, {5.0, 5.0}), 0);
+  EXPECT_EQ(regionAt(*regions, {30.2, 29.0}), 1);
+  EXPECT_EQ(regionAt(*regions, {20.0, 5.0}), -1);
+  EXPECT_EQ(regionAt(*regions, {-5.0, 500.0}), -1);
+  // Two pieces with a gap of four samples between them: closed by a margin of 2, open with one of 1.
+  std::vector<EdgeLine> pieces(2);
+  for (const EdgePoint& p : line.points) pieces[p.position.y < 11.0 ? 0 : 1].points.push_back(p);
+  EXPECT_EQ(regionsBetween(field, pieces, {.margin = 2.0}, job)->size(), 2U);
+  EXPECT_EQ(regionsBetween(field, pieces, {.margin = 1.0}, job)->size(), 1U);
+  EXPECT_EQ(regionsBetween(field, pieces, {.margin = 2.0, .least = 520}, job)->size(), 1U);
+  const auto left = fitShape(FitSamples(field, (*regions)[0]), ShapeKind::kPlane, {}, job);
+  ASSERT_TRUE(left);
+  EXPECT_NEAR(left->shape.direction.x, -std::sqrt(0.5), 1e-7);
+}
+
+}  // namespace
+}  // namespace fettle::engine
