@@ -30,7 +30,7 @@ using Keys = std::vector<ReportKey>;
 /// What is taken out of a surface before it is measured.
 [[nodiscard]] Keys form();
 
-/// Of info, measure, section, align, compare, lines, journal, recipe, devices.
+/// Of info, measure, section, align, fit, compare, lines, journal, recipe, devices.
 [[nodiscard]] std::vector<ReportSchema> inspecting();
 /// Of filter, convert, level, fill, transform, report, apply, mark, synth, replay, record.
 [[nodiscard]] std::vector<ReportSchema> changing();

@@ -1,0 +1,316 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "app/commands/fit_files.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/section_options.h"
+#include "app/commands/step_file.h"
+#include "app/terminal.h"
+#include "app/work/outputs.h"
+#include "app/work/streams.h"
+#include "engine/inspect/noise.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/measure/fit.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct FitArguments {
+  std::string scan;
+  std::vector<std::string> shapes;
+  std::string distance = "orthogonal";
+  bool robust = false;
+  std::string region = "all", marks, lines;
+  std::optional<double> margin;
+  std::optional<double> least;
+  std::vector<std::string> at;
+  std::vector<int> between;
+  std::string csv, step, residuals;
+  Replacing replacing = Replacing::kNoWork;
+  ScanOptions reading;
+  engine::ExportOptions writing;
+};
+
+engine::Status checkFit(const FitArguments& options) {
+  if (!options.marks.empty() && options.region == "all")
+    return engine::inputError("marks choose nothing where all samples count", "--marks",
+                              "add --region marked or --region unmarked");
+  for (const std::string& text : options.at)
+    if (numbersOf(text, 2).empty())
+      return engine::inputError(fmt::format("'{}' is no place", text), "--at",
+                                "give X,Y in mm from the lower left sample");
+  if (!options.between.empty() && options.between[0] == options.between[1])
+    return engine::inputError("nothing lies between a fit and itself", "--between",
+                              "name two regions, as 1,2");
+  return {};
+}
+
+std::vector<engine::ShapeKind> kindsOf(const FitArguments& options) {
+  std::vector<engine::ShapeKind> kinds;
+  const bool all = options.shapes.empty() || std::ranges::count(options.shapes, "auto") > 0;
+  for (const engine::ShapeInfo& info : engine::shapeInfos())
+    if (all || std::ranges::count(options.shapes, info.word) > 0) kinds.push_back(info.kind);
+  return kinds;
+}
+
+// The regions that are fitted, those of --at in its order.
+engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& options,
+                                                         const engine::Version& field,
+                                                         engine::JobControl& job) {
+  const engine::Region counted = options.region == "marked"     ? engine::Region::kMarked
+                                 : options.region == "unmarked" ? engine::Region::kUnmarked
+                                                                : engine::Region::kAll;
+  const bool lines = field.lines() != nullptr && !field.lines()->empty();
+  if (!lines && options.at.empty()) {
+    if (options.margin)
+      return engine::inputError("there is no line to keep a margin from", "--margin", "give --lines");
+    auto whole = engine::wholeRegion(field, counted, job);
+    if (!whole) return tl::unexpected(whole.error());
+    if (whole->samples == 0)
+      return engine::inputError("no sample counts", shownInput(options.scan),
+                                counted == engine::Region::kAll
+                                    ? "is every sample a hole? fettle info counts them"
+                                    : "give marks with --marks, or take --region all");
+    return std::vector<engine::FitRegion>{*std::move(whole)};
+  }
+  engine::FitRegionOptions how;
+  how.region = counted;
+  how.margin = options.margin.value_or(how.margin);
+  how.least = options.at.empty()
+                  ? static_cast<std::int64_t>(options.least.value_or(static_cast<double>(how.least)))
+                  : 1;
+  auto regions = engine::regionsBetween(
+      field, lines ? std::span<const engine::EdgeLine>(*field.lines()) : std::span<const engine::EdgeLine>(),
+      how, job);
+  if (!regions) return tl::unexpected(regions.error());
+  if (options.at.empty()) {
+    if (regions->empty())
+      return engine::inputError(fmt::format("no region has {} samples", how.least), shownInput(options.scan),
+                                "lower --least or --margin");
+    return regions;
+  }
+  std::vector<engine::FitRegion> chosen;
+  for (const std::string& text : options.at) {
+    const std::vector<double> xy = numbersOf(text, 2);
+    const int found =
+        engine::regionAt(*regions, {xy[0] / field.grid().spacingXMm(), xy[1] / field.grid().spacingYMm()});
+    if (found < 0)
+      return engine::inputError(fmt::format("no region holds the place {}", text), "--at",
+                                "is it a hole, next to a line, or outside?");
+    chosen.push_back((*regions)[static_cast<std::size_t>(found)]);
+  }
+  return chosen;
+}
+
+engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job) {
+  if (auto status = checkFit(options); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"},
+                                  {options.step, OutputKind::kText},
+                                  {options.residuals, OutputKind::kField}},
+                                 {options.scan, options.lines, options.marks}, options.replacing, job);
+      !status)
+    return tl::unexpected(status.error());
+  const auto imported = loadScan(options.scan, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  const auto marked = withMarks(imported->field, options.marks, job);
+  if (!marked) return tl::unexpected(marked.error());
+  const auto field = withLines(*marked, options.lines, job);
+  if (!field) return tl::unexpected(field.error());
+  if (imported->in_perspective)
+    warn(
+        fmt::format("{}: in a camera's perspective a shape is another one: convert the scan to points and "
+                    "grid them first",
+                    shownInput(options.scan)));
+  const auto noise = engine::estimateNoise(*field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  engine::FitOptions how;
+  how.vertical = options.distance == "vertical";
+  how.robust = options.robust;
+  how.noise_mm = noise->sigma * field->grid().height_unit.mm;
+  auto regions = regionsOf(options, *field, job);
+  if (!regions) return tl::unexpected(regions.error());
+
+  const std::vector<engine::ShapeKind> kinds = kindsOf(options);
+  Report report{{"noise_mm", std::isnan(how.noise_mm) ? Report() : Report(how.noise_mm)},
+                {"distance", options.distance},
+                {"robust", options.robust},
+                {"fits", Report::array()},
+                {"not_fitted", Report::array()}};
+  std::vector<FittedRegion> fitted;
+  for (std::size_t k = 0; k < regions->size(); ++k) {
+    engine::FitRegion& region = (*regions)[k];
+    const int number = static_cast<int>(k) + 1;
+    auto chosen = engine::fitBestShape(*field, region, kinds, how, job);
+    if (chosen) {
+      fitted.push_back({number, std::move(region), *std::move(chosen)});
+      report["fits"].push_back(fitReport(fitted.back()));
+      continue;
+    }
+    if (chosen.error().kind != engine::ErrorKind::kInput || regions->size() == 1)
+      return tl::unexpected(chosen.error());
+    report["not_fitted"].push_back(
+        {{"region", number}, {"samples", region.samples}, {"reason", chosen.error().what}});
+  }
+  if (!options.between.empty()) {
+    const FittedRegion* both[2] = {nullptr, nullptr};
+    for (const FittedRegion& one : fitted)
+      for (std::size_t k = 0; k < 2; ++k)
+        if (one.number == options.between[k]) both[k] = &one;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (both[k] == nullptr)
+        return engine::inputError(fmt::format("region {} has no fit", options.between[k]), "--between",
+                                  "name two numbers of the list of fits");
+    report["between"] = relationReport(both[0]->number, both[1]->number,
+                                       engine::relationOf(both[0]->chosen.fit, both[1]->chosen.fit));
+  }
+  if (!options.residuals.empty()) {
+    const auto map = residualField(*field, fitted, how.vertical, job);
+    if (!map) return tl::unexpected(map.error());
+    engine::ExportOptions writing = options.writing;
+    writing.original = *map;
+    if (auto status = saveField(*map, options.residuals, job, writing); !status)
+      return tl::unexpected(status.error());
+    report["residuals"] = options.residuals;
+  }
+  if (!options.step.empty()) {
+    std::vector<BoundedShape> faces;
+    for (const FittedRegion& one : fitted) {
+      const std::string name =
+          fmt::format("region {}: {}", one.number, engine::infoOf(one.chosen.fit.shape.kind).word);
+      for (BoundedShape& face : boundedBy(name, one.chosen.fit.shape, engine::FitSamples(*field, one.region)))
+        faces.push_back(std::move(face));
+    }
+    if (auto status = engine::writeFileAtomically(options.step, stepFile("fettle fit", faces)); !status)
+      return tl::unexpected(status.error());
+  }
+  if (!options.csv.empty())
+    if (auto status = writeTo(
+            options.csv, ".csv", job,
+            [&](const std::string& path) { return engine::writeFileAtomically(path, fitCsv(report)); });
+        !status)
+      return tl::unexpected(status.error());
+  return report;
+}
+
+std::vector<Word> shapeWords() {
+  std::vector<Word> words;
+  for (const engine::ShapeInfo& info : engine::shapeInfos())
+    words.emplace_back(std::string(info.word), std::string(info.text));
+  words.emplace_back("auto", "the simplest that the samples do not contradict");
+  return words;
+}
+
+}  // namespace
+
+void addFit(Command root, Chosen& chosen) {
+  auto options = std::make_shared<FitArguments>();
+  Command command = addCommand(
+      root, chosen, "fit", "Plane, sphere, cylinder, cone, torus between edge lines, with standard errors",
+      [options](engine::JobControl& job) { return fit(*options, job); }, printFits);
+  command.add(
+      {{.name = "SCAN",
+        .to = &options->scan,
+        .text = "The scan, or a session; - for standard input",
+        .kind = ValueKind::kInput,
+        .required = true},
+       {.name = "--shape",
+        .to = &options->shapes,
+        .text = "The shapes that are tried; of several the one is taken that describes the samples best",
+        .words = shapeWords(),
+        .otherwise = "auto",
+        .between = ','},
+       {.name = "--distance",
+        .to = &options->distance,
+        .text = "The distances whose squares are made small",
+        .words = {{"orthogonal",
+                   "the shortest to the shape, as the standards of coordinate metrology have it"},
+                  {"vertical", "along z, in which a scanner has its noise; to first order"}}},
+       {.name = "--robust",
+        .to = &options->robust,
+        .text = "Samples far from the shape do not count; half of them must be near to it"},
+       {.name = "--between",
+        .to = &options->between,
+        .text = "Also angle and distance between the fits of two regions, by their numbers",
+        .shown = "K,L",
+        .values = 2,
+        .between = ','}});
+  command.add(
+      {{.name = "--lines",
+        .to = &options->lines,
+        .text = "Edge lines between which regions lie, instead of those of a session",
+        .kind = ValueKind::kLines},
+       {.name = "--margin",
+        .to = &options->margin,
+        .text =
+            "Samples this near to a line belong to no region; gaps of lines up to twice as wide are closed",
+        .range = Range{1.0, 1000.0},
+        .unit = "samples",
+        .otherwise = "2"},
+       {.name = "--least",
+        .to = &options->least,
+        .text = "Regions between lines with fewer samples are left out",
+        .range = Range{1.0, 1e12},
+        .unit = "samples",
+        .otherwise = "100"},
+       {.name = "--at",
+        .to = &options->at,
+        .text =
+            "Only the connected region around this place, in mm from the lower left sample; may be repeated",
+        .shown = "X,Y",
+        .one_word = true},
+       {.name = "--region",
+        .to = &options->region,
+        .text = "The samples that count",
+        .words = {{"all", "every sample that is no hole"},
+                  {"marked", "those that are marked"},
+                  {"unmarked", "those that are not"}}},
+       {.name = "--marks",
+        .to = &options->marks,
+        .text = "Picture of marks for --region, instead of the marks of a session",
+        .kind = ValueKind::kMarks}},
+      "Regions");
+  command.add({{.name = "--csv",
+                .to = &options->csv,
+                .text = "Write a row per figure: region, shape, figure, value, standard error, unit",
+                .kind = ValueKind::kOutput},
+               {.name = "--step",
+                .to = &options->step,
+                .text = "Write the shapes, bounded as the samples are, as STEP AP214, .step or .stp",
+                .kind = ValueKind::kNewFile},
+               {.name = "--residuals",
+                .to = &options->residuals,
+                .text = "Write the distances of the samples from their shapes as a scan, above 0 above them",
+                .kind = ValueKind::kNewScan}},
+              kWriting);
+  addForceOption(command, options->replacing);
+  addCompressOption(command, options->writing);
+  addScanOptions(command, options->reading);
+  command.notes(
+      "Without edge lines all samples that count are one region. Regions are numbered from the largest on, "
+      "those of --at "
+      "in its order. Positions are in mm from the lower left sample.\n"
+      "auto takes a shape in place of a simpler one that it contains only where it lowers the rms by a tenth "
+      "at least. What "
+      "the samples do not determine, as the radius of a plane, is refused by its name.\n"
+      "Standard errors are those that noise in height gives, and more where sums over parts of the region "
+      "scatter by more. "
+      "Deviations of form as long as the region are not counted.");
+  command.examples(
+      {{"fettle fit scan.tif", "The shape that all samples have"},
+       {"fettle fit scan.tif --at 5,5 --shape plane --robust --residuals flatness.tif",
+        "The plane through the samples around a place, and their distances from it"},
+       {"fettle fit scan.tif --at 2,2 --at 5,5 --shape plane --between 1,2 --csv fits.csv --step fits.step",
+        "Two planes, angle and distance between them, as table and for a CAD program"}});
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,222 @@
+#include "app/commands/fit_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
+
+#include "app/commands/estimate_text.h"
+#include "app/commands/read_units.h"
+#include "engine/field/builder.h"
+
+namespace fettle::app {
+
+namespace {
+
+using engine::ShapeKind;
+
+constexpr double kFitDegrees = 180.0 / std::numbers::pi;
+
+Report vectorOf(const glm::dvec3& v) {
+  return Report::array({v.x, v.y, v.z});
+}
+
+Report numberOf(double value) {
+  return std::isnan(value) ? Report() : Report(value);
+}
+
+void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
+  report[fmt::format("{}_{}", key, unit)] = value;
+  report[fmt::format("{}_error_{}", key, unit)] = numberOf(error);
+}
+
+// The figures of a fit that are single numbers.
+struct FitFigure {
+  const char* key;
+  const char* unit;
+  const char* title;
+};
+constexpr FitFigure kFitFigures[] = {{"radius", "mm", "radius"},
+                                     {"tube_radius", "mm", "radius of the tube"},
+                                     {"half_angle", "deg", "half angle"},
+                                     {"tilt_x", "deg", "tilt x"},
+                                     {"tilt_y", "deg", "tilt y"}};
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+const char* pointTitle(const std::string& shape) {
+  return shape == "plane"      ? "point"
+         : shape == "cylinder" ? "point on axis"
+         : shape == "cone"     ? "apex"
+                               : "centre";
+}
+
+double sizeOf(const Report& vector) {
+  double most = 0.0;
+  for (const Report& one : vector) most = std::max(most, std::abs(one.get<double>()));
+  return most;
+}
+
+}  // namespace
+
+Report fitReport(const FittedRegion& fitted) {
+  const engine::ShapeFit& fit = fitted.chosen.fit;
+  const engine::Shape& s = fit.shape;
+  const engine::ShapeFit::Errors e = fit.errors();
+  Report report{{"region", fitted.number},
+                {"shape", std::string(engine::infoOf(s.kind).word)},
+                {"samples", fit.samples},
+                {"left_out", fit.left_out},
+                {"middle_mm", vectorOf(fit.middle)},
+                {"point_mm", vectorOf(s.point)},
+                {"point_error_mm", vectorOf(e.point)}};
+  if (s.kind != ShapeKind::kSphere) {
+    report["direction"] = vectorOf(s.direction);
+    report["direction_error"] = vectorOf(e.direction);
+  }
+  if (s.kind == ShapeKind::kPlane) {
+    const auto tilt = [&](double along, double error) {
+      const double slope = -along / s.direction.z;
+      return std::pair(std::atan(slope) * kFitDegrees,
+                       error / (1.0 + slope * slope) / s.direction.z * kFitDegrees);
+    };
+    const auto [x, x_error] = tilt(s.direction.x, e.direction.x);
+    const auto [y, y_error] = tilt(s.direction.y, e.direction.y);
+    addFigure(report, "tilt_x", "deg", x, x_error);
+    addFigure(report, "tilt_y", "deg", y, y_error);
+  } else {
+    report["hollow"] = s.hollow;
+  }
+  if (s.kind == ShapeKind::kSphere || s.kind == ShapeKind::kCylinder || s.kind == ShapeKind::kTorus)
+    addFigure(report, "radius", "mm", s.radius, e.radius);
+  if (s.kind == ShapeKind::kTorus) addFigure(report, "tube_radius", "mm", s.tube_radius, e.tube_radius);
+  if (s.kind == ShapeKind::kCone)
+    addFigure(report, "half_angle", "deg", s.half_angle * kFitDegrees, e.half_angle * kFitDegrees);
+  report.update({{"rms_mm", fit.rms_mm},
+                 {"largest_mm", fit.largest_mm},
+                 {"correlation", fit.correlation},
+                 {"tried", Report::array()}});
+  for (const engine::TriedShape& tried : fitted.chosen.tried) {
+    Report one{{"shape", std::string(engine::infoOf(tried.kind).word)}, {"rms_mm", numberOf(tried.rms_mm)}};
+    if (!tried.refused.empty()) one["refused"] = tried.refused;
+    report["tried"].push_back(std::move(one));
+  }
+  return report;
+}
+
+Report relationReport(int first, int second, const engine::ShapeRelation& relation) {
+  Report report{{"first", first}, {"second", second}};
+  addFigure(report, "angle", "deg", relation.angle_deg.value, relation.angle_deg.error);
+  addFigure(report, "distance", "mm", relation.distance_mm.value, relation.distance_mm.error);
+  addFigure(report, "between_axes", "mm", relation.between_axes_mm.value, relation.between_axes_mm.error);
+  for (const char* key : {"angle_deg", "between_axes_mm"})
+    if (std::isnan(report[key].get<double>())) report[key] = Report();
+  return report;
+}
+
+void printFits(const Report& report) {
+  const ReadAs degrees{"degrees", 1.0};
+  if (!report["noise_mm"].is_null()) {
+    const double noise = report["noise_mm"].get<double>();
+    const ReadAs as = readLengthAs(noise, 1.0, "mm");
+    fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise / as.size, as.name);
+  }
+  for (const Report& fit : report["fits"]) {
+    const std::string shape = fit["shape"].get<std::string>();
+    const double rms = fit["rms_mm"].get<double>();
+    const ReadAs small = readLengthAs(rms, 1.0, "mm");
+    fmt::print("region {}: {}{}, {} samples, rms {:.4g} {}\n", fit["region"].get<int>(),
+               fit.contains("hollow") && fit["hollow"].get<bool>() ? "hollow " : "", shape,
+               fit["samples"].get<std::int64_t>(), rms / small.size, small.name);
+    if (fit["left_out"].get<std::int64_t>() > 0)
+      fmt::print("  {} samples lie apart and do not count\n", fit["left_out"].get<std::int64_t>());
+    for (const FitFigure& figure : kFitFigures) {
+      const std::string key = fmt::format("{}_{}", figure.key, figure.unit);
+      if (!fit.contains(key)) continue;
+      const ReadAs as =
+          std::string(figure.unit) == "mm" ? readLengthAs(fit[key].get<double>(), 1.0, "mm") : degrees;
+      fmt::print("  {:<19} {}\n", figure.title, shownEstimate(fit, figure.key, figure.unit, as));
+    }
+    const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
+    for (std::size_t k = 0; k < 3; ++k)
+      fmt::print("  {:<19} {} +- {:.2g} {}\n", fmt::format("{} {}", pointTitle(shape), kAxes[k]),
+                 shownTo(fit["point_mm"][k].get<double>() / place.size,
+                         fit["point_error_mm"][k].get<double>() / place.size),
+                 fit["point_error_mm"][k].get<double>() / place.size, place.name);
+    if (fit.contains("direction"))
+      for (std::size_t k = 0; k < 3; ++k)
+        fmt::print("  {:<19} {} +- {:.2g}\n",
+                   fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
+                   shownTo(fit["direction"][k].get<double>(), fit["direction_error"][k].get<double>()),
+                   fit["direction_error"][k].get<double>());
+  }
+  for (const Report& one : report["not_fitted"])
+    fmt::print("region {}: {} samples, {}\n", one["region"].get<int>(), one["samples"].get<std::int64_t>(),
+               one["reason"].get<std::string>());
+  if (!report.contains("between")) return;
+  const Report& b = report["between"];
+  fmt::print("between {} and {}:\n", b["first"].get<int>(), b["second"].get<int>());
+  for (const auto& [key, unit, title] : {std::tuple("angle", "deg", "angle"),
+                                         {"distance", "mm", "distance"},
+                                         {"between_axes", "mm", "between axes"}}) {
+    const Report& value = b[fmt::format("{}_{}", key, unit)];
+    if (value.is_null()) continue;
+    const ReadAs as =
+        std::string(unit) == "mm" ? readLengthAs(std::abs(value.get<double>()), 1.0, "mm") : degrees;
+    fmt::print("  {:<19} {}\n", title, shownEstimate(b, key, unit, as));
+  }
+}
+
+std::string fitCsv(const Report& report) {
+  std::string text = "region,shape,figure,value,standard_error,unit\n";
+  for (const Report& fit : report["fits"]) {
+    const auto row = [&](const std::string& figure, const Report& value, const Report& error,
+                         const char* unit) {
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{},{}\n", fit["region"].get<int>(),
+                     fit["shape"].get<std::string>(), figure, value.get<double>(),
+                     error.is_null() ? "" : fmt::format("{:.6g}", error.get<double>()), unit);
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+      row(fmt::format("point_{}", kAxes[k]), fit["point_mm"][k], fit["point_error_mm"][k], "mm");
+    if (fit.contains("direction"))
+      for (std::size_t k = 0; k < 3; ++k)
+        row(fmt::format("direction_{}", kAxes[k]), fit["direction"][k], fit["direction_error"][k], "");
+    for (const FitFigure& figure : kFitFigures)
+      if (const std::string key = fmt::format("{}_{}", figure.key, figure.unit); fit.contains(key))
+        row(figure.key, fit[key], fit[fmt::format("{}_error_{}", figure.key, figure.unit)], figure.unit);
+    row("rms", fit["rms_mm"], Report(), "mm");
+  }
+  return text;
+}
+
+engine::Result<engine::Version> residualField(const engine::Version& field,
+                                              const std::vector<FittedRegion>& fitted, bool vertical,
+                                              engine::JobControl& job) {
+  engine::Grid grid = field.grid();
+  grid.height_per_count = 0.0;
+  auto builder = engine::FieldBuilder::create(grid, "the residual map");
+  if (!builder) return tl::unexpected(builder.error());
+  const engine::FieldReader reader = field.reader();
+  std::vector<float> heights;
+  for (const FittedRegion& one : fitted) {
+    const engine::ShapeFit& fit = one.chosen.fit;
+    for (const engine::SampleRun& run : one.region.runs) {
+      if (job.cancelled()) return engine::cancelled();
+      heights.resize(static_cast<std::size_t>(run.columns));
+      reader.readHeights(run.column, run.row, run.columns, 1, heights.data(), run.columns);
+      for (std::int32_t i = 0; i < run.columns; ++i) {
+        float& z = heights[static_cast<std::size_t>(i)];
+        const glm::dvec3 p((run.column + i) * grid.spacingXMm(), run.row * grid.spacingYMm(),
+                           double{z} * grid.height_unit.mm);
+        z = static_cast<float>(engine::residualAt(fit, p, vertical) / grid.height_unit.mm);
+      }
+      builder->writeHeights(run.column, run.row, run.columns, 1, heights.data(), run.columns);
+    }
+  }
+  return std::move(*builder).build();
+}
+
+}  // namespace fettle::app

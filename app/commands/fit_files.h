@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/measure/fit.h"
+
+namespace fettle::app {
+
+/// A region with what was fitted to it.
+struct FittedRegion {
+  int number = 0;  ///< from 1
+  engine::FitRegion region;
+  engine::ChosenShape chosen;
+};
+
+/// The fit as keys of a report.
+[[nodiscard]] Report fitReport(const FittedRegion& fitted);
+/// What lies between two fits as keys of a report.
+[[nodiscard]] Report relationReport(int first, int second, const engine::ShapeRelation& relation);
+
+/// Prints the report of `fettle fit` as text.
+void printFits(const Report& report);
+
+/// A row for each figure: region, shape, figure, value, standard error, unit. Of the report.
+[[nodiscard]] std::string fitCsv(const Report& report);
+
+/// The distances of the samples of all fits from their shapes, in the field's height unit, as its samples; holes elsewhere.
+/// Errors: kFailed without memory; kCancelled.
+[[nodiscard]] engine::Result<engine::Version> residualField(const engine::Version& field,
+                                                            const std::vector<FittedRegion>& fitted,
+                                                            bool vertical, engine::JobControl& job);
+
+}  // namespace fettle::app
