@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace fettle::haptic {
 
 /// Most cells that one search may visit, and most rounds (one evaluation of a patch each) it may take. At 1
@@ -12,5 +14,11 @@ inline constexpr int kMaxRounds = 2048;
 /// twenty, and without this bound a tick takes up to 128 steps (docs/decisions/ball-tip.md).
 inline constexpr int kBallSearches = 64;
 inline constexpr int kMostBallSearches = 4096;
+
+/// Which minima of the distance a ball searches for inside a cell.
+enum class BallMinima : std::uint8_t {
+  kPieces,  ///< those that equal pieces of a cell show: beside a needle it may enter the material by its radius
+  kAll,  ///< in steep cells, all that pieces in proportion to the scale of the distance show; several times the time there
+};
 
 }  // namespace fettle::haptic

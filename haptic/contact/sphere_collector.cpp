@@ -22,6 +22,10 @@ void SphereWindow::Collector::minimum(std::int32_t i, std::int32_t j, Valley& g,
     if (moved < 1e-6) break;
   }
   (void)g.slopeAt(v);
+  keepMinimum(i, j, g, v);
+}
+
+void SphereWindow::Collector::keepMinimum(std::int32_t i, std::int32_t j, Valley& g, double v) noexcept {
   if (!(g.u > 0.0 && g.u < 1.0 && v > 0.0 && v < 1.0 && g.height < 0.0)) return;
   const glm::dvec3 m{g.ex - g.u * g.sx, g.ey - v * g.sy, -g.height};
   const double d2 = m.x * m.x + m.y * m.y + m.z * m.z;
@@ -31,6 +35,57 @@ void SphereWindow::Collector::minimum(std::int32_t i, std::int32_t j, Valley& g,
 void SphereWindow::Collector::minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept {
   minimum(i, j, g, static_cast<double>(piece) / kTwistPieces, (piece + 1.0) / kTwistPieces,
           (piece + 0.5) / kTwistPieces);
+}
+
+// Newton's method in a bracket whose places differ by decades: to a part of the scale there.
+void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valley& g, double low,
+                                           double high) noexcept {
+  double v = 0.5 * (low + high);
+  for (int round = 0; round < 60; ++round) {
+    const double slope = g.steepSlopeAt(v);
+    (slope < 0.0 ? low : high) = v;
+    const double next = g.bend > 0.0 ? v - slope / g.bend : -1.0;
+    const double to = next > low && next < high ? next : 0.5 * (low + high);
+    const double moved = std::abs(to - v);
+    v = to;
+    if (moved <= 1e-9 * g.scaleAt(v)) break;
+  }
+  (void)g.steepSlopeAt(v);
+  keepMinimum(i, j, g, v);
+}
+
+// All minima of a cell that is steep(). Pieces are in proportion to the scale of g; where its slope has the same sign at
+// both ends of one and turns between them, the place where it turns decides whether there are two roots.
+void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g) noexcept {
+  double v = 0.0;
+  double before = g.steepSlopeAt(v);
+  double bend_before = g.bend;
+  while (v < 1.0) {
+    const double next = std::min(v + std::min(0.5 * g.scaleAt(v), 1.0 / kTwistPieces), 1.0);
+    const double after = g.steepSlopeAt(next);
+    const double bend_after = g.bend;
+    if (before < 0.0 && after > 0.0) {
+      steepMinimum(i, j, g, v, next);
+    } else if (before < 0.0 ? after < 0.0 && bend_before > 0.0 && bend_after < 0.0
+                            : after > 0.0 && bend_before < 0.0 && bend_after > 0.0) {
+      // A root with a rising slope is before the turn where the slope is below zero at the ends, else behind it.
+      const bool below = before < 0.0;
+      double low = v;
+      double high = next;
+      for (int round = 0; round < 40; ++round) {
+        const double middle = 0.5 * (low + high);
+        const double slope = g.steepSlopeAt(middle);
+        if (below ? slope > 0.0 : slope < 0.0) {
+          steepMinimum(i, j, g, below ? v : middle, below ? middle : next);
+          break;
+        }
+        ((g.bend > 0.0) == below ? low : high) = middle;
+      }
+    }
+    v = next;
+    before = after;
+    bend_before = bend_after;
+  }
 }
 
 void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept {
@@ -53,6 +108,10 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
   // Twisted so much that the ball bridges it: no minimum inside, only saddles.
   const double bridge = std::abs(g.d) * std::max(0.0, c_.z - high) - p * q;
   if (bridge > 0.0 && bridge * bridge > (sx * sx + p * p) * (sy * sy + q * q)) return;
+  if (w_.steep(g.d)) {
+    steep(i, j, g);
+    return;
+  }
   double before = g.slopeAt(0.0);
   for (int k = 1; k <= kTwistPieces; ++k) {
     const double after = g.slopeAt(static_cast<double>(k) / kTwistPieces);
@@ -213,12 +272,18 @@ void SphereWindow::Collector::candidates(const LaneCandidates& some) noexcept {
 
 // A cell that may have several minima inside.
 void SphereWindow::Collector::twisted(std::int32_t i, std::int32_t j) noexcept {
+  const Corners z = w_.corners(i, j);
+  if (w_.steep((z.z11 - z.z01) - (z.z10 - z.z00))) {
+    Valley g(w_, c_, i, j, z);
+    steep(i, j, g);
+    return;
+  }
   const LaneWindow window = w_.laneWindow();
   const LaneProbe ball = laneProbe(c_, reach_, w_.sx_, w_.sy_);
   const LaneCell cell{static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)};
   unsigned rises = sphereContactKernels().rises(window, ball, cell);
   if (rises == 0) return;
-  Valley g(w_, c_, i, j, w_.corners(i, j));
+  Valley g(w_, c_, i, j, z);
   for (; rises != 0; rises &= rises - 1)
     if (g.mayHold(std::countr_zero(rises), reach2_)) minimumOfPiece(i, j, g, std::countr_zero(rises));
 }

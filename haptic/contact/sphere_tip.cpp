@@ -39,10 +39,11 @@ std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& g
 }
 
 SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps, SphereSearch search,
-                             int most_searches) noexcept
+                             int most_searches, BallMinima minima) noexcept
     : most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
       most_searches_(std::clamp(most_searches, 0, kMostBallSearches)),
-      search_(search) {
+      search_(search),
+      window_(minima) {
   const double cell = smallerSpacing(grid);
   radius_ = std::min(radius_mm, kMostSphereCells * cell);
   // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.

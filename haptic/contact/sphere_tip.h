@@ -73,7 +73,7 @@ enum class SphereSearch : std::uint8_t {
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
 /// spacing, plus roundings of the heights; beside a needle of slope 1e6, whose valley no piece of a cell resolves, by up to
-/// its radius. Where it reached in and is pushed out, a tick may end farther from the endpoint than the one before, by the
+/// its radius; with BallMinima::kAll not beside needles up to 2e4 times as high as a cell is wide. Where it reached in and is pushed out, a tick may end farther from the endpoint than the one before, by the
 /// tolerance times sqrt(1 + slope^2). At rest no step longer than 1e-4 of that size makes it nearer.
 /// Continuity: steps are between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
@@ -94,7 +94,8 @@ class SphereTracker {
   /// `most_steps`, 1 .. kSphereSteps, of a tick. `most_searches`, 1 .. kMostBallSearches, after which no step begins;
   /// 0: no such bound, and a ball on its way counts as touching, as before contact revision 3 (scene.h).
   SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps,
-                SphereSearch search = SphereSearch::kBounded, int most_searches = kBallSearches) noexcept;
+                SphereSearch search = SphereSearch::kBounded, int most_searches = kBallSearches,
+                BallMinima minima = BallMinima::kPieces) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().

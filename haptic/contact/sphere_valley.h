@@ -45,6 +45,19 @@ class SphereWindow::Valley {
     return sy * (sy * v - ey) + height * q;
   }
 
+  // The same for a steep cell, where w + p u loses what remains of heights that are larger by ten decades.
+  [[nodiscard]] double steepSlopeAt(double v) noexcept {
+    const double p = b + d * v;
+    const double w = w0 + c * v;
+    const double uu = sx * sx + p * p;
+    u = (sx * ex - w * p) / uu;
+    height = sx * (sx * w + ex * p) / uu;
+    const double q = c + d * u;
+    const double uv = p * q + height * d;
+    bend = sy * sy + q * q - uv * uv / uu;
+    return sy * (sy * v - ey) + height * q;
+  }
+
   // Whether a piece may hold a minimum nearer than the reach. u (sx^2 + p^2) = sx ex - w p, where p and w are
   // linear along v: from their ends a range of u, from that a range of heights, all wider than any rounding.
   [[nodiscard]] bool mayHold(int piece, double reach2) const noexcept {
@@ -73,6 +86,15 @@ class SphereWindow::Valley {
     const double my = beyondRange(ey, sy * v0, sy * v1);
     const double mz = std::max(-highest - margin_z, 0.0);
     return mx * mx + my * my + mz * mz <= reach2 * (1.0 + 1e-6);
+  }
+
+  // How far g is alike around v, next to which pieces must be shorter: u and the height change most where p or w is 0, over
+  // some sx / |d| there, and over a part of the way to there elsewhere.
+  [[nodiscard]] double scaleAt(double v) const noexcept {
+    const double least = 0.5 * std::min(sx, sy) / std::abs(d);
+    const double to_p = std::abs(v + b / d);
+    const double to_w = c != 0.0 ? std::abs(v + w0 / c) : 1.0;
+    return std::max(std::min(to_p, to_w), least);
   }
 
   double sx, sy, b, c, d, ex, ey, w0;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include <glm/vec3.hpp>
 
+#include "haptic/base/search_limits.h"
 #include "haptic/contact/sphere_contact_lanes.h"
 #include "haptic/contact/surface.h"
 
@@ -50,6 +52,8 @@ class SphereWindow {
  public:
   /// Samples along a side at most: a ball of 16 cells radius and a margin.
   static constexpr std::int32_t kMostSide = kMostLaneSide;
+
+  explicit SphereWindow(BallMinima minima = BallMinima::kPieces) noexcept : minima_(minima) {}
 
   /// Copies what a ball of radius `reach_mm` needs anywhere within `room_mm` (horizontally) of `centre`,
   /// which is finite. What does not fit kMostSide is left out: keep (reach + room) / spacing <= 20.
@@ -102,11 +106,16 @@ class SphereWindow {
   [[nodiscard]] LaneWindow laneWindow() const noexcept {
     return {z_.data(), columns_, column_, row_, sx_, sy_};
   }
+  /// Whether pieces may hide a minimum of a cell with this twist [mm].
+  [[nodiscard]] bool steep(double twist) const noexcept {
+    return minima_ == BallMinima::kAll && std::abs(twist) > kTwistPieces * std::min(sx_, sy_);
+  }
   void markRims() noexcept;
   void gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
   class Collector;
   class Valley;
 
+  BallMinima minima_;
   std::array<double, kMostSide * kMostSide + kSphereContactLanes> z_{};  // lanes read past the end
   std::array<float, kMostSide * kMostSide> raw_{};
   std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]

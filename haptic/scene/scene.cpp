@@ -31,6 +31,8 @@ std::string rangeOf(const EffectNumber& number) {
 
 constexpr std::array<std::string_view, 3> kLevelNames = {"paper", "descent", "certified"};
 
+constexpr std::array<std::string_view, 2> kMinimaNames = {"pieces", "all"};  // as in BallMinima
+
 constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
 
 constexpr const char* kRoundsNeedDescent =
@@ -178,6 +180,8 @@ class SceneReader {
         require(value, searches >= 0 && searches <= kMostBallSearches,
                 "ball_searches must be a whole number from 0 to 4096");
         if (!problem_) scene_.ball_searches = static_cast<int>(searches);
+      } else if (key == "ball_minima") {
+        if (const auto i = word(value, key, kMinimaNames)) scene_.ball_minima = static_cast<BallMinima>(*i);
       } else {
         return false;
       }
@@ -326,12 +330,14 @@ std::string sceneText(const Scene& scene) {
   std::string text = fmt::format(
       "tip = \"{}\"\ntip_radius_mm = {}\ninvert = {}\neffects = [{}{}{}]\n"
       "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\nsearch_rounds = {}\nball_searches = {}\n"
+      "ball_minima = \"{}\"\n"
       "[force]\nstiffness_n_per_mm = {}\nlimit_n = {}\n"
       "[brush]\nradius_samples = {}\nmark_radius_samples = {}\n",
       scene.tip == TipShape::kSphere ? "sphere" : "point", scene.tip_radius_mm, scene.invert,
       effects.empty() ? "" : "\"", fmt::join(effects, "\", \""), effects.empty() ? "" : "\"",
       levelName(scene.level), scene.certified_radius_cells, scene.search_rounds, scene.ball_searches,
-      scene.stiffness_n_per_mm, scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
+      kMinimaNames[static_cast<std::size_t>(scene.ball_minima)], scene.stiffness_n_per_mm,
+      scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
   if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
   EffectParams params = scene.params;
   std::string_view table;

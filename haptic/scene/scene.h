@@ -55,6 +55,8 @@ struct Scene {
   /// A ball: searches for contacts after which a tick takes no further step, so that the tick's time is bounded; from 1
   /// to 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
   int ball_searches = kBallSearches;
+  /// A ball: which minima it searches for inside cells.
+  BallMinima ball_minima = BallMinima::kPieces;
 
   /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
   double stiffness_n_per_mm = 1.0;

@@ -89,6 +89,7 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   if (scene.tip == haptic::TipShape::kSphere || scene.level != haptic::ContactLevel::kPaper)
     scene.search_rounds = 2 + static_cast<int>(random() % 2047);
   scene.ball_searches = static_cast<int>(random() % 4097);
+  scene.ball_minima = static_cast<haptic::BallMinima>(random() % 2);
   scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);

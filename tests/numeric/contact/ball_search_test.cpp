@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/live_field.h"
+#include "haptic/contact/certified.h"
 #include "haptic/contact/sphere_tip.h"
 #include "haptic/scene/scene.h"
 #include "haptic/tick/tick.h"
@@ -32,10 +33,11 @@ using tests::Jumps;
 // Two balls over one surface; ticks in which they differ in a bit fail.
 class TwoBalls {
  public:
-  TwoBalls(const engine::Version& field, double radius_mm, int most_steps = kSphereSteps)
+  TwoBalls(const engine::Version& field, double radius_mm, int most_steps = kSphereSteps,
+           BallMinima minima = BallMinima::kPieces)
       : surface_(field.reader()),
-        bounded_(radius_mm, field.grid(), most_steps),
-        plain_(radius_mm, field.grid(), most_steps, SphereSearch::kCellByCell) {}
+        bounded_(radius_mm, field.grid(), most_steps, SphereSearch::kBounded, kBallSearches, minima),
+        plain_(radius_mm, field.grid(), most_steps, SphereSearch::kCellByCell, kBallSearches, minima) {}
 
   // Whether they agree.
   [[nodiscard]] bool tick(const glm::dvec3& endpoint) {
@@ -226,6 +228,77 @@ TEST(BallSearch, WithoutABoundTicksHaveTheBitsThatTheyHadBeforeThereWasOne) {
   constexpr std::uint64_t kBefore = 0x75ac79016260d51eU;
   EXPECT_EQ(hashOf(0), kBefore);
   EXPECT_NE(hashOf(kBallSearches), kBefore);
+}
+
+engine::Version needlesOf(double height_mm, double spacing_mm) {
+  return tests::fieldOf(
+      128, 128, [&](int c, int r) { return c % 7 == 3 && r % 5 == 2 ? height_mm : 0.0; }, spacing_mm,
+      spacing_mm);
+}
+
+// All minima of steep cells, by bounds and cell by cell.
+TEST(BallSearch, AllMinimaOfSteepCellsAreTheSameBitsBothWays) {
+  constexpr double kSpacing = 0.05;
+  const engine::Version field = needlesOf(1e6, kSpacing);
+  trials::HandMotion motion;
+  motion.ticks = 1000;
+  motion.speed_mm_s = 20.0;
+  for (const double cells : {1.0, 3.0}) {
+    TwoBalls balls(field, cells * kSpacing, kSphereSteps, BallMinima::kAll);
+    for (const StrokeSample& sample : trials::handStroke(field, motion))
+      ASSERT_TRUE(balls.tick(sample.tip_mm + glm::dvec3(0.0, 0.0, cells * kSpacing))) << "at " << sample.t;
+    EXPECT_GT(balls.touched(), 500);
+  }
+}
+
+// How far balls reach into needles, by the certified closest point: as deep as their radius with pieces, by no more than their
+// tolerance, 1e-6 of a cell, and roundings of the heights with all minima. Needles of 1e6 mm are printed alone: where the
+// surface rises by 1e6 within 1e-6 of a cell, rounding still hides some.
+TEST(BallSearch, WithAllMinimaABallDoesNotEnterANeedle) {
+  constexpr double kSpacing = 0.05;
+  for (const double height_mm : {10.0, 1e3, 1e6}) {
+    const engine::Version field = needlesOf(height_mm, kSpacing);
+    trials::HandMotion motion;
+    motion.ticks = 2000;
+    motion.speed_mm_s = 20.0;
+    for (const double cells : {1.0, 2.0, 3.0}) {
+      const double radius = cells * kSpacing;
+      const double tolerance = 1e-6 * kSpacing + 1e-14 * (height_mm + radius) + 1e-14;
+      struct Depth {
+        int entered = 0;
+        double deepest_mm = 0.0;
+      };
+      const auto depthOf = [&](BallMinima minima) {
+        Surface surface(field.reader());
+        SphereTracker ball(radius, field.grid(), kSphereSteps, SphereSearch::kBounded, kBallSearches, minima);
+        TickCounters counters;
+        Depth depth;
+        for (const StrokeSample& sample : trials::handStroke(field, motion)) {
+          (void)ball.update(surface, sample.tip_mm + glm::dvec3(0.0, 0.0, radius), counters);
+          SurfacePoint near;
+          if (!certifiedClosest(surface, ball.centre(), radius, near)) continue;
+          const double in = radius - std::sqrt(near.distance2_mm2);
+          depth.entered += in > tolerance ? 1 : 0;
+          depth.deepest_mm = std::max(depth.deepest_mm, in);
+        }
+        return depth;
+      };
+      const Depth pieces = depthOf(BallMinima::kPieces);
+      const Depth all = depthOf(BallMinima::kAll);
+      std::printf(
+          "needles of %.0e mm, ball of %.0f cells: enters in %d of 2000 ticks, by %.1e of its radius; with "
+          "all minima in "
+          "%d, by %.1e\n",
+          height_mm, cells, pieces.entered, pieces.deepest_mm / radius, all.entered, all.deepest_mm / radius);
+      if (height_mm < 1e6) {
+        EXPECT_EQ(all.entered, 0);
+      }
+      EXPECT_LE(all.entered, pieces.entered);
+      if (height_mm == 1e3) {
+        EXPECT_GT(pieces.deepest_mm, 0.1 * radius);
+      }
+    }
+  }
 }
 
 TEST(BallSearch, BoundedUnderEditsGivesTheBitsOfCellByCell) {
