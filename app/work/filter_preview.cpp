@@ -16,8 +16,8 @@ constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
   return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
-         a.nesting_mm == b.nesting_mm &&
-         a.passes == b.passes && a.scope == b.scope && a.max_change == b.max_change;
+         a.nesting_mm == b.nesting_mm && a.passes == b.passes && a.scope == b.scope &&
+         a.max_change == b.max_change;
 }
 
 // Filters the visible part and calls `done` after each piece. Limited to about a second, since this work is

@@ -40,7 +40,7 @@ class FormTool {
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
-  [[nodiscard]] double progress() const noexcept { return working_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
   /// The last fit; empty before, and of another document.
   [[nodiscard]] const std::optional<Fit>& fit() const noexcept { return fit_; }
   /// Forgets the fit, of a document that is closed.

@@ -43,8 +43,7 @@ void formPanel(const PanelContext& context, FormTool& form) {
   endFields();
   ImGui::Checkbox("without steps and spikes", &form.options.robust);
   if (form.busy()) {
-    ImGui::ProgressBar(static_cast<float>(form.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                       "fitting");
+    workBar(form.progress(), -ImGui::GetFontSize() * 5.0F, "fitting");
     ImGui::SameLine();
     if (ImGui::Button("Cancel##form")) form.cancel();
     return;
