@@ -20,7 +20,7 @@ using engine::ShapeKind;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::string realOf(double value) {
-  const std::string text = fmt::format("{:.15G}", value == 0.0 ? 0.0 : value);
+  std::string text = fmt::format("{:.15G}", value == 0.0 ? 0.0 : value);
   if (text.find('.') != std::string::npos) return text;
   const std::size_t exponent = std::min(text.find('E'), text.size());
   return fmt::format("{}.{}", text.substr(0, exponent), text.substr(exponent));
