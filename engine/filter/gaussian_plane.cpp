@@ -86,7 +86,7 @@ GaussianAxis gaussianAxis(double cut_off, std::int32_t samples) {
   for (std::int32_t d = -axis.far; d <= axis.far; ++d) axis.b.push_back(weightAt(d * step, b));
   if (axis.step == 1) return axis;
   const double a = kShort * step;
-  axis.near = reachOfWeights(a, std::numeric_limits<std::int32_t>::max() / 4);
+  axis.near = reachOfWeights(a, std::numeric_limits<std::int32_t>::max() * 0.25);
   for (std::int32_t d = -axis.near; d <= axis.near; ++d) axis.a.push_back(weightAt(d, a));
   // A multiple of 8, in which the last ones are 0.
   axis.a.resize((axis.a.size() + 7) / 8 * 8, 0.0);
