@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/commands/command.h"
 #include "app/commands/fit_files.h"
@@ -112,6 +114,21 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
   return chosen;
 }
 
+// The best of the shapes may be none.
+void warnOfOtherShape(const FittedRegion& fitted, double noise_mm) {
+  constexpr double kUnlike = 3.0;
+  const engine::ShapeFit& found = fitted.chosen.fit;
+  // Of a scan without noise its rounding is left.
+  const double rounding = std::numeric_limits<float>::epsilon() * glm::length(found.middle);
+  const double times = found.rms_mm / std::max(noise_mm, rounding);
+  if (!(times > kUnlike)) return;
+  warn(
+      fmt::format("region {}: the samples lie {:.0f} times their noise off the {}, so it is another shape, "
+                  "or several, and "
+                  "the errors say little: divide it by edge lines, or look at --residuals",
+                  fitted.number, times, engine::infoOf(found.shape.kind).word));
+}
+
 engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job) {
   if (auto status = checkFit(options); !status) return tl::unexpected(status.error());
   if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"},
@@ -154,6 +171,7 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
     if (chosen) {
       fitted.push_back({number, std::move(region), *std::move(chosen)});
       report["fits"].push_back(fitReport(fitted.back()));
+      warnOfOtherShape(fitted.back(), how.noise_mm);
       continue;
     }
     if (chosen.error().kind != engine::ErrorKind::kInput || regions->size() == 1)

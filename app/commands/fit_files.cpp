@@ -143,8 +143,9 @@ void printFits(const Report& report) {
     const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
     for (std::size_t k = 0; k < 3; ++k)
       fmt::print("  {:<19} {} +- {:.2g} {}\n", fmt::format("{} {}", pointTitle(shape), kAxes[k]),
+                 // Within a plane the point may lie anywhere, and has next to no error.
                  shownTo(fit["point_mm"][k].get<double>() / place.size,
-                         fit["point_error_mm"][k].get<double>() / place.size),
+                         std::max(fit["point_error_mm"][k].get<double>(), 1e-5) / place.size),
                  fit["point_error_mm"][k].get<double>() / place.size, place.name);
     if (fit.contains("direction"))
       for (std::size_t k = 0; k < 3; ++k)

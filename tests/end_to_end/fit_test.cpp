@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -17,11 +16,6 @@
 
 namespace fettle::tests {
 namespace {
-
-std::string fitFileContent(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // A hollow of radius 5 mm beside a plane of 30 degrees, 0.1 mm apart, with a column of holes between. ESRI ASCII.
 void writePart(const std::string& path) {
@@ -38,6 +32,19 @@ void writePart(const std::string& path) {
     }
     out << '\n';
   }
+}
+
+TEST(FitCommand, SaysWhereTheBestShapeIsNone) {
+  const TempFolder folder;
+  const std::string part = folder.file("part.asc"), bracket = folder.file("bracket.tif");
+  writePart(part);
+  const Outcome plane = fettle({"fit", part, "--unit", "mm", "--at", "6,2"});
+  EXPECT_EQ(plane.status, 0) << plane.err;
+  EXPECT_EQ(plane.err.find("another shape"), std::string::npos) << plane.err;
+  ASSERT_EQ(fettle({"synth", bracket, "--size", "200x150"}).status, 0);
+  const Outcome several = fettle({"fit", bracket});
+  EXPECT_EQ(several.status, 0) << several.err;
+  EXPECT_NE(several.err.find("so it is another shape, or several"), std::string::npos) << several.err;
 }
 
 TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
@@ -59,8 +66,7 @@ TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
   // From the plane z = x tan 30 to (2, 2, 6).
   const double turn = std::acos(-1.0) / 6.0;
   EXPECT_NEAR(report["between"]["distance_mm"], 6.0 * std::cos(turn) - 2.0 * std::sin(turn), 1e-5);
-  EXPECT_TRUE(
-      fitFileContent(csv).starts_with("region,shape,figure,value,standard_error,unit\n1,plane,point_x,"));
+  EXPECT_TRUE(bytesOf(csv).starts_with("region,shape,figure,value,standard_error,unit\n1,plane,point_x,"));
   const auto left = fettleJson({"info", residuals, "--unit", "mm"});
   EXPECT_EQ(left["no_data"], 50);
   EXPECT_LT(left["max"].get<double>(), 1e-6);
@@ -69,9 +75,9 @@ TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
   EXPECT_NE(text.out.find("radius              5"), std::string::npos) << text.out;
 
   // The file is the same each time, and every entity that it refers to is there.
-  const std::string first = fitFileContent(step);
+  const std::string first = bytesOf(step);
   EXPECT_EQ(fettle({"fit", scan, "--unit", "mm", "--at", "6,2", "--at", "2,2", "--step", step}).status, 0);
-  EXPECT_EQ(fitFileContent(step), first);
+  EXPECT_EQ(bytesOf(step), first);
   EXPECT_TRUE(first.starts_with("ISO-10303-21;") && first.ends_with("END-ISO-10303-21;\n"));
   std::set<std::string> defined, used;
   const std::regex number("#([0-9]+)(=?)");
