@@ -1,7 +1,8 @@
 // What must hold at every tick on every hard field, whichever way it is touched.
 //
-// A ball next to a needle, slope 1e6, is the one exception: all of the needle's valley lies within a millionth of a cell,
-// where the pieces of SphereValley find no minimum, so that the ball enters it, by up to its radius. That is measured, in
+// A ball next to a needle is the one exception: all of the needle's valley lies within a small part of a cell, of slope 1e6
+// within a millionth, where the pieces of SphereValley find no minimum, so that the ball enters it, by up to its radius
+// (docs/decisions/ball-tip.md). That is measured, in
 // long double, and told; what must hold there is that a tick ends no farther from the endpoint than one that reached in by
 // the tolerance could.
 #include <algorithm>
