@@ -14,7 +14,7 @@
 namespace fettle::engine {
 
 /// The points of a region for fits, in millimetres from a point in its middle, in blocks whose size does not depend on the
-/// number of threads. 4 bytes a sample, 16 for each run. Immutable; any thread.
+/// number of threads. 4 bytes per sample, 16 per run. Immutable; any thread.
 class FitSamples {
  public:
   static constexpr int kBlock = 256;
