@@ -83,8 +83,8 @@ void addToParser(CLI::App& app, const Parameter& p) {
   option->type_name(std::string(infoOf(p.kind).shown));  // in its messages
   if (p.between != '\0') option->delimiter(p.between);
   if (p.values > 1) option->expected(p.values);
-  // Of a fixed number in one word the words after it are others: "--crop 0,0,5,5 IN OUT".
-  if (p.one_word || (p.values > 1 && p.between != '\0')) option->allow_extra_args(false);
+  // Of values in one word the words after it are others: "--crop 0,0,5,5 IN OUT", "--only height SCAN".
+  if (p.one_word || p.between != '\0') option->allow_extra_args(false);
   for (const std::string& other : p.excludes) option->excludes(app.get_option(other));
   for (const auto& problem : problemsOf(p)) option->check(problem, "");
 }

@@ -135,6 +135,9 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   EXPECT_EQ(only["sq"], all["sq"]);
   EXPECT_FALSE(only.contains("sk"));
   EXPECT_FALSE(only.contains("spd"));
+  // The word after the list is the scan; the option may be repeated.
+  EXPECT_EQ(fettleJson({"measure", "--only", "spatial,hybrid", scan, "--unit", "mm"}), only);
+  EXPECT_EQ(fettleJson({"measure", "--unit", "mm", "--only", "spatial", "--only", "hybrid", scan}), only);
   const Outcome text = fettle({"measure", scan, "--unit", "mm"});
   for (const char* heading : {"\nHeight\n", "\nSpatial\n", "\nHybrid\n", "\nFunctional\n", "\nFeature\n"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << heading;
