@@ -376,6 +376,7 @@ void addBench(Command root, Chosen& chosen) {
   addBenchFilters(bench, chosen);
   addBenchEstimate(bench, chosen);
   addBenchFill(bench, chosen);
+  addBenchMeasure(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   Command drawing = addCommand(

@@ -1,0 +1,188 @@
+#include "bench/measure_bench.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <random>
+#include <utility>
+
+#include "bench/machine.h"
+#include "bench/repeats.h"
+#include "engine/field/builder.h"
+#include "engine/measure/align.h"
+#include "engine/measure/areal.h"
+#include "engine/measure/form.h"
+#include "engine/measure/gaussian_filter.h"
+#include "engine/measure/line_offsets.h"
+#include "engine/measure/lowered.h"
+#include "engine/measure/section.h"
+#include "engine/transform/rearrange.h"
+#include "engine/transform/resample.h"
+
+namespace fettle::bench {
+
+namespace {
+
+using engine::JobControl;
+using engine::Result;
+using engine::Version;
+using Bits = std::uint64_t;
+
+constexpr double kCutOffMm = 25 * kSpacingMm;
+
+// Waves of 0.5 mm on a tilt, a wall of 2 mm, noise of 5 um.
+Result<Version> wavedField(std::int32_t side) {
+  engine::Grid grid;
+  grid.width = grid.height = side;
+  grid.spacing_x = grid.spacing_y = kSpacingMm;
+  auto builder = engine::FieldBuilder::create(grid, "the field");
+  if (!builder) return tl::unexpected(builder.error());
+  std::vector<float> row(static_cast<std::size_t>(side));
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0.0F, 0.005F);
+  for (std::int32_t r = 0; r < side; ++r) {
+    const double along = std::cos(r * 0.013) + 0.0002 * r;
+    for (std::int32_t c = 0; c < side; ++c)
+      row[static_cast<std::size_t>(c)] =
+          static_cast<float>(0.5 * (std::sin(c * 0.01) + along) + 0.0001 * c + (c > side / 3 ? 2.0 : 0.0)) +
+          noise(random);
+    builder->writeHeights(0, r, side, 1, row.data(), side);
+  }
+  return std::move(*builder).build();
+}
+
+Bits mixed(Bits sum, double figure) {
+  return (std::rotl(sum, 5) ^ std::bit_cast<Bits>(figure)) * 0x9E3779B97F4A7C15U;
+}
+
+Bits bitsOf(const std::vector<double>& figures) {
+  Bits sum = 0;
+  for (const double figure : figures) sum = mixed(sum, figure);
+  return sum;
+}
+
+Result<Bits> hashOf(const Result<Version>& field) {
+  if (!field) return tl::unexpected(field.error());
+  return engine::contentHash(*field);
+}
+
+Result<Bits> levelled(const Version& field, const engine::FormOptions& options, JobControl& job) {
+  const auto fit = engine::fitForm(field, options, job);
+  if (!fit) return tl::unexpected(fit.error());
+  return hashOf(engine::withoutForm(field, fit->form, job));
+}
+
+Result<Bits> linesTaken(const Version& field, const engine::LineOptions& options, JobControl& job) {
+  const auto lines = engine::findLineOffsets(field, options, job);
+  if (!lines) return tl::unexpected(lines.error());
+  return hashOf(engine::lowered(
+      field, "taking lines out", [&](const auto& rect, double* out) { lines->readHeights(rect, out); }, job));
+}
+
+Result<Bits> sectioned(const Version& field, double width_mm, JobControl& job) {
+  const engine::Grid& grid = field.grid();
+  const glm::dvec2 end((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  const glm::dvec2 points[] = {end * 0.1, end * 0.9};
+  const auto section = engine::sectionAlong(field, points, {.width_mm = width_mm}, job);
+  if (!section) return tl::unexpected(section.error());
+  return bitsOf(section->height);
+}
+
+Result<Bits> parameters(const Version& field, const engine::ArealOptions& options, JobControl& job) {
+  const auto fit = engine::fitForm(field, {}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  const auto found = engine::measureAreal(field, fit->form, options, job);
+  if (!found) return tl::unexpected(found.error());
+  return bitsOf({found->sq, found->ssk, found->sku, found->sa, found->sdq, found->sdr, found->feature.spd});
+}
+
+// The field shifted and turned, brought back onto it.
+Result<Bits> aligned(const Version& field, const Version& moved, JobControl& job) {
+  const auto found = engine::alignFields(field, moved, {}, job);
+  if (!found) return tl::unexpected(found.error());
+  return bitsOf({found->motion.shift.x, found->motion.shift.y, found->motion.shift.z, found->angles.rotation_z});
+}
+
+struct Step {
+  const char* name;
+  std::function<Result<Bits>(const Version&, JobControl&)> run;
+};
+
+std::vector<Step> steps(const Version& moved) {
+  const auto form = [](int degree, bool robust) {
+    return [=](const Version& f, JobControl& job) {
+      return levelled(f, {.degree = degree, .robust = robust}, job);
+    };
+  };
+  const auto section = [](double width_mm) {
+    return [=](const Version& f, JobControl& job) { return sectioned(f, width_mm, job); };
+  };
+  const auto measured = [](bool spatial_and_features) {
+    return [=](const Version& f, JobControl& job) {
+      return parameters(f, {.spatial = spatial_and_features, .feature = spatial_and_features}, job);
+    };
+  };
+  return {
+      {"level, plane", form(1, false)},
+      {"level, plane, robust", form(1, true)},
+      {"level, degree 5", form(5, false)},
+      {"level, rows by median", [](const Version& f, JobControl& job) { return linesTaken(f, {}, job); }},
+      {"section", section(0.0)},
+      {"section, 100 lanes wide", section(99 * kSpacingMm)},
+      {"S-filter, 25 samples",
+       [](const Version& f, JobControl& job) {
+         return hashOf(engine::gaussianFiltered(f, kCutOffMm, engine::Waves::kLong, job));
+       }},
+      {"height, hybrid, functional", measured(false)},
+      {"all parameters", measured(true)},
+      {"quarter turn",
+       [](const Version& f, JobControl& job) { return hashOf(engine::turned(f, {.quarters = 1}, job)); }},
+      {"turned by 7 degrees",
+       [](const Version& f, JobControl& job) {
+         return hashOf(
+             engine::resampled(f, {.angle_deg = 7.0, .spacing_x = kSpacingMm, .spacing_y = kSpacingMm}, job));
+       }},
+      {"align", [&moved](const Version& f, JobControl& job) { return aligned(f, moved, job); }},
+  };
+}
+
+}  // namespace
+
+Result<MeasureBenchReport> benchMeasure(const MeasureBenchOptions& options, JobControl& job) {
+  if (options.side < 512 || options.side > 32768 || options.repeats < 1 || options.repeats > 100)
+    return engine::inputError("these options cannot be measured", "bench measure",
+                              "give 512 to 32768 samples");
+  MeasureBenchReport report;
+  report.machine = machine();
+  report.samples = std::int64_t{options.side} * options.side;
+  const auto field = wavedField(options.side);
+  if (!field) return tl::unexpected(field.error());
+  const auto moved =
+      engine::resampled(*field, {.angle_deg = 2.0, .spacing_x = kSpacingMm, .spacing_y = kSpacingMm}, job);
+  if (!moved) return tl::unexpected(moved.error());
+  std::vector<float> copy(static_cast<std::size_t>(report.samples));
+  for (const Step& step : steps(*moved)) {
+    MeasureBenchRow row;
+    row.step = step.name;
+    std::vector<double> plain, seconds;
+    for (int k = 0; k < options.repeats; ++k) {
+      plain.push_back(secondsOf(
+          [&] { field->reader().readHeights(0, 0, options.side, options.side, copy.data(), options.side); }));
+      Result<Bits> bits;
+      seconds.push_back(secondsOf([&] { bits = step.run(*field, job); }));
+      if (!bits) return tl::unexpected(bits.error());
+      if (k > 0 && *bits != row.bits) return engine::failure("two repeats differ", step.name);
+      row.bits = *bits;
+    }
+    row.plain = median(plain);
+    row.median = median(seconds);
+    row.fastest = *std::ranges::min_element(seconds);
+    row.slowest = *std::ranges::max_element(seconds);
+    report.rows.push_back(std::move(row));
+  }
+  return report;
+}
+
+}  // namespace fettle::bench
