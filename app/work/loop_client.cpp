@@ -22,7 +22,10 @@ using namespace std::chrono_literals;
 
 // Of a form that is moved to the newest field on the main thread: some milliseconds.
 constexpr std::int64_t kMostTilesMoved = 256;
-constexpr auto kPollInterval = 1ms;   // between two reads of the state while a force fades
+constexpr auto kPollInterval = 1ms;  // between two reads of the state while a force fades
+// The loop takes commands at its next tick; one that has stood still for so long is not waited for.
+constexpr auto kLongestAnswer = 50ms;
+constexpr auto kAnswerInterval = 200us;
 constexpr auto kLongestFade = 100ms;  // a disarmed force has faded after peak / slew = 5 ms
 
 }  // namespace
@@ -64,6 +67,7 @@ engine::Status LoopClient::startLoop(double rate_hz) {
   path_ = StrokePath(field_.grid());
   place_ = {};
   restores_open_ = 0;
+  offer_open_ = false;
   latency_.restart();
   DeviceLoop::Start start;
   start.field = history().current();
@@ -139,6 +143,15 @@ void LoopClient::poll() {
   steps_.journal().flushWhenDue();
 }
 
+void LoopClient::catchUp() {
+  poll();
+  const auto latest = std::chrono::steady_clock::now() + kLongestAnswer;
+  while (offer_open_ && !finished() && std::chrono::steady_clock::now() < latest) {
+    std::this_thread::sleep_for(kAnswerInterval);
+    poll();
+  }
+}
+
 void LoopClient::takeTicks() {
   const bool none = path_.empty();
   const bool lost = steps_.journal().takeTicks(loop_.loop(), path_);
@@ -149,8 +162,10 @@ void LoopClient::takeTicks() {
 }
 
 void LoopClient::take(haptic::LoopEvent&& event) {
+  // The history is already where the loop will be after its answer.
+  const bool replaced = restores_open_ > 0;
   // A stroke running when a filter's result was adopted is a separate step before it.
-  if (event.kind == EventKind::kAdopted && !event.before.empty() && !steps_.adopting())
+  if (event.kind == EventKind::kAdopted && !event.before.empty() && !steps_.adopting() && !replaced)
     steps_.keepStroke(upright(event.before), place_);
   steps_.journal().answered(event);
   if (!event.version.empty()) {
@@ -163,6 +178,7 @@ void LoopClient::take(haptic::LoopEvent&& event) {
       steps_.strokeIsOf(tool_);
       break;
     case EventKind::kStrokeEnded:
+      if (replaced) break;
       endPath(event);
       if (event.rect.empty() || !steps_.differs(upright(event.version))) break;
       latency_.noteEdit(event, loop_.loop().state(), rate());
@@ -173,10 +189,12 @@ void LoopClient::take(haptic::LoopEvent&& event) {
       mailbox_.answer(event.version, false);
       break;
     case EventKind::kAdopted:
-      steps_.adopted(upright(event.version), place_);
+      offer_open_ = false;
+      if (!replaced) steps_.adopted(upright(event.version), place_);
       mailbox_.answer(event.version, true);
       break;
     case EventKind::kAdoptRefused:
+      offer_open_ = false;
       mailbox_.answer(event.version.empty() ? field_ : event.version, false);
       break;
     case EventKind::kRestored:
@@ -239,21 +257,21 @@ void LoopClient::restore(const engine::Version& version) {
 }
 
 void LoopClient::undo() {
-  poll();
+  catchUp();
   keepStroke();
   mark_strokes_.clear();
   if (const auto version = steps_.undo()) restore(*version);
 }
 
 void LoopClient::redo() {
-  poll();
+  catchUp();
   if (!canRedo()) return;
   mark_strokes_.clear();
   if (const auto version = steps_.redo()) restore(*version);
 }
 
 void LoopClient::goTo(std::int64_t state) {
-  poll();
+  catchUp();
   keepStroke();
   mark_strokes_.clear();
   if (state == history().number()) return;
@@ -262,7 +280,7 @@ void LoopClient::goTo(std::int64_t state) {
 
 bool LoopClient::change(const engine::Version& base, const engine::Version& changed, std::string name,
                         const std::optional<TakenEdges>& edges) {
-  poll();
+  catchUp();
   keepStroke();
   const engine::Version& now = history().current();  // field() may lag behind an undo
   const bool lines = base.lines() != changed.lines();
@@ -284,7 +302,7 @@ bool LoopClient::change(const engine::Version& base, const engine::Version& chan
 }
 
 bool LoopClient::changeForm(FormChange& change) {
-  poll();
+  catchUp();
   keepStroke();
   const engine::Version& now = history().current();
   if (!(now == change.base)) {
@@ -324,7 +342,10 @@ void LoopClient::allowPort() {
 void LoopClient::sendQuestion() {
   std::optional<LoopCommand> command = mailbox_.takeCommand(next_id_);
   if (!command) return;
-  if (command->kind == CommandKind::kAdopt) steps_.journal().offerMade();
+  if (command->kind == CommandKind::kAdopt) {
+    steps_.journal().offerMade();
+    offer_open_ = true;
+  }
   loop_.send(std::move(*command));
 }
 

@@ -32,7 +32,9 @@ struct TakenEdges {
 /// published; the newest published version is shown.
 ///
 /// Steps (StepKeeper). Undo and redo ask the loop to restore a version; the history moves immediately, the
-/// field when the loop answers. Undo while a stroke runs makes a step of it first.
+/// field when the loop answers. Undo while a stroke runs makes a step of it first. A filter's result that the loop is just
+/// taking over becomes a step first, too: both wait for that answer, some ticks. What the loop did between a request to
+/// restore and its answer is replaced by the state restored and makes no step.
 ///
 /// Forms. A field with a form over it is worked on as it is seen: history, field and filters have Version::seenOf(), and the
 /// original is the scan under the same form. The session stores the samples.
@@ -163,6 +165,8 @@ class LoopClient final {
   void take(haptic::LoopEvent&& event);
   void restore(const engine::Version& upright_version);
   void sendQuestion();
+  // Before the history moves: events, and the answer to a filter's result that was sent.
+  void catchUp();
   [[nodiscard]] bool strokeRuns() const noexcept;
   void keepStroke();
   // The paths of marking tools until an event become strokes.
@@ -181,6 +185,7 @@ class LoopClient final {
   std::deque<haptic::LoopEvent> held_;  // until the ticks before them are recorded
   std::uint64_t next_id_ = 1;           // of a command
   std::uint64_t restores_open_ = 0;     // requested, not answered
+  bool offer_open_ = false;             // a filter's result was sent to the loop, and not answered
   StrokePath path_;                     // of the running stroke
   engine::Version path_base_;           // upright: the field before it
   std::vector<MarkStroke> mark_strokes_;

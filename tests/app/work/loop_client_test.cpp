@@ -2,6 +2,7 @@
 #include "app/work/loop_client.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -10,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/mark_setter.h"
+#include "haptic/loop/adopt_filtered.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/support/temp_folder.h"
 
@@ -23,6 +26,19 @@ constexpr auto kPatience = 30s;
 
 bool givesForce(const haptic::LoopState& state) {
   return state.safety == SafetyState::kRamping || state.safety == SafetyState::kActive;
+}
+
+// The field with one more marked sample.
+engine::Version withMark(const engine::Version& field, std::int32_t column, std::int32_t row) {
+  engine::MarkSetter setter(field);
+  const std::int32_t width = field.grid().width;
+  std::vector<unsigned char> mask(static_cast<std::size_t>(width));
+  for (std::int32_t r = field.grid().height - 1; r >= 0; --r) {
+    field.reader().readMarks(0, r, width, 1, mask.data(), width);
+    if (r == row) mask[static_cast<std::size_t>(column)] = 1;
+    EXPECT_TRUE(setter.take(r, mask.data()));
+  }
+  return setter.result();
 }
 
 class LoopClientTest : public ::testing::Test {
@@ -134,6 +150,48 @@ TEST_F(LoopClientTest, another_rate_begins_without_force_and_loses_nothing) {
   EXPECT_FALSE(client->setRate(10001.0));
   EXPECT_EQ(client->rate(), 1000.0);
   EXPECT_EQ(client->state().link, haptic::LinkState::kConnected);
+}
+
+// A worker offers a filter's result while a person undoes: the loop takes both within some ticks. Whatever the order, the
+// history's state is the field, and nothing is left that only one of them has.
+TEST_F(LoopClientTest, an_undo_while_an_offer_is_unanswered_leaves_history_and_field_alike) {
+  const auto client = start();
+  ASSERT_TRUE(client);
+  const engine::Version plain = client->upright();
+  const auto agree = [&](const auto&) { return client->upright() == client->history().current(); };
+  for (int trial = 0; trial < 40; ++trial) {
+    const engine::Version field = client->upright();
+    ASSERT_TRUE(client->change(field, withMark(field, trial, 1), "Marks"));
+    ASSERT_TRUE(until(*client, agree));
+    client->noteFilterBegun(client->noteFilterBase(), {}, "Filter");
+    std::atomic<bool> offers{false}, done{false};
+    std::thread worker([&] {
+      const auto live = client->port().snapshot();
+      if (live) {
+        const engine::Version filtered = withMark(*live, trial, 9);
+        offers = true;
+        static_cast<void>(client->port().adopt(filtered));
+      }
+      offers = done = true;
+    });
+    while (!offers) client->poll();
+    for (int k = 0; k < 200 * (trial % 8); ++k) std::this_thread::yield();
+    client->undo();
+    EXPECT_TRUE(until(*client, [&](const auto&) { return done.load(); }));
+    client->closePort();
+    worker.join();
+    client->allowPort();
+    rounds(*client, 5);
+    ASSERT_TRUE(until(*client, agree)) << trial;
+    const std::int64_t last = client->history().number();
+    for (std::int64_t state = 0; state <= last; ++state) {
+      client->goTo(state);
+      ASSERT_TRUE(until(*client, agree)) << trial << ", state " << state;
+    }
+    client->goTo(0);
+    ASSERT_TRUE(until(*client, agree));
+    EXPECT_TRUE(client->upright() == plain);
+  }
 }
 
 TEST_F(LoopClientTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
