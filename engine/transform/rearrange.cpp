@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -83,6 +84,18 @@ EdgeLines turnedLines(const std::vector<EdgeLine>& lines, const Origin& at, bool
   return moved;
 }
 
+// Of the runs that a rectangle leaves of a line the first keeps its number; the others get numbers that no line has.
+EdgeLines numberedOnce(const EdgeLines& runs) {
+  if (runs->empty()) return nullptr;
+  std::int64_t next = 0;
+  for (const EdgeLine& run : *runs) next = std::max(next, run.id);
+  auto numbered = std::make_shared<std::vector<EdgeLine>>(*runs);
+  std::unordered_set<std::int64_t> taken;
+  for (EdgeLine& run : *numbered)
+    if (!taken.insert(run.id).second) run.id = ++next;
+  return numbered;
+}
+
 }  // namespace
 
 Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl& job) {
@@ -100,7 +113,7 @@ Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl
         from.readMarks(rect.column + to.column, rect.row + to.row, to.columns, to.rows, marks, kTileSide);
       });
   if (!piece || field.lines() == nullptr) return piece;
-  return piece->withLines(linesOfPiece(*field.lines(), rect));
+  return piece->withLines(numberedOnce(linesOfPiece(*field.lines(), rect)));
 }
 
 Result<Version> turned(const Version& field, const Turning& turning, JobControl& job) {

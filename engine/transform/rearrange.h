@@ -12,7 +12,7 @@ namespace fettle::engine {
 // workers of the arena; the same for any number of threads.
 
 /// The samples of a rectangle, which lies in the field, where they are in the world: the origin is that of the first one.
-/// Of edge lines what is in the rectangle and near it, with the same numbers.
+/// Of edge lines what is in the rectangle and near it; of a line that it cuts into several the first keeps the number.
 [[nodiscard]] Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl& job);
 
 /// First mirrored, then turned.

@@ -154,6 +154,17 @@ TEST(Recipes, ATransformIsRepeatedFromASessionThatBeginsWithIt) {
   EXPECT_NE(fettle({"recipe", file("x.fettle")}).status, 0);
 }
 
+// A crop cuts lines into several, which a session keeps.
+TEST(Recipes, ACroppedSessionWithLinesCanBeRead) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), recipe = folder.file("r.toml"), out = folder.file("o.fettle");
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"locate_edges\"\n"
+                           "[[step]]\ndo = \"transform\"\ncrop = [5, 5, 45, 40]\n";
+  ASSERT_EQ(fettle({"synth", scan, "--size", "256x200", "--seed", "5"}).status, 0);
+  ASSERT_EQ(fettle({"apply", recipe, scan, out}).status, 0);
+  EXPECT_GT(fettleJson({"info", out})["lines"], 0);
+}
+
 TEST(Recipes, WrongFillsAndTransformsAreRefusedWithTheirLine) {
   const TempFolder folder;
   const auto refused = [&](const std::string& keys, const std::string& part) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,34 @@ TEST(Cropped, HasTheSamplesMarksLinesAndPlacesOfItsRectangle) {
   EXPECT_EQ((*piece->lines())[0].id, 4);
   EXPECT_EQ((*piece->lines())[0].points[4].position,
             field.lines()->front().points[4].position - glm::dvec2(5, 2));
+}
+
+// A session refuses two lines of one number.
+TEST(Cropped, OfALineThatIsCutIntoSeveralEachHasANumberOfItsOwn) {
+  EdgeLine wave, other;
+  wave.id = 4;
+  other.id = 9;
+  for (int i = 0; i < 180; ++i) {
+    EdgePoint p;
+    p.position = {5.0 + i, 60.0 + 20.0 * std::sin(i * 0.08)};
+    wave.points.push_back(p);
+    p.position.y = 75.0;
+    other.points.push_back(p);
+  }
+  const Version field = scan(200, 150).withLines(
+      std::make_shared<const std::vector<EdgeLine>>(std::vector<EdgeLine>{wave, other}));
+  JobControl job;
+  const auto piece = cropped(field, {0, 66, 200, 20}, job);
+  ASSERT_TRUE(piece);
+  std::set<std::int64_t> numbers;
+  for (const EdgeLine& line : *piece->lines()) EXPECT_TRUE(numbers.insert(line.id).second) << line.id;
+  EXPECT_GE(numbers.size(), 3U);
+  EXPECT_EQ(piece->lines()->front().id, 4);
+  EXPECT_TRUE(numbers.contains(9));
+  // None is left where no line comes by.
+  const auto plain = cropped(field, {0, 120, 200, 20}, job);
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->lines(), nullptr);
 }
 
 // Where a sample goes, one operation after the other, as it is written down.
