@@ -197,7 +197,7 @@ void warn(const std::string& text) {
 }
 
 void note(const std::string& text) {
-  if (!voice().json && !voice().quiet) lineToStderr("fettle: " + text);
+  if (thread_messages == nullptr && !voice().json && !voice().quiet) lineToStderr("fettle: " + text);
 }
 
 std::vector<std::string> takeWarnings() {

@@ -104,7 +104,8 @@ int report(const engine::Error& error);
 /// Prints "fettle: warning: ..." on stderr; with Voice::json collects it. Threading: any.
 void warn(const std::string& text);
 
-/// Prints "fettle: ..." on stderr, neither with Voice::quiet nor with Voice::json. Threading: any.
+/// Prints "fettle: ..." on stderr, neither with Voice::quiet nor with Voice::json, nor where messages are kept. Threading:
+/// any.
 void note(const std::string& text);
 
 /// The warnings kept so far, which are kept no more.

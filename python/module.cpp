@@ -4,6 +4,7 @@
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
@@ -14,6 +15,8 @@
 #include "engine/field/seen_field.h"
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
+#include "engine/io/geo/geo_reference.h"
+#include "engine/io/geo/named_crs.h"
 #include "python/calls.h"
 #include "python/errors.h"
 #include "python/scan.h"
@@ -34,6 +37,16 @@ py::list formats() {
                               format.reads, format.writes));
   }
   return all;
+}
+
+// The unit in which a coordinate system counts: "m", "deg"; empty where it cannot be read.
+std::string unitOfCrs(const std::string& crs) {
+  const engine::Result<std::string> wkt = engine::crsOf(crs);
+  if (!wkt) return {};
+  engine::StatedUnits units;
+  std::vector<std::string> warnings;
+  engine::unitsOfCrs(*wkt, 0.0, units, warnings);
+  return units.lateral ? units.lateral->name : std::string();
 }
 
 std::int64_t holesOf(const Scan& scan) {
@@ -143,6 +156,7 @@ PYBIND11_MODULE(_fettle, module) {
   addScan(module);
   addSession(module);
   module.def("formats", formats);
+  module.def("unit_of_crs", unitOfCrs);
   module.def("tables", commandTables);
   module.def("call", callCommand);
 }

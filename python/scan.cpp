@@ -16,6 +16,7 @@
 #include "engine/field/mark_setter.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/tile.h"
+#include "engine/io/geo/named_crs.h"
 #include "engine/io/lines/line_frame.h"
 #include "engine/session/form_codec.h"
 #include "python/errors.h"
@@ -52,7 +53,7 @@ engine::Grid gridOf(py::ssize_t rows, py::ssize_t columns, const Placement& plac
       raise(engine::inputError("the origin is not finite", "origin", "give two numbers").value());
   grid.lateral_unit = unitOf(placement.unit);
   grid.height_unit = unitOf(placement.height_unit);
-  grid.crs_wkt = placement.crs;
+  if (!placement.crs.empty()) grid.crs_wkt = valueOf(engine::crsOf(placement.crs));
   return grid;
 }
 

@@ -210,6 +210,10 @@ def path_word(value):
         from ._errors import InputError
 
         raise InputError("a path is empty", "", "name a file")
+    if "\0" in path:
+        from ._errors import InputError
+
+        raise InputError("a path with a null character cannot be a file's", repr(path), "name a file")
     if path == "-":
         from ._errors import InputError
 

@@ -13,7 +13,7 @@ import numpy
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from . import _fettle, _lines
+from . import _exchange, _fettle, _lines
 from ._commands import PATH, READING, SELF, TABLES, WRITING, Command, documented, identifier, parameter, path_word
 from ._errors import Error, FettleWarning, InputError
 from ._lines import Line
@@ -108,7 +108,7 @@ class Field:
             ftUS.
         height_unit: of the heights.
         origin: (x, y) of the sample in column 0 of the lowest row, in `unit`.
-        crs: coordinate reference system as WKT; empty: none.
+        crs: coordinate reference system as WKT, or a code as EPSG:28992; empty: none.
         marks: bool array of the same shape: samples that filters leave as they are.
         lines: edge lines: Line objects, or arrays n x 2 of column and row.
         top_down: the first row of `heights` and `marks` is the one with the highest y, as in pictures and in rasterio.
@@ -143,7 +143,10 @@ class Field:
     ) -> None:
         if np.ma.isMaskedArray(heights):
             heights = heights.astype(np.float32).filled(np.nan)
-        heights = np.asarray(heights, dtype=np.float32)
+        heights = np.asarray(heights)
+        if heights.dtype.kind not in "biuf":
+            raise InputError(f"an array of {heights.dtype} holds no heights", "heights", "give real numbers")
+        heights = heights.astype(np.float32, copy=False)
         if top_down:
             heights = heights[::-1]
         if heights.ndim == 2 and heights.shape[1] > 1 and heights.strides[1] != heights.itemsize:
@@ -484,50 +487,18 @@ class Field:
 
     @classmethod
     def from_rasterio(cls, dataset: Any, band: int = 1) -> Field:
-        """A band of an open rasterio dataset, with its place. What its mask hides is a hole. Its transform must have no
-        rotation. Heights count as in the unit of the coordinate system unless the band names another."""
-        a, b, c, d, e, f = tuple(dataset.transform)[:6]
-        if b != 0 or d != 0:
-            raise ValueError("the dataset is rotated: warp it first")
-        heights = dataset.read(band, masked=True)
-        if a < 0:
-            heights, a, c = heights[:, ::-1], -a, c + a * heights.shape[1]
-        rows = heights.shape[0]
-        low, down = (f + e * rows, True) if e < 0 else (f, False)
-        unit = _unit_named(dataset.crs.linear_units) if dataset.crs and not dataset.crs.is_geographic else None
-        if unit is None and dataset.crs:
-            raise ValueError("the dataset has no lengths in its coordinates: read its file with fettle.read")
-        return cls(
-            heights,
-            (a, abs(e)),
-            unit or "mm",
-            height_unit=_unit_named(dataset.units[band - 1] or "") or unit or "mm",
-            origin=(c + 0.5 * a, low + 0.5 * abs(e)),
-            crs=dataset.crs.to_wkt() if dataset.crs else "",
-            top_down=down,
-            name=os.path.basename(dataset.name or ""),
-        )
+        """A band of an open rasterio dataset, with its place, scale and offset. What its mask hides is a hole. Its transform
+        must have no rotation. Heights count as in the unit of the coordinate system unless the band names another."""
+        return cls(**_exchange.from_rasterio(dataset, band))
 
     @classmethod
     def from_xarray(cls, array: Any, unit: str | None = None) -> Field:
-        """A DataArray of two dimensions, y before x, with evenly spaced coordinates. The unit is that of the attribute
-        `units` of x, else `unit`, else mm; that of the heights is the attribute `units` of the array, else the same."""
-        if array.ndim != 2:
-            raise ValueError(f"the array has {array.ndim} dimensions, not y and x")
-        rows, columns = (_axis(array, name) for name in array.dims)
-        unit = _unit_named(array.coords[array.dims[1]].attrs.get("units", "")) or unit or "mm"
-        heights = np.asarray(array)
-        if columns[1] < 0:
-            heights = heights[:, ::-1]
-        return cls(
-            heights,
-            (abs(columns[1]), abs(rows[1])),
-            unit,
-            height_unit=_unit_named(array.attrs.get("units", "")) or unit,
-            origin=(columns[0], rows[0]),
-            top_down=rows[1] < 0,
-            name=str(array.name or ""),
-        )
+        """A DataArray with evenly spaced coordinates, of y and x; other dimensions have one place. Also as
+        `rioxarray.open_rasterio` gives it. The coordinate system is the attribute `crs` or that of the coordinate `spatial_ref`.
+        The unit is that of the attribute `units` of x, else of the coordinate system, else `unit`, else mm; that of the
+        heights is the attribute `units` of the array, else the same. `_FillValue`, `scale_factor` and `add_offset`
+        count where xarray has left them among the attributes."""
+        return cls(**_exchange.from_xarray(array, unit))
 
     def to_xarray(self) -> Any:
         """A DataArray with the dimensions y, x, their coordinates in `unit`, marks as the coordinate `marks`. Row 0 has the
@@ -692,27 +663,6 @@ class Suggestion(dict):
         for name in ("window", "passes", "range_sigma"):
             options[name] = pick[name]
         return field.filter(pick["filter"], progress=progress, **options)
-
-
-_UNITS = {"metre": "m", "meter": "m", "metres": "m", "meters": "m", "millimetre": "mm", "millimeter": "mm",
-          "micrometre": "um", "micrometer": "um", "µm": "um", "foot": "ft", "feet": "ft", "us survey foot": "ftUS"}
-
-
-def _unit_named(name):
-    name = str(name or "").strip()
-    short = _UNITS.get(name.lower(), name)
-    return short if short in ("nm", "um", "mm", "cm", "m", "km", "in", "ft", "ftUS") else None
-
-
-def _axis(array, name):
-    """(lowest coordinate, step with its sign) of an evenly spaced axis."""
-    values = np.asarray(array.coords[name], dtype=np.float64)
-    if len(values) < 2:
-        return float(values[0]), 1.0
-    step = (values[-1] - values[0]) / (len(values) - 1)
-    if step == 0 or np.max(np.abs(values - (values[0] + step * np.arange(len(values))))) > 0.01 * abs(step):
-        raise ValueError(f"the coordinates of {name} are not evenly spaced")
-    return float(min(values[0], values[-1])), float(step)
 
 
 def png_of(picture):

@@ -226,12 +226,96 @@ class Rasterio(unittest.TestCase):
             self.assertEqual((again.spacing, again.origin), (field.spacing, field.origin))
 
 
+    def test_heights_that_count_are_those_of_the_program(self):
+        try:
+            import rasterio
+        except ImportError:
+            self.skipTest("python3-rasterio is not installed")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "counts.tif")
+            counts = np.arange(12, dtype=np.int16).reshape(3, 4)
+            with rasterio.open(path, "w", driver="GTiff", width=4, height=3, count=1, dtype="int16", nodata=5,
+                               crs=rasterio.crs.CRS.from_epsg(28992), transform=rasterio.Affine(2, 0, 10, 0, -2, 20)) as dataset:
+                dataset.write(counts, 1)
+                dataset.scales, dataset.offsets = (0.5,), (10.0,)
+            with rasterio.open(path) as dataset:
+                made = fettle.Field.from_rasterio(dataset)
+            self.assertEqual(made.hash, fettle.read(path).hash)
+            self.assertEqual(np.nanmax(np.asarray(made)), 15.5)
+            self.assertEqual(made.holes, 1)
+            # Without a place, the reader is told.
+            with rasterio.open(path, "w", driver="GTiff", width=4, height=3, count=1, dtype="int16") as dataset:
+                dataset.write(counts, 1)
+            with rasterio.open(path) as dataset, self.assertWarnsRegex(fettle.FettleWarning, "no place"):
+                fettle.Field.from_rasterio(dataset)
+
+
+class Crs(unittest.TestCase):
+    def test_a_code_becomes_wkt_and_nonsense_is_refused(self):
+        field = fettle.Field(wave(), 0.5, "m", crs="EPSG:28992")
+        self.assertIn("Amersfoort / RD New", field.crs)
+        self.assertEqual(fettle.Field(wave(), 0.5, "m", crs=field.crs).crs, field.crs)
+        for wrong in ("blah", "EPSG:1", "/etc/passwd", "PROJCS[", "http://example.org/crs"):
+            with self.assertRaisesRegex(fettle.InputError, "names no coordinate system"):
+                fettle.Field(wave(), crs=wrong)
+
+
+class Heights(unittest.TestCase):
+    def test_what_is_no_real_number_is_refused(self):
+        for wrong in (np.ones((2, 2), dtype=complex), [[None, 1.0]], [["a", "b"]]):
+            with self.assertRaisesRegex(fettle.InputError, "holds no heights"):
+                fettle.Field(wrong)
+
+    def test_a_path_with_a_null_character_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaises(fettle.InputError):
+            fettle.Field(wave()).write(os.path.join(folder, "a\0b.tif"))
+
+
 class Xarray(unittest.TestCase):
-    def test_a_data_array_comes_back_the_same(self):
+    def setUp(self):
         try:
             import xarray
         except ImportError:
             self.skipTest("python3-xarray is not installed")
+        self.xarray = xarray
+
+    def test_the_coordinate_system_comes_back(self):
+        field = fettle.Field(wave(), (0.5, 0.25), "m", crs="EPSG:32633", origin=(5e5, 4e6))
+        self.assertEqual(fettle.Field.from_xarray(field.to_xarray()).crs, field.crs)
+
+    def test_an_array_as_rioxarray_gives_it(self):
+        # One band before y and x, the coordinate system in a coordinate of its own, holes as the fill value of an attribute.
+        field = fettle.Field(wave(), (0.5, 0.25), "m", crs="EPSG:32633", origin=(5e5, 4e6))
+        plain = field.to_xarray()
+        filled = np.where(np.isnan(plain.values), -9999.0, plain.values)
+        given = self.xarray.DataArray(
+            filled[None, ::-1],
+            dims=("band", "y", "x"),
+            coords={"band": [1], "y": field.y[::-1], "x": field.x,
+                    "spatial_ref": ((), 0, {"crs_wkt": field.crs})},
+            attrs={"_FillValue": -9999.0, "scale_factor": 1.0, "add_offset": 0.0},
+        )
+        for array in (given, given.squeeze(drop=True), given[0].T):
+            back = fettle.Field.from_xarray(array)
+            self.assertEqual((back.hash, back.unit, back.height_unit), (field.hash, "m", "m"))
+        self.assertEqual(fettle.Field.from_xarray(given).crs, field.crs)
+        counts = given.copy(data=given.values * 4.0)
+        counts.attrs.update({"_FillValue": -39996.0, "scale_factor": 0.25})
+        self.assertEqual(fettle.Field.from_xarray(counts).hash, field.hash)
+
+    def test_what_has_no_lengths_is_refused_or_said(self):
+        degrees = self.xarray.DataArray(wave(), dims=("lat", "lon"), coords={"lat": np.arange(wave().shape[0]), "lon": np.arange(wave().shape[1])})
+        degrees.lon.attrs["units"] = "degrees_east"
+        with self.assertRaisesRegex(fettle.InputError, "degrees_east"):
+            fettle.Field.from_xarray(degrees)
+        volts = self.xarray.DataArray(wave(), dims=("y", "x"), attrs={"units": "V"})
+        with self.assertWarnsRegex(fettle.FettleWarning, "heights in V"):
+            fettle.Field.from_xarray(volts)
+        for wrong in (wave(), self.xarray.Dataset({"z": (("y", "x"), wave())}), degrees.expand_dims(t=[0, 1])):
+            with self.assertRaises(fettle.InputError):
+                fettle.Field.from_xarray(wrong)
+
+    def test_a_data_array_comes_back_the_same(self):
         field = fettle.Field(wave(), (0.5, 0.25), "um", height_unit="nm", origin=(3.0, 4.0))
         array = field.to_xarray()
         for turned in (array, array[::-1], array[:, ::-1]):
