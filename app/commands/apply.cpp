@@ -379,7 +379,7 @@ void addApply(Command root, Chosen& chosen) {
   addScanOptions(command, options->reading);
   command.notes(
       "With --resume each filter of the recipe keeps its work in a file of its own, OUT.stepN.resume. "
-      "docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
+      "The page File formats describes the keys of a recipe. A filter without range_sigma takes that of each "
       "scan's own "
       "noise.");
   command.examples({{"fettle apply clean.toml scan.tif clean.tif", "One scan"},

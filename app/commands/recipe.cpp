@@ -25,7 +25,7 @@ engine::Result<Report> recipe(const std::string& path, engine::JobControl& job) 
                                   ? "the session has no steps"
                                   : fmt::format("no step of the session can be repeated on another scan ({})",
                                                 fmt::join(recipe->left_out, "; ")),
-                              path, "write a recipe by hand: docs/formats.md");
+                              path, "write a recipe by hand, see the page File formats of the documentation");
   for (const std::string& step : recipe->left_out) warn(fmt::format("{}: left out: {}", path, step));
   return Report{
       {"recipe", recipeText(*recipe)}, {"steps", recipe->steps.size()}, {"left_out", recipe->left_out}};

@@ -34,7 +34,7 @@ constexpr const char* kInvertWord = "invert";
 constexpr const char* kLevelWord = "level";
 constexpr const char* kFillWord = "fill";
 constexpr const char* kTransformWord = "transform";
-constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
+constexpr const char* kRecipeRemedy = "the page File formats of the documentation describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
 class StepReader {

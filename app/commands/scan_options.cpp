@@ -87,7 +87,7 @@ void addCompressOption(Command command, engine::ExportOptions& writing) {
   };
   command.add({{.name = "--compress",
                 .to = std::function<void(const std::string&)>(take),
-                .text = "TIFF: compression; support by programs is in docs/formats.md",
+                .text = "TIFF: compression; the page File formats says which programs read it",
                 .words = {{"none", "every program reads it"}, "lzw", "deflate", "zstd"},
                 .otherwise = "none"}},
               kWriting);

@@ -393,7 +393,7 @@ std::vector<ReportSchema> inspecting() {
            {{"entry", "integer", "from 1"},
             {"time", "string", "UTC, ISO 8601"},
             {"state", "integer", "of the field afterwards"},
-            {"action", "object", "docs/formats.md, The journal of the window", {{"*", "any", ""}}},
+            {"action", "object", "as the page File formats describes it, The journal of the window", {{"*", "any", ""}}},
             {"data_bytes?", "integer", "larger data"}}}}}}},
       {"recipe",
        1,

@@ -205,7 +205,10 @@ class _Call:
 
 def path_word(value):
     """A path as an argument. A name that would count as something else gets its folder."""
-    path = os.fsdecode(value)
+    try:
+        path = os.fsdecode(value)
+    except TypeError:
+        raise TypeError(f"give a Field or a path, not a value of type {type(value).__name__}") from None
     if not path:
         from ._errors import InputError
 
@@ -221,8 +224,20 @@ def path_word(value):
     return "./" + path if path[0] in "-<" else path
 
 
+_MEANT = {"whole": "a whole number", "number": "a number", "length": "a number, or a text with a unit as '20um'", "size": "(width, height)"}
+
+
 def _word(row, value):
     """One value as typed on the command line."""
+    try:
+        return _typed(row, value)
+    except (TypeError, ValueError, IndexError) as error:
+        if row["kind"] not in _MEANT:
+            raise
+        raise TypeError(f"{identifier(row)}: give {_MEANT[row['kind']]}, not {value!r}") from error
+
+
+def _typed(row, value):
     kind = row["kind"]
     if kind == "whole":
         return str(operator.index(value))

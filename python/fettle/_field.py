@@ -477,10 +477,11 @@ class Field:
         return self
 
     def _repr_png_(self) -> bytes | None:
-        """The shaded picture, for notebooks; None where no device can draw."""
+        """The shaded picture, for notebooks; where no device can draw, None and a warning that says why."""
         try:
             return png_of(self.render(size=(640, 400)))
-        except Error:
+        except Error as error:
+            warnings.warn(f"no picture: {error}", FettleWarning, stacklevel=2)
             return None
 
     # Beside other packages.
