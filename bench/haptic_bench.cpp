@@ -28,6 +28,9 @@ struct HapticCase {
   std::int64_t share;   // runs ticks / share
   double ball_samples;  // radius of the tip; 0 is a point
   int search_rounds = 2048;
+  int ball_searches = haptic::kBallSearches;
+  haptic::BallMinima ball_minima = haptic::BallMinima::kAll;
+  haptic::BallSteps ball_steps = haptic::BallSteps::kInPlan;
 };
 
 constexpr HapticCase kHapticCases[] = {
@@ -37,6 +40,10 @@ constexpr HapticCase kHapticCases[] = {
     {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
     {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
     {"the same, 4 steps per tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
+    {"the same, minima of equal pieces", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 2048,
+     haptic::kBallSearches, haptic::BallMinima::kPieces},
+    {"the same, as before contact revision 4", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0,
+     2048, 64, haptic::BallMinima::kPieces, haptic::BallSteps::kInSpace},
 };
 
 // A field that is difficult for a search of the closest point.
@@ -103,6 +110,9 @@ engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Ve
   haptic::Scene scene = haptic::defaultScene();
   scene.level = test_case.level;
   scene.search_rounds = test_case.search_rounds;
+  scene.ball_searches = test_case.ball_searches;
+  scene.ball_minima = test_case.ball_minima;
+  scene.ball_steps = test_case.ball_steps;
   const double radius_mm = test_case.ball_samples * kSpacingMm;
   if (radius_mm > 0.0) {
     scene.tip = haptic::TipShape::kSphere;

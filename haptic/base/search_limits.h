@@ -10,15 +10,21 @@ namespace fettle::haptic {
 inline constexpr int kMaxCellsVisited = 512;
 inline constexpr int kMaxRounds = 2048;
 
-/// Searches for contacts after which a ball's tick takes no further step: the default, and the largest. A step tries up to
-/// twenty, and without this bound a tick takes up to 128 steps (docs/decisions/ball-tip.md).
-inline constexpr int kBallSearches = 64;
+/// Searches for contacts after which a ball's tick takes no further step: the default, and the largest. Without this bound a
+/// tick takes up to 128 steps (docs/decisions/ball-tip.md).
+inline constexpr int kBallSearches = 20;
 inline constexpr int kMostBallSearches = 4096;
+
+/// In which direction a ball's step has a largest length, a cell at most.
+enum class BallSteps : std::uint8_t {
+  kInSpace,  ///< in every direction: a ball falls a cell per step; before contact revision 4 (scene.h)
+  kInPlan,   ///< horizontally: it falls and rises by any height in one step
+};
 
 /// Which minima of the distance a ball searches for inside a cell.
 enum class BallMinima : std::uint8_t {
   kPieces,  ///< those that equal pieces of a cell show: beside a needle it may enter the material by its radius
-  kAll,  ///< in steep cells, all that pieces in proportion to the scale of the distance show; several times the time there
+  kAll,  ///< in steep cells, all that pieces in proportion to the scale of the distance show; twice the time there
 };
 
 }  // namespace fettle::haptic

@@ -55,36 +55,62 @@ void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valle
 }
 
 // All minima of a cell that is steep(). Pieces are in proportion to the scale of g; where its slope has the same sign at
-// both ends of one and turns between them, the place where it turns decides whether there are two roots.
-void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g) noexcept {
-  double v = 0.0;
-  double before = g.steepSlopeAt(v);
-  double bend_before = g.bend;
-  while (v < 1.0) {
-    const double next = std::min(v + std::min(0.5 * g.scaleAt(v), 1.0 / kTwistPieces), 1.0);
-    const double after = g.steepSlopeAt(next);
-    const double bend_after = g.bend;
-    if (before < 0.0 && after > 0.0) {
-      steepMinimum(i, j, g, v, next);
-    } else if (before < 0.0 ? after < 0.0 && bend_before > 0.0 && bend_after < 0.0
-                            : after > 0.0 && bend_before < 0.0 && bend_after > 0.0) {
-      // A root with a rising slope is before the turn where the slope is below zero at the ends, else behind it.
-      const bool below = before < 0.0;
-      double low = v;
-      double high = next;
-      for (int round = 0; round < 40; ++round) {
-        const double middle = 0.5 * (low + high);
-        const double slope = g.steepSlopeAt(middle);
-        if (below ? slope > 0.0 : slope < 0.0) {
-          steepMinimum(i, j, g, below ? v : middle, below ? middle : next);
-          break;
-        }
-        ((g.bend > 0.0) == below ? low : high) = middle;
-      }
+// both ends of one and turns between them, the place where it turns decides whether there are two roots. Bounded, a cell
+// that holds no minimum within reach is left out and several pieces are looked at at a time: the same bits.
+void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g, SphereSearch search) noexcept {
+  if (search == SphereSearch::kBounded && !g.mayHold(0.0, 1.0, reach2_)) return;
+  constexpr int kPieces = kSphereContactLanes;
+  const Valley::Pieces pieces(g);
+  const SphereContactKernels& kernels = sphereContactKernels();
+  const LaneValley lanes = g.lanes();
+  std::array<double, kPieces> v;
+  std::array<double, kPieces> slope;
+  std::array<double, kPieces> bend;
+  PieceEnd from{0.0, g.steepSlopeAt(0.0), g.bend};
+  while (from.v < 1.0) {
+    int count = 0;
+    for (double at = from.v; count < kPieces && at < 1.0; ++count) {
+      at = pieces.end(at);
+      v[static_cast<std::size_t>(count)] = at;
     }
-    v = next;
-    before = after;
-    bend_before = bend_after;
+    if (search == SphereSearch::kBounded) {
+      std::fill(v.begin() + count, v.end(), 1.0);
+      kernels.steepSlopes(lanes, v.data(), slope.data(), bend.data());
+    }
+    for (int n = 0; n < count; ++n) {
+      const auto k = static_cast<std::size_t>(n);
+      PieceEnd to{v[k], slope[k], bend[k]};
+      if (search == SphereSearch::kCellByCell) {
+        to.slope = g.steepSlopeAt(v[k]);
+        to.bend = g.bend;
+      }
+      steepPiece(i, j, g, from, to);
+      from = to;
+    }
+  }
+}
+
+void SphereWindow::Collector::steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from,
+                                         const PieceEnd& to) noexcept {
+  if (from.slope < 0.0 && to.slope > 0.0) {
+    steepMinimum(i, j, g, from.v, to.v);
+    return;
+  }
+  const bool turns = from.slope < 0.0 ? to.slope < 0.0 && from.bend > 0.0 && to.bend < 0.0
+                                      : to.slope > 0.0 && from.bend < 0.0 && to.bend > 0.0;
+  if (!turns) return;
+  // A root with a rising slope is before the turn where the slope is below zero at the ends, else behind it.
+  const bool below = from.slope < 0.0;
+  double low = from.v;
+  double high = to.v;
+  for (int round = 0; round < 40; ++round) {
+    const double middle = 0.5 * (low + high);
+    const double slope = g.steepSlopeAt(middle);
+    if (below ? slope > 0.0 : slope < 0.0) {
+      steepMinimum(i, j, g, below ? from.v : middle, below ? middle : to.v);
+      return;
+    }
+    ((g.bend > 0.0) == below ? low : high) = middle;
   }
 }
 
@@ -109,7 +135,7 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
   const double bridge = std::abs(g.d) * std::max(0.0, c_.z - high) - p * q;
   if (bridge > 0.0 && bridge * bridge > (sx * sx + p * p) * (sy * sy + q * q)) return;
   if (w_.steep(g.d)) {
-    steep(i, j, g);
+    steep(i, j, g, SphereSearch::kCellByCell);
     return;
   }
   double before = g.slopeAt(0.0);
@@ -275,7 +301,7 @@ void SphereWindow::Collector::twisted(std::int32_t i, std::int32_t j) noexcept {
   const Corners z = w_.corners(i, j);
   if (w_.steep((z.z11 - z.z01) - (z.z10 - z.z00))) {
     Valley g(w_, c_, i, j, z);
-    steep(i, j, g);
+    steep(i, j, g, SphereSearch::kBounded);
     return;
   }
   const LaneWindow window = w_.laneWindow();

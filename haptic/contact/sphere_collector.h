@@ -150,7 +150,12 @@ class SphereWindow::Collector {
   void minimum(std::int32_t i, std::int32_t j, Valley& g, double low, double high, double v) noexcept;
   void keepMinimum(std::int32_t i, std::int32_t j, Valley& g, double v) noexcept;
   void steepMinimum(std::int32_t i, std::int32_t j, Valley& g, double low, double high) noexcept;
-  void steep(std::int32_t i, std::int32_t j, Valley& g) noexcept;
+  void steep(std::int32_t i, std::int32_t j, Valley& g, SphereSearch search) noexcept;
+  struct PieceEnd {
+    double v, slope, bend;
+  };
+  void steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from,
+                  const PieceEnd& to) noexcept;
   void minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept;
   void inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept;
   void twisted(std::int32_t i, std::int32_t j) noexcept;

@@ -13,5 +13,5 @@
 #include "haptic/contact/sphere_lanes_candidates-inl.h"
 
 inline SphereContactKernels kernels() noexcept {
-  return {reached, prepare, find, rises, candidates, insides};
+  return {reached, prepare, find, rises, steepSlopes, candidates, insides};
 }

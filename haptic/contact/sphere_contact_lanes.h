@@ -52,6 +52,11 @@ struct LaneCell {
   std::int16_t i, j;
 };
 
+/// A cell's inside along v, see SphereWindow::Valley, which has the same names.
+struct LaneValley {
+  double b, c, d, ex, ey, w0, sx, sy;
+};
+
 /// A cell and what of it may hold a contact: some of kSampleFeature and the others.
 struct LaneCandidate {
   std::int16_t i, j;
@@ -101,6 +106,9 @@ struct SphereContactKernels {
   /// Bit k: half the slope along v of the least squared distance along u (see SphereWindow) is below zero at
   /// v = k / kTwistPieces and above at (k + 1) / kTwistPieces.
   unsigned (*rises)(const LaneWindow& w, const LaneProbe& ball, LaneCell cell) noexcept;
+  /// Half the slope along v of the least squared distance along u of a steep cell, and its derivative, at
+  /// kSphereContactLanes places.
+  void (*steepSlopes)(const LaneValley& g, const double* v, double* slope, double* bend) noexcept;
   /// All that find() may find, around `ball`'s centre within `room` and with a reach shorter by `room`, in
   /// the cells [i0, i1] x [j0, j1]. False: more than fit.
   bool (*candidates)(const LaneWindow& w, const LaneBounds& bounds, const LaneProbe& ball, double room,

@@ -158,6 +158,22 @@ inline unsigned rises(const LaneWindow& w, const LaneProbe& ball, LaneCell cell)
   return below & over >> 1 & ((1u << kTwistPieces) - 1u);
 }
 
+inline void steepSlopes(const LaneValley& g, const double* v, double* slope, double* bend) noexcept {
+  for (int at = 0; at < kSphereContactLanes; at += kWidth) {
+    Lanes where;
+    load(where, v + at);
+    const Lanes p = g.b + g.d * where;
+    const Lanes w = g.w0 + g.c * where;
+    const Lanes uu = g.sx * g.sx + p * p;
+    const Lanes u = (g.sx * g.ex - w * p) / uu;
+    const Lanes height = g.sx * (g.sx * w + g.ex * p) / uu;
+    const Lanes q = g.c + g.d * u;
+    const Lanes uv = p * q + height * g.d;
+    store(bend + at, g.sy * g.sy + q * q - uv * uv / uu);
+    store(slope + at, g.sy * (g.sy * where - g.ey) + height * q);
+  }
+}
+
 inline void insides(const LaneCandidates& some, int from, double sx, double sy, const LaneProbe& ball,
                     LaneFinds& out) noexcept {
   out.inside.found = out.twisted = 0;

@@ -17,9 +17,25 @@ constexpr double kRest = 1e-4;
 constexpr double kRoomSteps = 2.0;
 // Searches within so many steps of each other share what the window gathers; 0.05 and 0.15 cost as much.
 constexpr double kNearSteps = 0.1;
-// A step is tried again with the contacts it met, and finally shorter.
+// BallSteps::kInSpace: a step is tried again with the contacts it met, and finally shorter.
 constexpr int kCutRounds = 6;
 constexpr int kHalvings = 12;
+// BallSteps::kInPlan: before the third time it may end on top of what is in its way, at its end or at half of it; finally it
+// becomes shorter by quarters.
+constexpr int kCutRoundsBeforeDrop = 2;
+constexpr int kQuarterings = 6;
+constexpr int kDrops = 2;
+// Heights tried where a ball is put on top of what is in its way.
+constexpr int kDropHeights = 2;
+constexpr int kLiftHeights = 6;
+// What a search counts for among steep cells, all of whose minima are searched for.
+constexpr int kSteepSearch = 2;
+// Curvature along a step at least, of that of a plane seen from the endpoint: where the way bends downwards, Newton's step is
+// at most ten times as long as the plain one.
+constexpr double kLeastStiffness = 0.1;
+// A tick in plan also ends where the next step would be shorter than so many rests, if it were as much shorter than the last
+// one as that is than the one before; Newton's becomes shorter faster.
+constexpr double kNextRests = 10.0;
 
 double smallerSpacing(const engine::Grid& grid) noexcept {
   return std::min(grid.spacingXMm(), grid.spacingYMm());
@@ -39,8 +55,9 @@ std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& g
 }
 
 SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps, SphereSearch search,
-                             int most_searches, BallMinima minima) noexcept
-    : most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
+                             int most_searches, BallMinima minima, BallSteps steps) noexcept
+    : plan_(steps == BallSteps::kInPlan),
+      most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
       most_searches_(std::clamp(most_searches, 0, kMostBallSearches)),
       search_(search),
       window_(minima) {
@@ -88,9 +105,9 @@ bool SphereTracker::clearOfAll(const Surface& surface, const glm::dvec3& a,
 
 void SphereTracker::findContacts(const Surface& surface, const glm::dvec3& centre,
                                  SphereContactList& out) noexcept {
-  ++searches_;
   const double reach = radius_ + slack_;
   if (!window_.holds(centre)) window_.load(surface, centre, reach, kRoomSteps * step_);
+  searches_ += plan_ && window_.hasSteepCells() ? kSteepSearch : 1;
   // Below the surface there are no contacts to look for: the ball is lifted.
   out.below = window_.heightUnder(centre) > centre.z;
   if (out.below) {
@@ -113,8 +130,20 @@ void SphereTracker::discardEdited(const Surface& surface) noexcept {
   list_centres_.fill(glm::dvec3(NAN));
 }
 
-// Moves the centre straight up out of the material: the material grown by the ball is all below one height,
-// so that bisection finds it. Ends less than the tolerance above it.
+// How far a centre must rise for what it reaches into there, by planes.
+double SphereTracker::riseOutOf(const SphereContactList& there, const glm::dvec3& centre) const noexcept {
+  double rise = there.below ? window_.heightUnder(centre) - centre.z + 0.5 * radius_ : 0.0;
+  for (int k = 0; k < there.count; ++k) {
+    const SphereContact& t = there.contacts[static_cast<std::size_t>(k)];
+    if (t.distance_mm < radius_ && t.normal.z > 0.0)
+      rise = std::max(rise, (radius_ - t.distance_mm) / t.normal.z);
+  }
+  return rise;
+}
+
+// Moves the centre straight up out of the material: the material grown by the ball is all below one height.
+// In space by bisection, which ends less than the tolerance above it. In plan, where a step may fall from any height, on top of
+// the samples and then out of what lies between them; if that is not found soon, above all of the window.
 void SphereTracker::lift(const Surface& surface) noexcept {
   SphereContactList& near = lists_[here_];
   const auto isFree = [&](double z) {
@@ -122,6 +151,20 @@ void SphereTracker::lift(const Surface& surface) noexcept {
     return !near.below && near.nearest_mm >= radius_;
   };
   if (isFree(centre_.z)) return;
+  if (plan_) {
+    const double top = std::max(centre_.z, window_.highest()) + 1.001 * radius_;
+    const double past = 0.5 * toleranceMm(std::max(std::abs(centre_.z), std::abs(top)));
+    for (int i = 0; i < kLiftHeights; ++i) {
+      const double z = i == 0 ? std::max(centre_.z, window_.overSamples(centre_, radius_))
+                              : centre_.z + riseOutOf(near, centre_);
+      centre_.z = z + past;
+      if (!(centre_.z < top)) break;
+      if (isFree(centre_.z)) return;
+    }
+    centre_.z = top;
+    findContacts(surface, centre_, near);
+    return;
+  }
   double low = centre_.z;
   double high = std::max(low, window_.highest()) + 1.001 * radius_;
   const double enough = 0.5 * toleranceMm(std::max(std::abs(low), std::abs(high)));
@@ -197,8 +240,8 @@ glm::dvec3 SphereTracker::slideOf(const Projection& step) const noexcept {
 // The step with the active contacts taken as curved, as they are: along it Newton's step for the distance to
 // the endpoint (the second derivative of the Lagrangian function; Nocedal and Wright 2006, "Numerical
 // Optimization", section 18.1), out of it by what the curve rises on the way. False when it equals the plain
-// step or there is no minimum in that direction.
-bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, int seen,
+// step or, in space, there is no minimum in that direction.
+bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, int seen, double longest,
                              glm::dvec3& out) const noexcept {
   if (step.count < 1 || step.count > 2) return false;
   const double long2 = length2(slide);
@@ -217,7 +260,8 @@ bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, in
   if (step.count == 2) {
     const double bend0 = window_.bend(centre_, touch(0), a, a);
     const double bend1 = window_.bend(centre_, touch(1), a, a);
-    const double stiff = 1.0 - step.share[0] * bend0 - step.share[1] * bend1;
+    double stiff = 1.0 - step.share[0] * bend0 - step.share[1] * bend1;
+    if (plan_) stiff = std::max(stiff, kLeastStiffness);
     if (!(stiff > 0.05)) return false;
     along = slide / stiff;
     rise[0] = -0.5 * bend0 * length2(along);
@@ -237,9 +281,17 @@ bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, in
   const double m01 = -step.share[0] * ab;
   const double m11 = 1.0 - step.share[0] * bb;
   const double det = m00 * m11 - m01 * m01;
-  if (!(m00 > 0.05 && m11 > 0.05 && det > 0.05 * 0.05)) return false;
-  const double sa = std::sqrt(long2) * m11 / det;
-  const double sb = -std::sqrt(long2) * m01 / det;
+  double sa = std::sqrt(long2);
+  double sb = 0.0;
+  if (m00 > 0.05 && m11 > 0.05 && det > 0.05 * 0.05) {
+    sb = -sa * m01 / det;
+    sa = sa * m11 / det;
+  } else if (plan_) {
+    // No minimum: along the slide alone, farther than the plain step.
+    sa = std::min(sa / std::max(m00, kLeastStiffness), 0.9 * longest / std::hypot(a.x, a.y));
+  } else {
+    return false;
+  }
   along = sa * a + sb * b;
   out = step.y - slide + along - 0.5 * (sa * sa * aa + 2.0 * sa * sb * ab + sb * sb * bb) * normal(0);
   return true;
@@ -269,7 +321,9 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   glm::dvec3 last{0.0};  // the step before
   double longest = step_;
   Arrival arrival = Arrival::kBound;
-  const int last_search = most_searches_ > 0 ? searches_ + most_searches_ : std::numeric_limits<int>::max();
+  const int last_search =
+      most_searches_ > 0 ? (plan_ ? 0 : searches_) + most_searches_ : std::numeric_limits<int>::max();
+  const auto limited = [this](const glm::dvec3& a) { return plan_ ? glm::dvec3(a.x, a.y, 0.0) : a; };
   for (; steps < most_steps_ && searches_ < last_search && arrival == Arrival::kBound; ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
     made_from = here_;
@@ -292,44 +346,76 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       centre_ = to;
       return true;
     };
+    // Whether it is no farther from the endpoint but for what moves it out of the material again.
+    const bool inside = lists_[here_].nearest_mm < radius_ - tolerance;
+    const double farthest = glm::length(goal) + tolerance;
+    const auto nearer = [&](const glm::dvec3& to) {
+      return inside || length2(endpoint - to) <= farthest * farthest;
+    };
+    // In plan a step may end at its bound, but for the first, which makes sure that a ball arrives.
+    const auto spent = [&] { return plan_ && steps > 0 && searches_ >= last_search; };
     double part = 1.0;
+    bool dropped = false;
     double bent_length2 = -1.0;  // squared length of a bent step that was taken
     bool moved = false;
     glm::dvec3 slide{0.0};
-    for (int round = 0; round < kCutRounds + kHalvings && !moved; ++round) {
+    // On top of what is in its way: the free space has no ceiling.
+    const auto drops = [&] {
+      double length = part;
+      for (int drop = 0; drop < kDrops; ++drop, length *= 0.5) {
+        glm::dvec3 to = centre_ + length * step.y;
+        for (int i = 0; i < kDropHeights && !spent(); ++i) {
+          to.z = (i == 0 ? std::max(to.z, window_.overSamples(to, radius_)) : to.z + riseOutOf(there, to)) +
+                 0.5 * tolerance;
+          if (!nearer(to)) break;
+          if (tryOut(to)) return true;
+        }
+      }
+      return false;
+    };
+    const int rounds = kCutRounds + (plan_ ? kQuarterings : kHalvings);
+    for (int round = 0; round < rounds && !moved && !spent(); ++round) {
+      if (plan_ && round == kCutRoundsBeforeDrop) {
+        dropped = moved = drops();
+        if (moved || spent()) break;
+      }
       if (round < kCutRounds) {
         step = projectOnHalfSpaces(goal, half_spaces_.data(), seen + cuts, 0.01 * tolerance);
         if (!step.solved) break;
-        const double far = glm::length(step.y);
-        const double back = glm::dot(step.y, last);
+        const double far = glm::length(limited(step.y));
+        const double back = glm::dot(limited(step.y), limited(last));
         if (round == 0) {
           // The step reverses the last one, as in a bowl narrower than the press is deep, where each step is
           // too long: half of the last length, then slowly more again, so that steps shrink for any
           // curvature.
-          const double came = glm::length(last);
+          const double came = glm::length(limited(last));
           longest = back < 0.0 && -2.0 * back > far * came ? 0.5 * came : std::min(step_, 1.3 * longest);
         }
         part = far > longest ? longest / far : 1.0;
         slide = slideOf(step);
         glm::dvec3 bent;
-        if (round == 0 && bentStep(step, slide, seen, bent) && length2(bent) <= longest * longest) {
-          const auto nearer = [&] { return length2(goal - bent) < length2(goal); };
-          if (nearer()) {
+        if (round == 0 && bentStep(step, slide, seen, longest, bent) &&
+            length2(limited(bent)) <= longest * longest) {
+          const auto shortens = [&] { return length2(goal - bent) < length2(goal); };
+          if (shortens()) {
             moved = tryOut(centre_ + bent);
-            if (!moved && liftedOut(there, bent) && nearer()) moved = tryOut(centre_ + bent);
+            if (!moved && !spent() && liftedOut(there, bent) && shortens()) moved = tryOut(centre_ + bent);
           }
           bent_length2 = length2(bent);
           if (moved) break;
           bent_length2 = -1.0;
+          if (spent()) break;
           takeHalfSpaces();
         }
       } else {
-        part *= 0.5;
+        part *= plan_ ? 0.25 : 0.5;
       }
       const glm::dvec3 to = centre_ + part * step.y;
+      if (plan_ && !nearer(to)) break;
       moved = tryOut(to);
       if (!moved && round < kCutRounds - 1) cuts = addCuts(to, there, tolerance, seen, cuts);
     }
+    if (!moved && spent()) break;
     if (!moved) {
       // No step left apart from rounding: the ball stays where it is.
       counters.search_bound_hits += step.solved ? 0 : 1;
@@ -337,14 +423,17 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       break;
     }
     here_ = 1 - here_;
+    const double before = glm::length(last);
+    last = centre_ - start;
+    if (dropped) continue;
     const double length_2 = bent_length2 >= 0.0 ? bent_length2 : part * part * length2(step.y);
+    const bool newtons = bent_length2 >= 0.0 || (step.count == 3 && part == 1.0);
     if (step.count == 0 && part == 1.0)
       arrival = Arrival::kFree;
-    else if (length_2 <= rest * rest)
+    else if (length_2 <= rest * rest || (plan_ && newtons && length_2 <= kNextRests * rest * before))
       arrival = Arrival::kTouching;
     else if (length_2 > 0.01 * step_ * step_)
       cuts = 0;
-    last = centre_ - start;
   }
   counters.longest_search = std::max<std::int64_t>(counters.longest_search, steps);
   counters.search_bound_hits += arrival == Arrival::kBound ? 1 : 0;

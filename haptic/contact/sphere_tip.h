@@ -24,12 +24,6 @@ inline constexpr double kMostSphereCells = 16.0;
 /// Steps of one tick, at most.
 inline constexpr int kSphereSteps = 128;
 
-/// How contacts are searched for: the same bits both ways.
-enum class SphereSearch : std::uint8_t {
-  kBounded,     ///< by bounds of cells, and among what was gathered around an earlier search
-  kCellByCell,  ///< every cell near, one after the other: what tests compare with
-};
-
 /// Why a ball of this radius cannot feel a field of this grid; nothing when it can.
 [[nodiscard]] std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& grid);
 
@@ -63,6 +57,17 @@ enum class SphereSearch : std::uint8_t {
 /// another hollow needs a few ticks for it, and one that is moved through free space faster than that lags behind. On
 /// its way, where nothing holds it, it touches when a ball at the endpoint would: so a tip at rest keeps its contact.
 ///
+/// BallSteps::kInPlan. Since M is all at or below H, a step from one free centre to another may be taken as one in
+/// plan at the greater height and one straight down, and only the first can step over anything. So a step is
+/// limited in plan alone, and a ball falls down a wall or a needle of any height at once. What is in its way twice, it
+/// ends on top of. A ball that is placed is lifted on top of the samples and out of what lies between them; if it
+/// ends too high, it falls. Where the distance bends downwards along the way, so that Newton's step has no minimum,
+/// it is ten times as long as the plain one at most. The tick also ends where the next step would be
+/// shorter than ten rests by the ratio of the last two. The bound of searches ends a step as well, but
+/// for the first of a tick; a search among steep cells (BallMinima::kAll) counts as two.
+/// BallSteps::kInSpace is the walk of before contact revision 4: no step is longer than a cell in any direction, a ball that is
+/// placed is lifted by halvings.
+///
 /// The samples around the ball, and the contacts where it rests, are kept from tick to tick until the surface
 /// is refreshed.
 ///
@@ -72,10 +77,10 @@ enum class SphereSearch : std::uint8_t {
 /// Optimization", section 18.1 (Newton's step under constraints).
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
-/// spacing, plus roundings of the heights; beside a needle of slope 1e6, whose valley no piece of a cell resolves, by up to
-/// its radius; with BallMinima::kAll not beside needles up to 2e4 times as high as a cell is wide. Where it reached in and is pushed out, a tick may end farther from the endpoint than the one before, by the
-/// tolerance times sqrt(1 + slope^2). At rest no step longer than 1e-4 of that size makes it nearer.
-/// Continuity: steps are between a quarter of a cell and a cell, and both ends are free of
+/// spacing, plus roundings of the heights; beside a needle of slope 1e6, whose valley rounding hides, by up to
+/// its radius; with BallMinima::kPieces beside needles from 200 times as high as a cell is wide. Where it reached in and is pushed out, a tick may end farther from the endpoint than the one before, by the
+/// tolerance times sqrt(1 + slope^2). At rest no step longer than 1e-4 of that size makes it nearer; in plan, 1e-3 in a tick
+/// that moved it. Continuity: steps are at most between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
 /// step s: 1/16 of a cell for r = 2 cells. A hand that moves more steps in one tick than a tick may take or search is
 /// placed again, lifted out vertically, as at the first tick; so is a centre that an edit left inside the
@@ -92,10 +97,11 @@ class SphereTracker {
  public:
   /// `radius_mm` > 0; over kMostSphereCells cells it is clamped to that (sphereProblem reports it before).
   /// `most_steps`, 1 .. kSphereSteps, of a tick. `most_searches`, 1 .. kMostBallSearches, after which no step begins;
-  /// 0: no such bound, and a ball on its way counts as touching, as before contact revision 3 (scene.h).
+  /// 0: no such bound, and a ball on its way counts as touching, as before contact revision 3 (scene.h). In plan fewer than some
+  /// 25 do not shorten a tick whose first step needs them.
   SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps,
                 SphereSearch search = SphereSearch::kBounded, int most_searches = kBallSearches,
-                BallMinima minima = BallMinima::kPieces) noexcept;
+                BallMinima minima = BallMinima::kAll, BallSteps steps = BallSteps::kInPlan) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().
@@ -111,7 +117,7 @@ class SphereTracker {
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
   /// The contact that carries most of the force, while touching: contact.proxy with its normal.
   [[nodiscard]] const SphereContact& pressed() const noexcept { return pressed_; }
-  /// Searches for contacts in the last tick: what its time is proportional to.
+  /// Searches for contacts in the last tick: what its time is proportional to. In plan one among steep cells counts as two.
   [[nodiscard]] int searches() const noexcept { return searches_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
 
@@ -122,13 +128,14 @@ class SphereTracker {
                                 const glm::dvec3& b) const noexcept;
   void findContacts(const Surface& surface, const glm::dvec3& centre, SphereContactList& out) noexcept;
   void discardEdited(const Surface& surface) noexcept;
+  [[nodiscard]] double riseOutOf(const SphereContactList& there, const glm::dvec3& centre) const noexcept;
   void lift(const Surface& surface) noexcept;
   [[nodiscard]] HalfSpace cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept;
   [[nodiscard]] int halfSpacesAt(const SphereContactList& near) noexcept;
   [[nodiscard]] int addCuts(const glm::dvec3& to, SphereContactList& there, double tolerance, int seen,
                             int cuts) noexcept;
   [[nodiscard]] glm::dvec3 slideOf(const Projection& step) const noexcept;
-  [[nodiscard]] bool bentStep(const Projection& step, const glm::dvec3& slide, int seen,
+  [[nodiscard]] bool bentStep(const Projection& step, const glm::dvec3& slide, int seen, double longest,
                               glm::dvec3& out) const noexcept;
   [[nodiscard]] bool liftedOut(const SphereContactList& there, glm::dvec3& step) noexcept;
   [[nodiscard]] Arrival walk(const Surface& surface, const glm::dvec3& endpoint,
@@ -136,6 +143,7 @@ class SphereTracker {
 
   static constexpr int kMostCuts = 16;
 
+  bool plan_;  // whether steps are limited in plan alone
   int most_steps_;
   int most_searches_;
   SphereSearch search_;

@@ -58,12 +58,14 @@ class SphereWindow::Valley {
     return sy * (sy * v - ey) + height * q;
   }
 
+  [[nodiscard]] bool mayHold(int piece, double reach2) const noexcept {
+    return mayHold(static_cast<double>(piece) / kTwistPieces, (piece + 1.0) / kTwistPieces, reach2);
+  }
+
   // Whether a piece may hold a minimum nearer than the reach. u (sx^2 + p^2) = sx ex - w p, where p and w are
   // linear along v: from their ends a range of u, from that a range of heights, all wider than any rounding.
-  [[nodiscard]] bool mayHold(int piece, double reach2) const noexcept {
+  [[nodiscard]] bool mayHold(double v0, double v1, double reach2) const noexcept {
     constexpr double kWider = 1e-9;
-    const double v0 = static_cast<double>(piece) / kTwistPieces;
-    const double v1 = (piece + 1.0) / kTwistPieces;
     const double p0 = b + d * v0;
     const double p1 = b + d * v1;
     const double h0 = w0 + c * v0;
@@ -96,6 +98,27 @@ class SphereWindow::Valley {
     const double to_w = c != 0.0 ? std::abs(v + w0 / c) : 1.0;
     return std::max(std::min(to_p, to_w), least);
   }
+
+  // Where a piece of a steep cell ends that begins at v < 1: at least some roundings of v farther, for any twist.
+  class Pieces {
+   public:
+    explicit Pieces(const Valley& g) noexcept
+        : least_(0.5 * std::min(g.sx, g.sy) / std::abs(g.d)),
+          p_(g.b / g.d),
+          w_(g.c != 0.0 ? g.w0 / g.c : HUGE_VAL) {}
+    [[nodiscard]] double end(double v) const noexcept {
+      constexpr double kLeast = 4e-16;
+      const double to_p = std::abs(v + p_);
+      const double to_w = std::min(std::abs(v + w_), 1.0);
+      const double scale = std::max(std::min(to_p, to_w), least_);
+      return std::min(v + std::max(std::min(0.5 * scale, 1.0 / kTwistPieces), kLeast), 1.0);
+    }
+
+   private:
+    double least_, p_, w_;
+  };
+
+  [[nodiscard]] LaneValley lanes() const noexcept { return {b, c, d, ex, ey, w0, sx, sy}; }
 
   double sx, sy, b, c, d, ex, ey, w0;
   double u = 0.0, height = 0.0, bend = 0.0;

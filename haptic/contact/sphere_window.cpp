@@ -64,6 +64,18 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   boundable_ = std::max(highest, -lowest) <= 1e8 * std::min(sx_, sy_);
   sphereContactKernels().prepare(laneWindow(), rows_, boundable_ ? 0.0 : HUGE_VAL, bounds_);
   markRims();
+  has_steep_cells_ = findSteepCells(lowest);
+}
+
+bool SphereWindow::findSteepCells(double lowest_mm) const noexcept {
+  // Twice the range of heights is the largest twist.
+  if (!steep(2.0 * (highest_ - lowest_mm))) return false;
+  for (std::int32_t j = 0; j + 1 < rows_; ++j)
+    for (std::int32_t i = 0; i + 1 < columns_; ++i) {
+      const Corners z = corners(i, j);
+      if (steep((z.z11 - z.z01) - (z.z10 - z.z00))) return true;
+    }
+  return false;
 }
 
 // Cells that the lanes cannot look at.
@@ -138,6 +150,23 @@ double SphereWindow::heightUnder(const glm::dvec3& at) const noexcept {
   }
   SphereContact point;
   return under(at, point) ? point.point_mm.z : -HUGE_VAL;
+}
+
+double SphereWindow::overSamples(const glm::dvec3& at, double radius_mm) const noexcept {
+  const Box box = boxAround(at, radius_mm);
+  double most = -HUGE_VAL;
+  for (std::int32_t j = box.j0; j <= box.j1 + 1; ++j) {
+    const double dy = at.y - (row_ + j) * sy_;
+    const double left = radius_mm * radius_mm - dy * dy;
+    const double* z = z_.data() + j * columns_;
+    for (std::int32_t i = box.i0; i <= box.i1 + 1; ++i) {
+      const double dx = at.x - (column_ + i) * sx_;
+      const double up2 = left - dx * dx;
+      const double lack = std::max(most - z[i], 0.0);
+      if (up2 > lack * lack) most = std::max(most, z[i] + std::sqrt(up2));
+    }
+  }
+  return most;
 }
 
 // The squared distance to the nearest of S(u, v), halved, has the second derivative I - J H^-1 J^T (the foot

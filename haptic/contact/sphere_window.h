@@ -45,6 +45,12 @@ struct SphereContactList {
   bool below = false;
 };
 
+/// How contacts are searched for: the same bits both ways.
+enum class SphereSearch : std::uint8_t {
+  kBounded,     ///< by bounds of cells, and among what was gathered around an earlier search
+  kCellByCell,  ///< every cell near, one after the other: what tests compare with
+};
+
 /// A copy of the samples around a ball, in millimetres.
 ///
 /// Threading: one thread; nothing allocates, locks or throws. About 135 kB, of which a ball of two cells uses 15.
@@ -87,6 +93,10 @@ class SphereWindow {
   /// two directions perpendicular to the line to the point; 0 for a plane, 1 / distance for a sample.
   [[nodiscard]] double bend(const glm::dvec3& centre, const SphereContact& touch, const glm::dvec3& a,
                             const glm::dvec3& b) const noexcept;
+  /// Whether cells are so steep that their minima are searched for one by one; none with BallMinima::kPieces.
+  [[nodiscard]] bool hasSteepCells() const noexcept { return has_steep_cells_; }
+  /// The lowest height of a centre at (x, y) of `at` from which a ball reaches no sample within it; -HUGE_VAL: none near.
+  [[nodiscard]] double overSamples(const glm::dvec3& at, double radius_mm) const noexcept;
   /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
   [[nodiscard]] double highest() const noexcept { return highest_; }
 
@@ -111,6 +121,7 @@ class SphereWindow {
     return minima_ == BallMinima::kAll && std::abs(twist) > kTwistPieces * std::min(sx_, sy_);
   }
   void markRims() noexcept;
+  [[nodiscard]] bool findSteepCells(double lowest_mm) const noexcept;
   void gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
   class Collector;
   class Valley;
@@ -125,6 +136,7 @@ class SphereWindow {
   double highest_ = 0.0;
   bool whole_ = false;  // no NaN in it
   bool boundable_ = false;
+  bool has_steep_cells_ = false;
   LaneBounds bounds_;
   bool gathered_ = false;  // whether candidates_ are those around gathered_at_
   bool reused_ = true;     // whether the last that were gathered were used twice

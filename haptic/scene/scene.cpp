@@ -32,6 +32,7 @@ std::string rangeOf(const EffectNumber& number) {
 constexpr std::array<std::string_view, 3> kLevelNames = {"paper", "descent", "certified"};
 
 constexpr std::array<std::string_view, 2> kMinimaNames = {"pieces", "all"};  // as in BallMinima
+constexpr std::array<std::string_view, 2> kStepsNames = {"space", "plan"};   // as in BallSteps
 
 constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
 
@@ -182,6 +183,8 @@ class SceneReader {
         if (!problem_) scene_.ball_searches = static_cast<int>(searches);
       } else if (key == "ball_minima") {
         if (const auto i = word(value, key, kMinimaNames)) scene_.ball_minima = static_cast<BallMinima>(*i);
+      } else if (key == "ball_steps") {
+        if (const auto i = word(value, key, kStepsNames)) scene_.ball_steps = static_cast<BallSteps>(*i);
       } else {
         return false;
       }
@@ -298,7 +301,12 @@ engine::Result<Scene> parseScene(const std::string& text, const std::string& nam
     return engine::inputError(fmt::format("contact revision {} is unknown", contact_revision), name,
                               "open it with the version of the program that wrote it");
   Scene scene = defaultScene();
-  if (contact_revision < 3) scene.ball_searches = 0;
+  if (contact_revision < 4) {
+    constexpr int kThen = 64;
+    scene.ball_searches = contact_revision < 3 ? 0 : kThen;
+    scene.ball_minima = BallMinima::kPieces;
+    scene.ball_steps = BallSteps::kInSpace;
+  }
   try {
     const toml::table file = toml::parse(text, name);
     const SceneReader reader(scene, file, contact_revision);
@@ -330,14 +338,15 @@ std::string sceneText(const Scene& scene) {
   std::string text = fmt::format(
       "tip = \"{}\"\ntip_radius_mm = {}\ninvert = {}\neffects = [{}{}{}]\n"
       "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\nsearch_rounds = {}\nball_searches = {}\n"
-      "ball_minima = \"{}\"\n"
+      "ball_minima = \"{}\"\nball_steps = \"{}\"\n"
       "[force]\nstiffness_n_per_mm = {}\nlimit_n = {}\n"
       "[brush]\nradius_samples = {}\nmark_radius_samples = {}\n",
       scene.tip == TipShape::kSphere ? "sphere" : "point", scene.tip_radius_mm, scene.invert,
       effects.empty() ? "" : "\"", fmt::join(effects, "\", \""), effects.empty() ? "" : "\"",
       levelName(scene.level), scene.certified_radius_cells, scene.search_rounds, scene.ball_searches,
-      kMinimaNames[static_cast<std::size_t>(scene.ball_minima)], scene.stiffness_n_per_mm,
-      scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
+      kMinimaNames[static_cast<std::size_t>(scene.ball_minima)],
+      kStepsNames[static_cast<std::size_t>(scene.ball_steps)], scene.stiffness_n_per_mm, scene.force_limit_n,
+      scene.brush_radius_samples, scene.mark_radius_samples);
   if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
   EffectParams params = scene.params;
   std::string_view table;

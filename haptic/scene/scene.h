@@ -56,7 +56,9 @@ struct Scene {
   /// to 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
   int ball_searches = kBallSearches;
   /// A ball: which minima it searches for inside cells.
-  BallMinima ball_minima = BallMinima::kPieces;
+  BallMinima ball_minima = BallMinima::kAll;
+  /// A ball: in which direction a step has a largest length.
+  BallSteps ball_steps = BallSteps::kInPlan;
 
   /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
   double stiffness_n_per_mm = 1.0;
@@ -104,8 +106,8 @@ struct Scene {
 [[nodiscard]] engine::Result<Scene> loadSceneOrDefault(const std::string& path);
 /// What the words of a scene's [contact] mean, stored beside scenes whose ticks are replayed later (journal, session).
 /// 1, and where none is stored: the level "paper" is the search that is called "descent" since 2. Below 3: a ball's searches
-/// are not bounded.
-inline constexpr int kContactRevision = 3;
+/// are not bounded. Below 4: a ball falls a cell per step, its minima are those of equal pieces, 64 searches are the default.
+inline constexpr int kContactRevision = 4;
 /// The same from a text that calls itself `name` in errors. `contact_revision`, 1 .. kContactRevision: of the program
 /// that wrote the text; errors: a newer one.
 [[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name,

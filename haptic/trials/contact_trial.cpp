@@ -147,6 +147,9 @@ haptic::Scene ContactChoice::in(haptic::Scene scene, const engine::Grid& grid) c
   if (ball_radius_cells > 0.0) {
     scene.tip_radius_mm = ball_radius_cells * cellMm(grid);
     scene.search_rounds = search_rounds;
+    scene.ball_searches = ball_searches;
+    scene.ball_minima = ball_minima;
+    scene.ball_steps = ball_steps;
     return scene;
   }
   scene.level = level;

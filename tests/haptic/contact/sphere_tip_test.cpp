@@ -87,7 +87,8 @@ TEST(SphereTip, TiltedPlaneInAnisotropicMillimetresPushesAlongItsNormal) {
   const Contact c = ball.settle(e.x, e.y, e.z);
   ASSERT_TRUE(c.touching);
   EXPECT_NEAR(glm::length(c.penetration_mm - 0.9 * normal), 0.0, 1e-4);
-  EXPECT_NEAR(glm::length(ball.tracker.pressed().normal - normal), 0.0, 1e-9);
+  // Feet are found to 1e-6 of a cell of 2 mm, seen from 1.2 mm.
+  EXPECT_NEAR(glm::length(ball.tracker.pressed().normal - normal), 0.0, 2e-6 * 2.0 / 1.2);
 }
 
 TEST(SphereTip, VGrooveHoldsItOnBothWallsAtTheKnownHeight) {

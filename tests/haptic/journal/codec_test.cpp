@@ -210,10 +210,31 @@ TEST(Journal, ABallHasNoBoundOfItsSearchesWhereThereWasNoneWhenItWasWritten) {
   EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"scene":"tip = \"sphere\""})"), 0);
   EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"contact":2,"scene":"tip = \"sphere\""})"), 0);
   EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"contact":3,"scene":"tip = \"sphere\""})"), 64);
+  EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"contact":4,"scene":"tip = \"sphere\""})"),
+            haptic::kBallSearches);
   // Written again by this version, it still has none.
   haptic::Scene scene;
   scene.ball_searches = 0;
   EXPECT_EQ(haptic::parseScene(haptic::sceneText(scene), "again")->ball_searches, 0);
+}
+
+TEST(Journal, ABallTakesTheStepsAndMinimaThatItHadWhenItWasWritten) {
+  const auto sceneOf = [](const char* text) {
+    const auto entry = haptic::journalEntry(text);
+    EXPECT_TRUE(entry) << text;
+    return entry ? std::get<haptic::journal::Begin>(*entry).scene : haptic::Scene{};
+  };
+  for (const char* before : {R"({"do":"begin","state":0,"scene":"tip = \"sphere\""})",
+                             R"({"do":"begin","state":0,"contact":3,"scene":"tip = \"sphere\""})"}) {
+    const haptic::Scene scene = sceneOf(before);
+    EXPECT_EQ(scene.ball_steps, haptic::BallSteps::kInSpace);
+    EXPECT_EQ(scene.ball_minima, haptic::BallMinima::kPieces);
+    // Written again by this version, it still has them.
+    EXPECT_EQ(*haptic::parseScene(haptic::sceneText(scene), "again"), scene);
+  }
+  const haptic::Scene now = sceneOf(R"({"do":"begin","state":0,"contact":4,"scene":"tip = \"sphere\""})");
+  EXPECT_EQ(now.ball_steps, haptic::BallSteps::kInPlan);
+  EXPECT_EQ(now.ball_minima, haptic::BallMinima::kAll);
 }
 
 // Recorded on 2026-11-23 with a mouse, before "paper" named another search: two strokes that smooth, the second with
@@ -241,7 +262,7 @@ TEST(Journal, WhatIsNoEntryIsRefusedByName) {
   for (const char* text :
        {"", "{", "[]", "{}", R"({"do":"dance"})", R"({"do":"ticks"})", R"({"do":"ticks","count":"x"})",
         R"({"do":"filter","id":1,"filter":"blur","window":3,"passes":1,"marks":"keep"})",
-        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":4})",
+        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":5})",
         R"({"do":"begin","state":0,"scene":"","contact":0})", R"({"do":7})", "3"}) {
     const auto entry = haptic::journalEntry(text);
     ASSERT_FALSE(entry) << text;

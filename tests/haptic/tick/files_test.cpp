@@ -137,6 +137,7 @@ TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
                            "contact = { ball_searches = 4097 }",
                            "contact = { ball_searches = 1.5 }",
                            "contact = { ball_minima = \"some\" }",
+                           "contact = { ball_steps = \"level\" }",
                            "contact = { search_rounds = 5 }",
                            "contact = { level = \"paper\", search_rounds = 2047 }",
                            "contact = { level = \"best\" }",
