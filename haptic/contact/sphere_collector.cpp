@@ -298,19 +298,12 @@ void SphereWindow::Collector::candidates(const LaneCandidates& some) noexcept {
 
 // A cell that may have several minima inside.
 void SphereWindow::Collector::twisted(std::int32_t i, std::int32_t j) noexcept {
-  const Corners z = w_.corners(i, j);
-  if (w_.steep((z.z11 - z.z01) - (z.z10 - z.z00))) {
-    Valley g(w_, c_, i, j, z);
+  Valley g(w_, c_, i, j, w_.corners(i, j));
+  if (w_.steep(g.d)) {
     steep(i, j, g, SphereSearch::kBounded);
     return;
   }
-  const LaneWindow window = w_.laneWindow();
-  const LaneProbe ball = laneProbe(c_, reach_, w_.sx_, w_.sy_);
-  const LaneCell cell{static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)};
-  unsigned rises = sphereContactKernels().rises(window, ball, cell);
-  if (rises == 0) return;
-  Valley g(w_, c_, i, j, z);
-  for (; rises != 0; rises &= rises - 1)
+  for (unsigned rises = sphereContactKernels().rises(g.lanes()); rises != 0; rises &= rises - 1)
     if (g.mayHold(std::countr_zero(rises), reach2_)) minimumOfPiece(i, j, g, std::countr_zero(rises));
 }
 

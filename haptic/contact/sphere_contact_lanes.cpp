@@ -4,13 +4,23 @@
 #include "haptic/contact/sphere_contact_lanes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "engine/simd/kernel.h"
 
 namespace fettle::haptic {
 
 namespace {
+
+// k / kTwistPieces, and beyond 1 for the lanes of the last.
+constexpr auto kPieceEnds = [] {
+  std::array<double, kTwistPieces + kSphereContactLanes> ends{};
+  for (int k = 0; k < kTwistPieces + kSphereContactLanes; ++k)
+    ends[static_cast<std::size_t>(k)] = static_cast<double>(k) / kTwistPieces;
+  return ends;
+}();
 
 #define FETTLE_KERNEL "haptic/contact/sphere_contact_lanes-inl.h"
 #include "engine/simd/each_cpu-inl.h"

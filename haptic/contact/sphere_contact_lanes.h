@@ -105,7 +105,7 @@ struct SphereContactKernels {
                LaneFinds& out) noexcept;
   /// Bit k: half the slope along v of the least squared distance along u (see SphereWindow) is below zero at
   /// v = k / kTwistPieces and above at (k + 1) / kTwistPieces.
-  unsigned (*rises)(const LaneWindow& w, const LaneProbe& ball, LaneCell cell) noexcept;
+  unsigned (*rises)(const LaneValley& g) noexcept;
   /// Half the slope along v of the least squared distance along u of a steep cell, and its derivative, at
   /// kSphereContactLanes places.
   void (*steepSlopes)(const LaneValley& g, const double* v, double* slope, double* bend) noexcept;

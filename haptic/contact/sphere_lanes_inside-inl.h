@@ -131,27 +131,16 @@ inline void lookInside(double sx, double sy, const LaneProbe& ball, const Facet&
   minima(valley, may, some, ball.reach2, start, at, out.inside);
 }
 
-inline unsigned rises(const LaneWindow& w, const LaneProbe& ball, LaneCell cell) noexcept {
-  const double* z = w.z + cell.j * w.columns + cell.i;
+inline unsigned rises(const LaneValley& g) noexcept {
   const Lanes zero{};
-  const double b = z[1] - z[0];
-  const double c = z[w.columns] - z[0];
-  const double d = (z[w.columns + 1] - z[w.columns]) - b;
-  const Valley f{zero + b,
-                 zero + c,
-                 zero + d,
-                 zero + (ball.x - (w.column + cell.i) * w.sx),
-                 zero + (ball.y - (w.row + cell.j) * w.sy),
-                 zero + (z[0] - ball.z),
-                 w.sx,
-                 w.sy};
-  Lanes count;
-  numbered(count);
+  const Valley f{zero + g.b,  zero + g.c,  zero + g.d,  zero + g.ex,
+                 zero + g.ey, zero + g.w0, g.sx,        g.sy};
   unsigned below = 0;
   unsigned over = 0;
   for (int k = 0; k <= kTwistPieces; k += kWidth) {
-    Lanes slope, u, height, bend;
-    slopeAt(f, (count + static_cast<double>(k)) / static_cast<double>(kTwistPieces), slope, u, height, bend);
+    Lanes v, slope, u, height, bend;
+    load(v, kPieceEnds.data() + k);
+    slopeAt(f, v, slope, u, height, bend);
     below |= bits(slope < zero) << k;
     over |= bits(slope > zero) << k;
   }
