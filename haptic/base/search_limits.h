@@ -12,7 +12,7 @@ inline constexpr int kMaxRounds = 2048;
 
 /// Searches for contacts after which a ball's tick takes no further step: the default, and the largest. Without this bound a
 /// tick takes up to 128 steps (docs/decisions/ball-tip.md).
-inline constexpr int kBallSearches = 20;
+inline constexpr int kBallSearches = 16;
 inline constexpr int kMostBallSearches = 4096;
 
 /// In which direction a ball's step has a largest length, a cell at most.

@@ -60,7 +60,7 @@ SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int mos
       most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
       most_searches_(std::clamp(most_searches, 0, kMostBallSearches)),
       search_(search),
-      window_(minima) {
+      window_(minima, steps) {
   const double cell = smallerSpacing(grid);
   radius_ = std::min(radius_mm, kMostSphereCells * cell);
   // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.
@@ -103,11 +103,15 @@ bool SphereTracker::clearOfAll(const Surface& surface, const glm::dvec3& a,
   return true;
 }
 
+void SphereTracker::hold(const Surface& surface, const glm::dvec3& centre) noexcept {
+  if (!window_.holds(centre)) window_.load(surface, centre, radius_ + slack_, kRoomSteps * step_);
+}
+
 void SphereTracker::findContacts(const Surface& surface, const glm::dvec3& centre,
                                  SphereContactList& out) noexcept {
+  hold(surface, centre);
   const double reach = radius_ + slack_;
-  if (!window_.holds(centre)) window_.load(surface, centre, reach, kRoomSteps * step_);
-  searches_ += plan_ && window_.hasSteepCells() ? kSteepSearch : 1;
+  searches_ += plan_ && window_.steepNear(centre, reach) ? kSteepSearch : 1;
   // Below the surface there are no contacts to look for: the ball is lifted.
   out.below = window_.heightUnder(centre) > centre.z;
   if (out.below) {
@@ -132,7 +136,9 @@ void SphereTracker::discardEdited(const Surface& surface) noexcept {
 
 // How far a centre must rise for what it reaches into there, by planes.
 double SphereTracker::riseOutOf(const SphereContactList& there, const glm::dvec3& centre) const noexcept {
-  double rise = there.below ? window_.heightUnder(centre) - centre.z + 0.5 * radius_ : 0.0;
+  double rise = 0.0;
+  SphereContact under;
+  if (there.below && window_.under(centre, under)) rise = under.point_mm.z - centre.z + 0.5 * radius_;
   for (int k = 0; k < there.count; ++k) {
     const SphereContact& t = there.contacts[static_cast<std::size_t>(k)];
     if (t.distance_mm < radius_ && t.normal.z > 0.0)
@@ -152,7 +158,7 @@ void SphereTracker::lift(const Surface& surface) noexcept {
   };
   if (isFree(centre_.z)) return;
   if (plan_) {
-    const double top = std::max(centre_.z, window_.highest()) + 1.001 * radius_;
+    const double top = std::max(centre_.z, window_.highestNear(centre_, radius_)) + 1.001 * radius_;
     const double past = 0.5 * toleranceMm(std::max(std::abs(centre_.z), std::abs(top)));
     for (int i = 0; i < kLiftHeights; ++i) {
       const double z = i == 0 ? std::max(centre_.z, window_.overSamples(centre_, radius_))
@@ -321,8 +327,8 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   glm::dvec3 last{0.0};  // the step before
   double longest = step_;
   Arrival arrival = Arrival::kBound;
-  const int last_search =
-      most_searches_ > 0 ? (plan_ ? 0 : searches_) + most_searches_ : std::numeric_limits<int>::max();
+  const int last_search = most_searches_ > 0 ? (plan_ ? first_search_ : searches_) + most_searches_
+                                             : std::numeric_limits<int>::max();
   const auto limited = [this](const glm::dvec3& a) { return plan_ ? glm::dvec3(a.x, a.y, 0.0) : a; };
   for (; steps < most_steps_ && searches_ < last_search && arrival == Arrival::kBound; ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
@@ -364,6 +370,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       double length = part;
       for (int drop = 0; drop < kDrops; ++drop, length *= 0.5) {
         glm::dvec3 to = centre_ + length * step.y;
+        hold(surface, to);
         for (int i = 0; i < kDropHeights && !spent(); ++i) {
           to.z = (i == 0 ? std::max(to.z, window_.overSamples(to, radius_)) : to.z + riseOutOf(there, to)) +
                  0.5 * tolerance;
@@ -456,7 +463,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
 Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept {
   Contact contact;
   const bool was_placed = placed_;
-  searches_ = 0;
+  searches_ = first_search_ = 0;
   const glm::dvec3 moved = endpoint - previous_;
   previous_ = endpoint;
   placed_ = true;
@@ -476,6 +483,7 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
     // The contacts of a ball at rest were found by the last tick.
     if (list_centres_[static_cast<std::size_t>(here_)] != centre_)
       findContacts(surface, centre_, lists_[here_]);
+    first_search_ = searches_;
     if (lists_[here_].below || lists_[here_].nearest_mm < 0.5 * radius_) lift(surface);
   }
   const Arrival arrival = walk(surface, endpoint, counters);

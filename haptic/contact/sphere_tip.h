@@ -126,6 +126,7 @@ class SphereTracker {
 
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
+  void hold(const Surface& surface, const glm::dvec3& centre) noexcept;
   void findContacts(const Surface& surface, const glm::dvec3& centre, SphereContactList& out) noexcept;
   void discardEdited(const Surface& surface) noexcept;
   [[nodiscard]] double riseOutOf(const SphereContactList& there, const glm::dvec3& centre) const noexcept;
@@ -163,6 +164,8 @@ class SphereTracker {
   std::array<SphereContact, kMostCuts> cuts_;
   int oldest_cut_ = 0;
   int searches_ = 0;
+  int first_search_ =
+      0;  // searches before those that the bound counts: none but where the last tick's list was discarded
 };
 
 }  // namespace fettle::haptic

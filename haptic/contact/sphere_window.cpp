@@ -64,18 +64,21 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   boundable_ = std::max(highest, -lowest) <= 1e8 * std::min(sx_, sy_);
   sphereContactKernels().prepare(laneWindow(), rows_, boundable_ ? 0.0 : HUGE_VAL, bounds_);
   markRims();
-  has_steep_cells_ = findSteepCells(lowest);
+  // Twice the range of heights is the largest twist.
+  has_steep_cells_ = steep(2.0 * (highest - lowest)) && anySteep({0, columns_ - 2, 0, rows_ - 2});
 }
 
-bool SphereWindow::findSteepCells(double lowest_mm) const noexcept {
-  // Twice the range of heights is the largest twist.
-  if (!steep(2.0 * (highest_ - lowest_mm))) return false;
-  for (std::int32_t j = 0; j + 1 < rows_; ++j)
-    for (std::int32_t i = 0; i + 1 < columns_; ++i) {
+bool SphereWindow::anySteep(const Box& box) const noexcept {
+  for (std::int32_t j = box.j0; j <= box.j1; ++j)
+    for (std::int32_t i = box.i0; i <= box.i1; ++i) {
       const Corners z = corners(i, j);
       if (steep((z.z11 - z.z01) - (z.z10 - z.z00))) return true;
     }
   return false;
+}
+
+bool SphereWindow::steepNear(const glm::dvec3& at, double reach_mm) const noexcept {
+  return has_steep_cells_ && anySteep(boxAround(at, reach_mm));
 }
 
 // Cells that the lanes cannot look at.
@@ -112,11 +115,18 @@ bool SphereWindow::valid(std::int32_t i, std::int32_t j) const noexcept {
 }
 
 bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcept {
-  const double x = at.x / sx_ - column_;
-  const double y = at.y / sy_ - row_;
+  const double field_x = at.x / sx_;
+  const double field_y = at.y / sy_;
+  const double x = field_x - column_;
+  const double y = field_y - row_;
   if (!(x >= 0.0 && y >= 0.0 && x < columns_ - 1 && y < rows_ - 1)) return false;
-  const auto i = static_cast<std::int32_t>(x);
-  const auto j = static_cast<std::int32_t>(y);
+  auto i = static_cast<std::int32_t>(x);
+  auto j = static_cast<std::int32_t>(y);
+  if (from_field_) {
+    // Next to the field's first samples column_ is below zero, and the difference above is rounded.
+    i = static_cast<std::int32_t>(std::floor(field_x)) - column_;
+    j = static_cast<std::int32_t>(std::floor(field_y)) - row_;
+  }
   // On a line between cells the one without a hole counts.
   for (const std::int32_t jj : {j, y == j ? j - 1 : j})
     for (const std::int32_t ii : {i, x == i ? i - 1 : i}) {
@@ -125,8 +135,8 @@ bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcep
       const double b = z.z10 - z.z00;
       const double c = z.z01 - z.z00;
       const double d = (z.z11 - z.z01) - b;
-      out.u = x - ii;
-      out.v = y - jj;
+      out.u = from_field_ ? field_x - (column_ + ii) : x - ii;
+      out.v = from_field_ ? field_y - (row_ + jj) : y - jj;
       out.cell = {column_ + ii, row_ + jj};
       const Patch patch{(column_ + ii) * sx_, (row_ + jj) * sy_, sx_, sy_, z.z00, b, c, d};
       out.point_mm = patch.at(out.u, out.v);
@@ -167,6 +177,17 @@ double SphereWindow::overSamples(const glm::dvec3& at, double radius_mm) const n
     }
   }
   return most;
+}
+
+double SphereWindow::highestNear(const glm::dvec3& at, double radius_mm) const noexcept {
+  const Box box = boxAround(at, radius_mm);
+  double highest = -HUGE_VAL;
+  for (std::int32_t j = box.j0; j <= box.j1 + 1; ++j)
+    for (std::int32_t i = box.i0; i <= box.i1 + 1; ++i) {
+      const double z = z_[static_cast<std::size_t>(j * columns_ + i)];
+      highest = z > highest ? z : highest;
+    }
+  return highest;
 }
 
 // The squared distance to the nearest of S(u, v), halved, has the second derivative I - J H^-1 J^T (the foot

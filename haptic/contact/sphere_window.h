@@ -59,7 +59,9 @@ class SphereWindow {
   /// Samples along a side at most: a ball of 16 cells radius and a margin.
   static constexpr std::int32_t kMostSide = kMostLaneSide;
 
-  explicit SphereWindow(BallMinima minima = BallMinima::kPieces) noexcept : minima_(minima) {}
+  explicit SphereWindow(BallMinima minima = BallMinima::kPieces,
+                        BallSteps steps = BallSteps::kInPlan) noexcept
+      : minima_(minima), from_field_(steps == BallSteps::kInPlan) {}
 
   /// Copies what a ball of radius `reach_mm` needs anywhere within `room_mm` (horizontally) of `centre`,
   /// which is finite. What does not fit kMostSide is left out: keep (reach + room) / spacing <= 20.
@@ -87,16 +89,20 @@ class SphereWindow {
   /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and outside the field.
   [[nodiscard]] double heightUnder(const glm::dvec3& at) const noexcept;
   /// The point of the surface straight above or below `at`, and the surface's normal there; false over holes
-  /// and outside the field.
+  /// and outside the field. With BallSteps::kInSpace u and v are rounded as the window lies.
   [[nodiscard]] bool under(const glm::dvec3& at, SphereContact& out) const noexcept;
   /// Curvature of the distance to the contact: the second derivative's bilinear form [1/mm] at `centre` for
   /// two directions perpendicular to the line to the point; 0 for a plane, 1 / distance for a sample.
   [[nodiscard]] double bend(const glm::dvec3& centre, const SphereContact& touch, const glm::dvec3& a,
                             const glm::dvec3& b) const noexcept;
-  /// Whether cells are so steep that their minima are searched for one by one; none with BallMinima::kPieces.
-  [[nodiscard]] bool hasSteepCells() const noexcept { return has_steep_cells_; }
-  /// The lowest height of a centre at (x, y) of `at` from which a ball reaches no sample within it; -HUGE_VAL: none near.
+  // Of a centre that is held, so that what else the window holds changes nothing.
+  /// Whether cells within `reach_mm` are so steep that their minima are searched for one by one; none with
+  /// BallMinima::kPieces.
+  [[nodiscard]] bool steepNear(const glm::dvec3& at, double reach_mm) const noexcept;
+  /// The lowest height of a centre at (x, y) of `at` from which a ball reaches no sample; -HUGE_VAL: none near.
   [[nodiscard]] double overSamples(const glm::dvec3& at, double radius_mm) const noexcept;
+  /// Highest sample of the cells within `radius_mm`; -HUGE_VAL: none.
+  [[nodiscard]] double highestNear(const glm::dvec3& at, double radius_mm) const noexcept;
   /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
   [[nodiscard]] double highest() const noexcept { return highest_; }
 
@@ -121,12 +127,14 @@ class SphereWindow {
     return minima_ == BallMinima::kAll && std::abs(twist) > kTwistPieces * std::min(sx_, sy_);
   }
   void markRims() noexcept;
-  [[nodiscard]] bool findSteepCells(double lowest_mm) const noexcept;
+  [[nodiscard]] bool anySteep(const Box& box) const noexcept;
   void gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
   class Collector;
   class Valley;
 
   BallMinima minima_;
+  bool
+      from_field_;  // whether under() takes u and v from the field's corner, so that its bits do not depend on where the window lies
   std::array<double, kMostSide * kMostSide + kSphereContactLanes> z_{};  // lanes read past the end
   std::array<float, kMostSide * kMostSide> raw_{};
   std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]

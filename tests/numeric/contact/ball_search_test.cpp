@@ -184,7 +184,7 @@ TEST(BallSearch, ATickInPlanDoesNotSearchMoreThanItsBoundOnAnyGround) {
     }
   std::printf("most searches of a tick on any ground: %d\n", most_of_all);
   EXPECT_GE(most_of_all, kBallSearches);
-  EXPECT_LE(most_of_all, kBallSearches + 16);
+  EXPECT_LE(most_of_all, kBallSearches + 20);
 }
 
 // A ball on a needle 1e6 mm high, whose endpoint goes to the ground beside it. In space it falls a cell per step, so that it
@@ -280,7 +280,7 @@ TEST(BallSearch, ATickAtRestOnNeedlesIsBoundedAtEveryRadius) {
         "%.0f us, %d\n",
         cells, rest.us, rest.searches, moved.us, moved.searches, kBallSearches / 2, fewer.us, fewer.searches);
     EXPECT_GT(rest.searches, 0) << cells;
-    EXPECT_LE(rest.searches, kBallSearches + 4) << cells;
+    EXPECT_LE(rest.searches, kBallSearches + 12) << cells;  // a first step among steep cells
     EXPECT_LE(fewer.searches, moved.searches) << cells;
   }
 }
@@ -416,6 +416,36 @@ TEST(BallSearch, WithAllMinimaABallDoesNotEnterANeedle) {
       }
     }
   }
+}
+
+// What a ball keeps from tick to tick, and where its window lies, changes nothing: a replay may read the field again at
+// other ticks than the loop did.
+TEST(BallSearch, ReadingTheFieldAgainAtAnyTickChangesNoBit) {
+  for (const auto& [name, field] : benchGrounds())
+    for (const double cells : {0.7, 2.0, 6.0})
+      for (const BallSteps steps : {BallSteps::kInPlan, BallSteps::kInSpace}) {
+        trials::HandMotion motion;
+        motion.ticks = 1500;
+        motion.speed_mm_s = 20.0;
+        Surface kept(field.reader());
+        Surface again(field.reader());
+        SphereTracker a(cells * kSpacing, field.grid(), kSphereSteps, SphereSearch::kBounded, kBallSearches,
+                        BallMinima::kAll, steps);
+        SphereTracker b = a;
+        TickCounters counters;
+        std::mt19937_64 random(5);
+        for (const StrokeSample& sample : trials::handStroke(field, motion)) {
+          if (random() % 3 == 0) again.refresh(field.reader());
+          const glm::dvec3 at = sample.tip_mm + glm::dvec3(0.0, 0.0, cells * kSpacing);
+          const Contact x = a.update(kept, at, counters);
+          const Contact y = b.update(again, at, counters);
+          ASSERT_EQ(x.touching, y.touching) << name << ' ' << cells << " at " << sample.t;
+          ASSERT_EQ(a.centre(), b.centre()) << name << ' ' << cells << " at " << sample.t;
+          if (x.touching) {
+            ASSERT_EQ(x.proxy.position_mm, y.proxy.position_mm) << name << ' ' << cells;
+          }
+        }
+      }
 }
 
 TEST(BallSearch, BoundedUnderEditsGivesTheBitsOfCellByCell) {
