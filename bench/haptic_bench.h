@@ -27,8 +27,8 @@ struct HapticBenchRow {
   double median = 0.0;
   double slowest = 0.0;
   double fastest = 0.0;
-  // Of single ticks, clock included, from a separate pass over at most 100,000 of them [ns]; 0 for the plain
-  // search.
+  // Of single ticks, clock included, from separate passes over at most 100,000 of them [ns], the least of `repeats` for each
+  // tick; 0 for the plain search.
   double p50_ns = 0.0;
   double p99_ns = 0.0;
   double p999_ns = 0.0;

@@ -133,8 +133,7 @@ inline void lookInside(double sx, double sy, const LaneProbe& ball, const Facet&
 
 inline unsigned rises(const LaneValley& g) noexcept {
   const Lanes zero{};
-  const Valley f{zero + g.b,  zero + g.c,  zero + g.d,  zero + g.ex,
-                 zero + g.ey, zero + g.w0, g.sx,        g.sy};
+  const Valley f{zero + g.b, zero + g.c, zero + g.d, zero + g.ex, zero + g.ey, zero + g.w0, g.sx, g.sy};
   unsigned below = 0;
   unsigned over = 0;
   for (int k = 0; k <= kTwistPieces; k += kWidth) {

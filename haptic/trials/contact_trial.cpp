@@ -147,9 +147,11 @@ haptic::Scene ContactChoice::in(haptic::Scene scene, const engine::Grid& grid) c
   if (ball_radius_cells > 0.0) {
     scene.tip_radius_mm = ball_radius_cells * cellMm(grid);
     scene.search_rounds = search_rounds;
-    scene.ball_searches = ball_searches;
-    scene.ball_minima = ball_minima;
-    scene.ball_steps = ball_steps;
+    if (before_revision_4) {
+      scene.ball_searches = 64;
+      scene.ball_minima = haptic::BallMinima::kPieces;
+      scene.ball_steps = haptic::BallSteps::kInSpace;
+    }
     return scene;
   }
   scene.level = level;

@@ -22,9 +22,8 @@ struct ContactChoice {
   int search_rounds = 2048;        ///< level descent, and a ball; the last one only tests
   int certified_radius_cells = 2;  ///< level certified
   double ball_radius_cells = 0.0;  ///< of the larger spacing; 0: a point, else level is ignored
-  int ball_searches = haptic::kBallSearches;
-  haptic::BallMinima ball_minima = haptic::BallMinima::kAll;
-  haptic::BallSteps ball_steps = haptic::BallSteps::kInPlan;
+  bool before_revision_4 =
+      false;  ///< a ball as scenes of contact revision 3 have it; else as the scene has it
 
   /// The scene with this method.
   [[nodiscard]] haptic::Scene in(haptic::Scene scene, const engine::Grid& grid) const;

@@ -122,9 +122,7 @@ TEST(ContactTrial, ABallIsAsNearAsBeforeRevision4) {
   engine::JobControl job;
   const trials::ContactChoice now{"now", haptic::ContactLevel::kPaper, 2048, 2, 2.0};
   trials::ContactChoice before = now;
-  before.ball_searches = 64;
-  before.ball_minima = haptic::BallMinima::kPieces;
-  before.ball_steps = haptic::BallSteps::kInSpace;
+  before.before_revision_4 = true;
   const auto subjects = hardSubjects(512);
   ASSERT_TRUE(subjects);
   for (const Subject& subject : *subjects) {
