@@ -1,8 +1,13 @@
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
+#include "app/commands/nominal_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -10,6 +15,7 @@
 #include "app/work/streams.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/moved_onto.h"
+#include "engine/nominal/nominal_surface.h"
 
 namespace fettle::app {
 
@@ -18,13 +24,53 @@ namespace {
 struct AlignCommand {
   std::string a, b, out, csv, to;
   AlignArguments how;
+  NominalArguments nominal;
   Replacing replacing = Replacing::kNoWork;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
 
+// Where B lies, and B at the samples of A, if that is written.
+struct PlacedB {
+  engine::Alignment alignment;
+  std::optional<engine::Version> moved;
+  std::optional<Report> nominal;
+};
+
+engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Version& a,
+                                    engine::JobControl& job) {
+  const auto b = loadSamples(options.b, options.reading, job);
+  if (!b) return tl::unexpected(b.error());
+  const auto alignment = alignmentOf(a, b->field, options.a, options.b, options.how, job);
+  if (!alignment) return tl::unexpected(alignment.error());
+  PlacedB placed{*alignment, std::nullopt, std::nullopt};
+  if (options.out.empty()) return placed;
+  auto moved = engine::movedOnto(b->field, alignment->motion, a.grid(), job);
+  if (!moved) return tl::unexpected(moved.error());
+  placed.moved = *std::move(moved);
+  return placed;
+}
+
+engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine::Version& a,
+                                       engine::JobControl& job) {
+  const auto nominal = loadNominal(options.b, options.nominal, a.grid(), Sides::kNotNeeded, job);
+  if (!nominal) return tl::unexpected(nominal.error());
+  const auto alignment = alignmentOf(a, *nominal, options.a, options.b, options.how, job);
+  if (!alignment) return tl::unexpected(alignment.error());
+  PlacedB placed{*alignment, std::nullopt, nominalReport(options.nominal, *nominal)};
+  if (options.out.empty()) return placed;
+  auto heights = engine::nominalHeights(
+      engine::NominalSurface(*nominal, alignment->motion, engine::slackOn(a.grid())), a.grid(), job);
+  if (!heights) return tl::unexpected(heights.error());
+  placed.moved = *std::move(heights);
+  return placed;
+}
+
 engine::Result<Report> align(const AlignCommand& options, engine::JobControl& job) {
   if (auto status = checkAlign(options.how); !status) return tl::unexpected(status.error());
+  if (!options.nominal.unit.empty() && !isNominal(options.b, options.reading))
+    return engine::inputError(fmt::format("{} is no nominal mesh", shownInput(options.b)), "--nominal-unit",
+                              "give an .stl as B");
   if (options.out.empty() && (!options.to.empty() || options.writing.tiff_compression))
     return engine::inputError("no scan is written", options.to.empty() ? "--compress" : "--to",
                               "name OUT too");
@@ -37,20 +83,18 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
     return tl::unexpected(status.error());
   const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
-  const auto b = loadSamples(options.b, options.reading, job);
-  if (!b) return tl::unexpected(b.error());
-  const auto alignment = alignmentOf(a->field, b->field, options.a, options.b, options.how, job);
-  if (!alignment) return tl::unexpected(alignment.error());
-  Report report = alignReport(options.how, *alignment);
-  if (!options.out.empty()) {
-    const auto moved = engine::movedOnto(b->field, alignment->motion, a->field.grid(), job);
-    if (!moved) return tl::unexpected(moved.error());
+  const auto placed = isNominal(options.b, options.reading) ? alignedNominal(options, a->field, job)
+                                                            : alignedScan(options, a->field, job);
+  if (!placed) return tl::unexpected(placed.error());
+  Report report = alignReport(options.how, placed->alignment);
+  if (placed->nominal) report["nominal"] = *placed->nominal;
+  if (placed->moved) {
     engine::ExportOptions writing = options.writing;
-    writing.original = *moved;
-    if (auto status = saveField(*moved, options.out, job, writing, options.to); !status)
+    writing.original = *placed->moved;
+    if (auto status = saveField(*placed->moved, options.out, job, writing, options.to); !status)
       return tl::unexpected(status.error());
     report["out"] = options.out;
-    report["hash"] = hashOf(*moved);
+    report["hash"] = hashOf(*placed->moved);
   }
   if (!options.csv.empty())
     if (auto status = writeTo(
@@ -76,7 +120,7 @@ void addAlign(Command root, Chosen& chosen) {
         .required = true},
        {.name = "B",
         .to = &options->b,
-        .text = "The scan that is moved; its spacing and size may be others",
+        .text = "The scan that is moved; its spacing and size may be others. Or the nominal shape of A, .stl",
         .kind = ValueKind::kInput,
         .required = true},
        {.name = "OUT",
@@ -95,6 +139,7 @@ void addAlign(Command root, Chosen& chosen) {
         .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addForceOption(command, options->replacing);
   addAlignOptions(command, options->how);
+  addNominalOptions(command, options->nominal);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(
@@ -105,13 +150,16 @@ void addAlign(Command root, Chosen& chosen) {
       "fewer "
       "than half. A motion that the surface does not decide, as a shift along a cylinder, is refused by its "
       "name. "
-      "Heights of B between its samples are bilinear; compare both through one filter where that matters.");
+      "Heights of B between its samples are bilinear; compare both through one filter where that matters.\n"
+      "Of a mesh B the matrix takes millimetres from its least x and y; OUT has the heights of its topmost "
+      "surface.");
   command.examples(
       {{"fettle align scan.tif clean.tif", "How the second lies against the first"},
        {"fettle align scan.tif clean.tif moved.tif --moves in-plane --csv motion.csv",
         "The second at the samples of the first, without tilting it"},
        {"fettle align scan.tif clean.tif level.tif --moves level --region unmarked --marks marks.png",
-        "Height and tilt alone, by what is not marked"}});
+        "Height and tilt alone, by what is not marked"},
+       {"fettle align part.tif nominal.stl nominal.tif", "The nominal shape at the samples of the part"}});
 }
 
 }  // namespace fettle::app

@@ -12,6 +12,7 @@
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/nominal/nominal_align.h"
 
 namespace fettle::app {
 
@@ -47,6 +48,31 @@ const NamedMoves& movesNamed(const std::string& word) {
 
 std::string alignKey(const AlignFigure& figure, const char* between) {
   return fmt::format("{}{}_{}", figure.key, between, figure.unit);
+}
+
+// What `align` finds under the options that the arguments mean; errors name the files.
+engine::Result<engine::Alignment> namedAlignment(const engine::Version& a, const std::string& path_a,
+                                                 const std::string& path_b, const AlignArguments& arguments,
+                                                 engine::JobControl& job, const auto& align) {
+  const auto counted = withMarks(a, arguments.marks, job);
+  if (!counted) return tl::unexpected(counted.error());
+  engine::AlignOptions options;
+  options.moves = movesNamed(arguments.moves).moves;
+  options.region = arguments.region == "marked"     ? engine::Region::kMarked
+                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
+                                                    : engine::Region::kAll;
+  options.most_rotation_deg = arguments.rotation.value_or(options.most_rotation_deg);
+  engine::Result<engine::Alignment> alignment = align(*counted, options);
+  if (!alignment && alignment.error().kind == engine::ErrorKind::kInput) {
+    const std::string both = shownInput(path_a) + " and " + shownInput(path_b);
+    const std::string& where = alignment.error().where;
+    return engine::inputError(alignment.error().what,
+                              where == "A"   ? shownInput(path_a)
+                              : where == "B" ? shownInput(path_b)
+                                             : both,
+                              alignment.error().remedy);
+  }
+  return alignment;
 }
 
 }  // namespace
@@ -93,25 +119,19 @@ engine::Status checkAlign(const AlignArguments& arguments) {
 engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const engine::Version& b,
                                               const std::string& path_a, const std::string& path_b,
                                               const AlignArguments& arguments, engine::JobControl& job) {
-  const auto counted = withMarks(a, arguments.marks, job);
-  if (!counted) return tl::unexpected(counted.error());
-  engine::AlignOptions options;
-  options.moves = movesNamed(arguments.moves).moves;
-  options.region = arguments.region == "marked"     ? engine::Region::kMarked
-                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
-                                                    : engine::Region::kAll;
-  options.most_rotation_deg = arguments.rotation.value_or(options.most_rotation_deg);
-  auto alignment = engine::alignFields(*counted, b, options, job);
-  if (!alignment && alignment.error().kind == engine::ErrorKind::kInput) {
-    const std::string both = shownInput(path_a) + " and " + shownInput(path_b);
-    const std::string& where = alignment.error().where;
-    return engine::inputError(alignment.error().what,
-                              where == "A"   ? shownInput(path_a)
-                              : where == "B" ? shownInput(path_b)
-                                             : both,
-                              alignment.error().remedy);
-  }
-  return alignment;
+  return namedAlignment(a, path_a, path_b, arguments, job,
+                        [&](const engine::Version& counted, const engine::AlignOptions& options) {
+                          return engine::alignFields(counted, b, options, job);
+                        });
+}
+
+engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const engine::NominalMesh& b,
+                                              const std::string& path_a, const std::string& path_b,
+                                              const AlignArguments& arguments, engine::JobControl& job) {
+  return namedAlignment(a, path_a, path_b, arguments, job,
+                        [&](const engine::Version& counted, const engine::AlignOptions& options) {
+                          return engine::alignNominal(counted, b, options, job);
+                        });
 }
 
 Report alignReport(const AlignArguments& arguments, const engine::Alignment& alignment) {

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/measure/align.h"
+#include "engine/nominal/nominal_mesh.h"
 
 namespace fettle::app {
 
@@ -32,6 +33,11 @@ void addAlignOptions(Command command, AlignArguments& arguments);
 [[nodiscard]] engine::Result<engine::Alignment> alignmentOf(
     const engine::Version& a, const engine::Version& b, const std::string& path_a, const std::string& path_b,
     const AlignArguments& arguments, engine::JobControl& job);
+
+/// engine::alignNominal() in the same way.
+[[nodiscard]] engine::Result<engine::Alignment> alignmentOf(
+    const engine::Version& a, const engine::NominalMesh& b, const std::string& path_a,
+    const std::string& path_b, const AlignArguments& arguments, engine::JobControl& job);
 
 /// The alignment as keys of a report (docs/commands.md); errors of what was not free are null.
 [[nodiscard]] Report alignReport(const AlignArguments& arguments, const engine::Alignment& alignment);

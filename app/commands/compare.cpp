@@ -5,6 +5,7 @@
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
+#include "app/commands/compare_nominal.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
@@ -34,6 +35,7 @@ struct CompareArguments {
   bool estimate = false;
   bool aligned = false;  // B is moved onto A first
   AlignArguments align;
+  InspectArguments inspect;
   ScanOptions reading;
 };
 
@@ -64,15 +66,33 @@ engine::Status checkAligned(const CompareArguments& options) {
                           : engine::inputError("nothing is aligned", alone, "give --align all");
 }
 
+// Options that need a nominal mesh, or that it excludes.
+engine::Status checkNominal(const CompareArguments& options) {
+  if (!isNominal(options.b, options.reading)) {
+    const std::string alone = optionOfNominal(options.inspect);
+    return alone.empty() ? engine::Status()
+                         : engine::inputError(fmt::format("{} is no nominal mesh", shownInput(options.b)),
+                                              alone, "give an .stl as B");
+  }
+  const char* const excluded = !options.truth.empty() ? "--truth" : options.estimate ? "--estimate" : nullptr;
+  return excluded == nullptr ? engine::Status()
+                             : engine::inputError(fmt::format("{} is a nominal mesh", shownInput(options.b)),
+                                                  excluded, "it is for two scans");
+}
+
 engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges need a truth", "--edges", "give --truth too");
+  if (auto status = checkNominal(options); !status) return tl::unexpected(status.error());
   if (auto status = checkAligned(options); !status) return tl::unexpected(status.error());
   if (auto status = checkOutputs({{options.deviation, OutputKind::kField, options.to}},
                                  {options.a, options.b, options.truth, options.edges, options.align.marks},
                                  options.replacing, job);
       !status)
     return tl::unexpected(status.error());
+  if (isNominal(options.b, options.reading))
+    return compareNominal(options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
+                          options.reading, options.deviation, options.to, job);
   const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
   auto b = loadSamples(options.b, options.reading, job);
@@ -173,7 +193,7 @@ void addCompare(Command root, Chosen& chosen) {
        .required = true},
       {.name = "B",
        .to = &options->b,
-       .text = "The scan to compare",
+       .text = "The scan to compare, or the nominal shape of A as a mesh, .stl",
        .kind = ValueKind::kInput,
        .required = true},
       {.name = "--truth",
@@ -186,7 +206,7 @@ void addCompare(Command root, Chosen& chosen) {
        .kind = ValueKind::kMarks},
       {.name = "--deviation",
        .to = &options->deviation,
-       .text = "Also write B - A as a separate scan, in A's height unit, format by extension",
+       .text = "Also write B - A, of a mesh B how A deviates from it, as a scan in A's height unit",
        .kind = ValueKind::kOutput},
   });
   command.add({{.name = "--align",
@@ -198,6 +218,7 @@ void addCompare(Command root, Chosen& chosen) {
                 .text = "First move B onto the samples of A, as fettle align does",
                 .words = alignWords()}});
   addAlignOptions(command, options->align);
+  addInspectOptions(command, options->inspect);
   addForceOption(command, options->replacing);
   command.add({{.name = "--to",
                 .to = &options->to,
@@ -206,11 +227,19 @@ void addCompare(Command root, Chosen& chosen) {
                 .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
+  command.notes(
+      "Of a mesh B the deviation is that of A from it, above 0 where the part has more. A sample over or "
+      "under no "
+      "triangle counts as no_nominal and in no other figure. Without --align a mesh lies where its "
+      "coordinates are those "
+      "of A's world, or, where it would lie wholly beside A, in millimetres from A's lower left sample.");
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
                     {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",
                      "Errors against a known surface, on flats and near edges"},
                     {"fettle compare scan.tif clean.tif --align all --deviation wear.tif",
-                     "What differs after the second was moved onto the first"}});
+                     "What differs after the second was moved onto the first"},
+                    {"fettle compare part.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
+                     "How a part deviates from its nominal shape"}});
 }
 
 }  // namespace fettle::app

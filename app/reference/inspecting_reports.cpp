@@ -114,6 +114,16 @@ Keys alignmentKeys() {
           {"window_mm", "number", "standard deviation of the Gaussian window"}};
 }
 
+// With a nominal mesh as B.
+ReportKey nominalKey(const char* key) {
+  return {key,
+          "object",
+          "with a mesh as B",
+          {{"triangles", "integer", "that have an area"},
+           {"unit", "string", "of its numbers"},
+           {"open_sides", "integer", "that belong to one triangle"}}};
+}
+
 Keys sectionKeys() {
   return joined(
       {{"section", "integer", "from 0"},
@@ -299,12 +309,32 @@ std::vector<ReportSchema> inspecting() {
           {"rmse_flat?", "number", "with --truth"},
           {"rmse_edge?", "number", "with --truth"},
           {"edge_width?", "number", "with --truth, lateral unit"}}},
+        {"the deviation of A from a mesh B",
+         {unit(),
+          {"distance", "string", "vertical or shortest"},
+          {"samples", "integer", "that have a nominal"},
+          {"no_nominal", "integer", "samples over or under no triangle"},
+          {"unmeasured", "integer", "holes of A over or under a triangle"},
+          {"rms", "number", "of A from B, height unit of A, as all below"},
+          {"mean", "number", ""},
+          {"min", "number", ""},
+          {"max", "number", ""},
+          {"max_abs", "number", ""},
+          {"p99", "number", "of absolute values"},
+          {"tolerance?", "number", "with --tolerance"},
+          {"within?", "integer", "samples, with --tolerance"},
+          {"above?", "integer", "with --tolerance"},
+          {"below?", "integer", "with --tolerance"},
+          nominalKey("nominal"),
+          {"align?", "object", "with --align", alignmentKeys()},
+          {"deviation?", "string", "with --deviation: the file"}}},
         estimateAlone(),
         noEstimate()}},
       {"align",
        1,
-       {{"", joined(alignmentKeys(),
-                    {{"out?", "string", "with OUT: the file"}, {"hash?", "string", "of the field in it"}})}}},
+       {{"", joined(alignmentKeys(), {nominalKey("nominal?"),
+                                      {"out?", "string", "with OUT: the file"},
+                                      {"hash?", "string", "of the field in it"}})}}},
       {"fit",
        1,
        {{"",

@@ -1,0 +1,126 @@
+#include "app/commands/compare_nominal.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands/scan_files.h"
+#include "app/commands/typed_values.h"
+#include "app/terminal.h"
+#include "app/work/streams.h"
+#include "engine/nominal/nominal_deviation.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct NominalInPlace {
+  engine::RigidMotion motion;
+  std::optional<Report> alignment;
+};
+
+engine::Result<NominalInPlace> nominalInPlace(const engine::Version& part, const engine::NominalMesh& nominal,
+                                              const std::string& path_a, const std::string& path_b,
+                                              const AlignArguments* align, engine::JobControl& job) {
+  if (align != nullptr) {
+    const auto found = alignmentOf(part, nominal, path_a, path_b, *align, job);
+    if (!found) return tl::unexpected(found.error());
+    return NominalInPlace{found->motion, alignReport(*align, *found)};
+  }
+  const auto placed = engine::placedAsStored(nominal, part.grid());
+  if (!placed)
+    return engine::inputError("the nominal lies nowhere over or under the part", shownInput(path_b),
+                              "give --align all, or state its unit with --nominal-unit");
+  if (placed->place == engine::NominalPlace::kFromCorner)
+    warn(fmt::format(
+        "{}: in the coordinates of {} it lies beside it; taken as millimetres from the part's lower "
+        "left sample",
+        shownInput(path_b), shownInput(path_a)));
+  return NominalInPlace{placed->motion, std::nullopt};
+}
+
+}  // namespace
+
+void addInspectOptions(Command command, InspectArguments& arguments) {
+  addNominalOptions(command, arguments.nominal);
+  command.add(
+      {{.name = "--distance",
+        .to = &arguments.distance,
+        .text = "What the deviation from a mesh is",
+        .words = {{"vertical", "height over its topmost surface"},
+                  {"shortest", "to its nearest place, above 0 outside, below 0 inside"}}},
+       {.name = "--tolerance",
+        .to = &arguments.tolerance,
+        .text = "Count what lies within this of the mesh on both sides, above and below; in A's height unit "
+                "or with one",
+        .shown = "D"}},
+      "A nominal mesh as B");
+}
+
+std::string optionOfNominal(const InspectArguments& arguments) {
+  return !arguments.nominal.unit.empty()    ? "--nominal-unit"
+         : arguments.distance != "vertical" ? "--distance"
+         : !arguments.tolerance.empty()     ? "--tolerance"
+                                            : "";
+}
+
+engine::Result<Report> compareNominal(const std::string& part, const std::string& nominal,
+                                      const InspectArguments& arguments, const AlignArguments* align,
+                                      const ScanOptions& reading, const std::string& deviation,
+                                      const std::string& to, engine::JobControl& job) {
+  engine::NominalOptions options;
+  options.distance = arguments.distance == "shortest" ? engine::NominalDistance::kShortest
+                                                      : engine::NominalDistance::kVertical;
+  const auto a = loadSamples(part, reading, job);
+  if (!a) return tl::unexpected(a.error());
+  const engine::Grid& grid = a->field.grid();
+  if (!arguments.tolerance.empty()) {
+    const auto tolerance = parseHeight(arguments.tolerance, grid, "--tolerance");
+    if (!tolerance) return tl::unexpected(tolerance.error());
+    options.tolerance = *tolerance;
+  }
+  const auto mesh = loadNominal(
+      nominal, arguments.nominal, grid,
+      options.distance == engine::NominalDistance::kShortest ? Sides::kNeeded : Sides::kNotNeeded, job);
+  if (!mesh) return tl::unexpected(mesh.error());
+  auto placed = nominalInPlace(a->field, *mesh, part, nominal, align, job);
+  if (!placed) return tl::unexpected(placed.error());
+  const auto found = engine::deviationFromNominal(a->field, *mesh, placed->motion, options, job);
+  if (!found) return tl::unexpected(found.error());
+  if (found->samples == 0)
+    return engine::inputError("no sample of the part lies over or under a triangle", shownInput(nominal),
+                              "give --align all, or state its unit with --nominal-unit");
+  if (found->turned)
+    warn(fmt::format(
+        "{}: its triangles are wound clockwise seen from above: inside and outside were exchanged",
+        shownInput(nominal)));
+  if (found->face_down > 0)
+    warn(fmt::format("{}: {} samples lie over triangles that are wound the other way round",
+                     shownInput(nominal), found->face_down));
+  Report report{{"unit", grid.height_unit.name},
+                {"distance", arguments.distance},
+                {"samples", found->samples},
+                {"no_nominal", found->no_nominal},
+                {"unmeasured", found->unmeasured},
+                {"rms", found->rms},
+                {"mean", found->mean},
+                {"min", found->min},
+                {"max", found->max},
+                {"max_abs", found->max_abs},
+                {"p99", found->p99}};
+  if (options.tolerance)
+    report.update({{"tolerance", *options.tolerance},
+                   {"within", found->within},
+                   {"above", found->above},
+                   {"below", found->below}});
+  report["nominal"] = nominalReport(arguments.nominal, *mesh);
+  if (placed->alignment) report["align"] = *std::move(placed->alignment);
+  if (deviation.empty()) return report;
+  if (auto status = saveField(found->field, deviation, job, {}, to); !status)
+    return tl::unexpected(status.error());
+  report["deviation"] = deviation;
+  return report;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,95 @@
+#include "app/commands/nominal_option.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/terminal.h"
+#include "app/work/outputs.h"
+#include "app/work/streams.h"
+#include "engine/io/files/input_file.h"
+#include "engine/io/import.h"
+#include "engine/io/mesh/nominal_file.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr const char* kNominalExtension = ".stl";
+
+// A wrong unit is off by 10 and more; 25.4 is inches taken for millimetres.
+void warnOfSize(const engine::NominalMesh& nominal, const engine::Grid& part, const std::string& name,
+                const std::string& unit) {
+  constexpr double kApart = 20.0;
+  const glm::dvec3 size = nominal.box().high - nominal.box().low;
+  const double mesh = std::max(size.x, size.y),
+               scan = std::max((part.width - 1) * part.spacingXMm(), (part.height - 1) * part.spacingYMm());
+  if (!(mesh > 0.0 && scan > 0.0) || std::max(mesh / scan, scan / mesh) < kApart) return;
+  warn(
+      fmt::format("{}: the nominal is {:.4g} mm wide, the part {:.4g} mm: are its numbers {}? --nominal-unit "
+                  "says what they are",
+                  name, mesh, scan, unit));
+}
+
+}  // namespace
+
+void addNominalOptions(Command command, NominalArguments& arguments) {
+  command.add(
+      {{.name = "--nominal-unit",
+        .to = &arguments.unit,
+        .text = fmt::format("Unit of the numbers of a nominal mesh B, of which an STL states none: {}",
+                            fmt::join(engine::lengthUnitNames(), ", ")),
+        .proposed = engine::lengthUnitNames(),
+        .otherwise = "mm"}},
+      "A nominal mesh as B");
+}
+
+bool isNominal(const std::string& path, const ScanOptions& reading) {
+  return isStream(path) ? withDot(reading.from) == kNominalExtension
+                        : engine::extensionOf(path) == kNominalExtension;
+}
+
+engine::Result<engine::NominalMesh> loadNominal(const std::string& path, const NominalArguments& arguments,
+                                                const engine::Grid& part, Sides sides,
+                                                engine::JobControl& job) {
+  engine::LengthUnit unit;
+  if (!arguments.unit.empty()) {
+    const auto named = engine::lengthUnitFromName(arguments.unit);
+    if (!named)
+      return engine::inputError(fmt::format("unknown unit {}", arguments.unit), "--nominal-unit",
+                                fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
+    unit = *named;
+  }
+  auto nominal = [&]() -> engine::Result<engine::NominalMesh> {
+    if (!isStream(path)) return engine::readNominal(path, unit, job);
+    const auto input = StandardInput::read(kNominalExtension, job);
+    if (!input) return tl::unexpected(input.error());
+    auto read = engine::readNominal(input->path(), unit, job);
+    if (!read) return tl::unexpected(input->renamed(read.error()));
+    return read;
+  }();
+  if (!nominal) return nominal;
+  const std::string name = shownInput(path);
+  if (nominal->withoutArea() > 0)
+    warn(fmt::format("{}: {} triangles without an area were left out", name, nominal->withoutArea()));
+  if (sides == Sides::kNeeded && nominal->oddSides() > 0)
+    warn(
+        fmt::format("{}: at {} sides its triangles are wound in opposite senses or are more than two: near "
+                    "those the side on which a "
+                    "sample lies may be wrong",
+                    name, nominal->oddSides()));
+  warnOfSize(*nominal, part, name, unit.name);
+  return nominal;
+}
+
+Report nominalReport(const NominalArguments& arguments, const engine::NominalMesh& nominal) {
+  const auto unit = engine::lengthUnitFromName(arguments.unit.empty() ? "mm" : arguments.unit);
+  return {{"triangles", nominal.triangles().size()},
+          {"unit", unit ? unit->name : std::string()},
+          {"open_sides", nominal.openSides()}};
+}
+
+}  // namespace fettle::app

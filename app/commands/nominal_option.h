@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/work/scan_reading.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/grid.h"
+#include "engine/nominal/nominal_mesh.h"
+
+namespace fettle::app {
+
+/// A nominal mesh in the place of a scan B.
+struct NominalArguments {
+  std::string unit;  ///< of the mesh's numbers; empty: mm
+};
+
+/// --nominal-unit.
+void addNominalOptions(Command command, NominalArguments& arguments);
+
+/// Whether B is a nominal mesh: an .stl, or standard input with --from stl.
+[[nodiscard]] bool isNominal(const std::string& path, const ScanOptions& reading);
+
+/// engine::readNominal() of B. Warns of triangles without an area, of sides at which a mesh does not say what is outside, where
+/// that is needed, of one whose size is another than the part's by a factor of 20, as a wrong unit makes it.
+enum class Sides : bool { kNotNeeded, kNeeded };
+[[nodiscard]] engine::Result<engine::NominalMesh> loadNominal(const std::string& path,
+                                                              const NominalArguments& arguments,
+                                                              const engine::Grid& part, Sides sides,
+                                                              engine::JobControl& job);
+
+/// "nominal": triangles, unit, open_sides.
+[[nodiscard]] Report nominalReport(const NominalArguments& arguments, const engine::NominalMesh& nominal);
+
+}  // namespace fettle::app

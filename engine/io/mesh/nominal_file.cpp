@@ -1,0 +1,48 @@
+#include "engine/io/mesh/nominal_file.h"
+
+#include <cmath>
+#include <cstddef>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/io/mesh/stl_file.h"
+
+namespace fettle::engine {
+
+Result<NominalMesh> readNominal(const std::string& path, const LengthUnit& unit, JobControl& job) try {
+  constexpr double kFarthest = 1e15;
+  const Result<InputFile> file = InputFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  std::vector<TriangleCorners> triangles;
+  {
+    const Result<StlMesh> read = readStlMesh(*file, job);
+    if (!read) return tl::unexpected(read.error());
+    const PointCloud& corners = read->mesh.corners;
+    if (read->not_counted > 0)
+      return inputError(
+          fmt::format("its header counts {} triangles, its bytes are those of {}",
+                      read->mesh.triangles.size(), read->mesh.triangles.size() + read->not_counted),
+          path, "export it again: a nominal with a part missing is none");
+    triangles.reserve(read->mesh.triangles.size());
+    for (std::size_t t = 0; t < read->mesh.triangles.size(); ++t) {
+      TriangleCorners& triangle = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = read->mesh.triangles[t][k];
+        triangle[k] = unit.mm * glm::dvec3(corners.x[i], corners.y[i], corners.z[i]);
+        for (int axis = 0; axis < 3; ++axis)
+          if (!(std::abs(triangle[k][axis]) <= kFarthest))
+            return inputError(
+                fmt::format("triangle {} has a corner that is not finite or beyond 1e15 mm", t + 1), path,
+                "the file is damaged: export it again");
+      }
+    }
+  }
+  return NominalMesh::create(std::move(triangles), path, job);
+} catch (const std::bad_alloc&) {
+  return failure("memory is exhausted", path, "export the mesh with a larger tolerance");
+}
+
+}  // namespace fettle::engine
