@@ -159,7 +159,7 @@ void addAlign(Command root, Chosen& chosen) {
         "The second at the samples of the first, without tilting it"},
        {"fettle align scan.tif clean.tif level.tif --moves level --region unmarked --marks marks.png",
         "Height and tilt alone, by what is not marked"},
-       {"fettle align part.tif nominal.stl nominal.tif", "The nominal shape at the samples of the part"}});
+       {"fettle align scan.tif nominal.stl nominal.tif", "The nominal shape at the samples of the part"}});
 }
 
 }  // namespace fettle::app

@@ -238,7 +238,7 @@ void addCompare(Command root, Chosen& chosen) {
                      "Errors against a known surface, on flats and near edges"},
                     {"fettle compare scan.tif clean.tif --align all --deviation wear.tif",
                      "What differs after the second was moved onto the first"},
-                    {"fettle compare part.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
+                    {"fettle compare scan.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
                      "How a part deviates from its nominal shape"}});
 }
 

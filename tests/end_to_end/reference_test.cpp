@@ -247,7 +247,8 @@ TEST_F(Reference, EveryExampleRuns) {
   ASSERT_EQ(shell("fettle synth scan.tif --size 256x256 --truth truth.tif --edges edges.png && "
                   "fettle synth other.tif --size 64x64 --seed 2 && "
                   "fettle filter scan.tif clean.tif --filter box && "
-                  "fettle mark scan.tif marks.png --edges --lines-out lines.csv")
+                  "fettle mark scan.tif marks.png --edges --lines-out lines.csv && "
+                  "fettle convert truth.tif nominal.stl")
                 .status,
             0);
   std::ofstream strokes(work.file("strokes.csv"));

@@ -71,6 +71,10 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
        "--csv", file("fits.csv"), "--step", file("fits.step"), "--residuals", file("residuals.tif")});
   run({"align", scan, out, file("moved.tif"), "--moves", "level", "--csv", file("motion.csv")});
   run({"compare", scan, out, "--align", "level"});
+  run({"convert", scan, file("n.stl")});
+  run({"compare", scan, file("n.stl"), "--tolerance", "1um", "--deviation", file("nd.tif")});
+  run({"compare", scan, file("n.stl"), "--align", "level"});
+  run({"align", scan, file("n.stl"), file("moved.tif"), "--moves", "level"});
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});
   run({"lines", scan, lines});

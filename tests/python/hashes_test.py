@@ -190,6 +190,12 @@ class Hashes(unittest.TestCase):
         self.assertEqual(a.section(line=[(1, 20), (60, 40), (70, 41)]), figures("section", *words, self.scan))
         done = run("align", self.scan, other, self.path("moved.tif"), "--moves", "shift")
         self.same("align --moves shift", done["hash"], a.align(fettle.read(other), moves="shift").hash)
+        nominal = self.path("nominal.stl")
+        run("convert", self.scan, nominal)
+        words = ["--distance", "shortest", "--tolerance", "0.01"]
+        self.assertEqual(a.compare(nominal, distance="shortest", tolerance=0.01), figures("compare", self.scan, nominal, *words))
+        done = run("align", self.scan, nominal, self.path("moved.tif"), "--moves", "level")
+        self.same("align to a mesh", done["hash"], a.align(nominal, moves="level").hash)
 
     def test_a_recipe_with_every_step(self):
         recipe = self.path("every.toml")
