@@ -84,6 +84,10 @@ std::vector<Word> alignWords() {
   return words;
 }
 
+const engine::AlignMoves& movesOf(const std::string& word) {
+  return movesNamed(word).moves;
+}
+
 void addAlignOptions(Command command, AlignArguments& arguments) {
   constexpr const char* kGroup = "Aligning B to A";
   command.add(

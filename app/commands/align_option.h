@@ -23,6 +23,9 @@ struct AlignArguments {
 /// "all", "in-plane", "shift", "level".
 [[nodiscard]] std::vector<Word> alignWords();
 
+/// What one of them allows.
+[[nodiscard]] const engine::AlignMoves& movesOf(const std::string& word);
+
 /// --rotation, --region, --marks.
 void addAlignOptions(Command command, AlignArguments& arguments);
 

@@ -68,6 +68,7 @@ void addFill(Command root, Chosen& chosen);
 void addTransform(Command root, Chosen& chosen);
 void addMeasure(Command root, Chosen& chosen);
 void addAlign(Command root, Chosen& chosen);
+void addMosaic(Command root, Chosen& chosen);
 void addFit(Command root, Chosen& chosen);
 void addSection(Command root, Chosen& chosen);
 void addReport(Command root, Chosen& chosen);

@@ -21,6 +21,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addJournal(root, chosen);
   addRender(root, chosen);
   addAlign(root, chosen);
+  addMosaic(root, chosen);
   addCompare(root, chosen);
   addConvert(root, chosen);
 }

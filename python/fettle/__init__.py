@@ -33,6 +33,7 @@ __all__ = [
     "Step",
     "Suggestion",
     "formats",
+    "mosaic",
     "read",
     "replay",
     "synth",
@@ -43,6 +44,7 @@ _READ = Command(
     summary="Read a scan of any format: rasters, point clouds, meshes, files of instruments, sessions",
 )
 _SYNTH = Command("synth", "synth", hidden=("to", "force"))
+_MOSAIC = Command("mosaic", "mosaic", hidden=("to", "force"), hides=(_field.WRITING,))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 
 
@@ -74,6 +76,30 @@ def synth(*, progress=None, **options):
     for name, place in made.items():
         report[name] = _field._value(written[place])
     return _field.field_of(written["<field>"], str(options.get("part") or report["part"]), report)
+
+
+@documented(
+    _MOSAIC,
+    "Field: all scans on the samples of the first, continued; `report` has the places of the scans and how they differ where "
+    "they overlap, lengths in mm, angles in degrees.",
+    before=(parameter("scans", f"Sequence[Field | {PATH}]"),),
+    example='''
+    >>> part = fettle.synth(part="bracket", size=(128, 96), seed=5)
+    >>> west = part.transformed(crop_samples=(0, 0, 96, 80))
+    >>> east = part.transformed(crop_samples=(0, 48, 96, 80))
+    >>> both = fettle.mosaic([west, east], moves="shift")
+    >>> both.shape, both.report["pairs"]
+    ((96, 128), 1)
+''',
+)
+def mosaic(scans, *, progress=None, **options):
+    call = _MOSAIC.begin()
+    for number, scan in enumerate(scans):
+        call.arguments.append(call.scan(scan, f"scan {number + 1}"))
+    call.arguments.append(call.result("field"))
+    _MOSAIC.options(call, options)
+    report, written = call.run("see help(fettle.mosaic)", progress, 2)
+    return _field.field_of(written["<field>"], "mosaic", report)
 
 
 @documented(

@@ -28,6 +28,7 @@ PARAMETERS = {
     "scan": "The scan to touch, a Field or a file; or a session, NAME.fettle",
     "other": "The scan to compare with this one",
     "recipe": "The recipe, a TOML file",
+    "scans": "Overlapping scans, two or more; the first stays where it is",
     "lines": "Edge lines; without them those of the field",
 }
 REPORTS = "Report and help"

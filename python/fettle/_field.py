@@ -550,7 +550,7 @@ def method_of(name):
 
 
 #: Commands with functions of their own.
-OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal"}
+OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal", "mosaic"}
 #: Methods that have another name than their command: `report` is what the last command said, and `transform` the affine
 #: transform of the samples.
 RENAMED = {"report": "page", "transform": "transformed"}

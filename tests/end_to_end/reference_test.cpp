@@ -248,7 +248,9 @@ TEST_F(Reference, EveryExampleRuns) {
                   "fettle synth other.tif --size 64x64 --seed 2 && "
                   "fettle filter scan.tif clean.tif --filter box && "
                   "fettle mark scan.tif marks.png --edges --lines-out lines.csv && "
-                  "fettle convert truth.tif nominal.stl")
+                  "fettle convert truth.tif nominal.stl && "
+                  "fettle transform scan.tif west.tif --crop-samples 0,0,256,160 && "
+                  "fettle transform scan.tif east.tif --crop-samples 0,96,256,160")
                 .status,
             0);
   std::ofstream strokes(work.file("strokes.csv"));

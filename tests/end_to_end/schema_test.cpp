@@ -75,6 +75,9 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"compare", scan, file("n.stl"), "--tolerance", "1um", "--deviation", file("nd.tif")});
   run({"compare", scan, file("n.stl"), "--align", "level"});
   run({"align", scan, file("n.stl"), file("moved.tif"), "--moves", "level"});
+  run({"transform", scan, file("west.tif"), "--crop-samples", "0,0,80,64"});
+  run({"transform", scan, file("east.tif"), "--crop-samples", "0,32,80,64"});
+  run({"mosaic", file("west.tif"), file("east.tif"), file("both.tif"), "--moves", "level", "--within", "0"});
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});
   run({"lines", scan, lines});

@@ -197,6 +197,19 @@ class Hashes(unittest.TestCase):
         done = run("align", self.scan, nominal, self.path("moved.tif"), "--moves", "level")
         self.same("align to a mesh", done["hash"], a.align(nominal, moves="level").hash)
 
+    def test_a_mosaic(self):
+        scan = fettle.synth(part="bracket", size=(160, 120), seed=6)
+        parts = [scan.transformed(crop_samples=(0, column, 120, 100)) for column in (0, 60)]
+        paths = [self.path(f"part{number}.tif") for number in range(2)]
+        for part, path in zip(parts, paths):
+            part.write(path)
+        done = run("mosaic", *paths, self.path("mosaic.tif"), "--moves", "shift", "--blend", "mean")
+        made = fettle.mosaic(parts, moves="shift", blend="mean")
+        self.same("mosaic", done["hash"], made.hash)
+        self.same("mosaic of files", done["hash"], fettle.mosaic(paths, moves="shift", blend="mean").hash)
+        self.assertEqual(made.shape, scan.shape)
+        self.assertLess(made.compare(scan)["max_abs"], 0.05)
+
     def test_a_recipe_with_every_step(self):
         recipe = self.path("every.toml")
         with open(recipe, "w", encoding="utf-8") as file:

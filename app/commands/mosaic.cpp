@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/align_option.h"
+#include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/read_units.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
+#include "app/terminal.h"
+#include "app/work/outputs.h"
+#include "app/work/streams.h"
+#include "engine/mosaic/blended.h"
+#include "engine/mosaic/overlap_motions.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr double kOverlap = 20.0, kMostOverlap = 90.0;  // percent
+
+struct MosaicRun {
+  std::vector<std::string> files;
+  std::string layout;             // COLUMNSxROWS; empty: by the files' places, else searched for
+  std::optional<double> overlap;  // of a side, with the layout [%]
+  std::optional<double> within;
+  std::string moves = "all";
+  std::optional<double> rotation;
+  std::string blend = "fade";
+  Replacing replacing = Replacing::kNoWork;
+  std::string to;
+  ScanOptions reading;
+  engine::ExportOptions writing;
+
+  [[nodiscard]] std::vector<std::string> scans() const { return {files.begin(), files.end() - 1}; }
+};
+
+engine::Status checkMosaic(const MosaicRun& options, engine::JobControl& job) {
+  if (options.files.size() < 3)
+    return engine::inputError("a mosaic needs two scans and a file to write", "IN", "give A B OUT");
+  if (options.overlap && options.layout.empty())
+    return engine::inputError("places that files state have an overlap of their own", "--overlap",
+                              "give --layout too, or leave it out");
+  if (options.rotation && !movesOf(options.moves).rotation)
+    return engine::inputError(fmt::format("'{}' does not rotate about z", options.moves), "--rotation",
+                              "leave it out, or align by all or in-plane");
+  return checkOutputs({{options.files.back(), OutputKind::kField, options.to}}, options.scans(),
+                      options.replacing, job);
+}
+
+engine::Result<std::optional<std::vector<glm::dvec2>>> placesOf(const MosaicRun& options,
+                                                                const std::vector<engine::Version>& scans) {
+  if (options.layout.empty()) return engine::statedPlaces(scans);
+  const auto layout = parseSize(options.layout, "--layout", {1, 1000});
+  if (!layout) return tl::unexpected(layout.error());
+  const auto [columns, rows] = *layout;
+  if (static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) != scans.size())
+    return engine::inputError(
+        fmt::format("{} x {} places are not those of {} scans", columns, rows, scans.size()), "--layout",
+        "give columns x rows");
+  return std::optional(engine::placesInRows(scans, static_cast<std::size_t>(columns),
+                                            options.overlap.value_or(kOverlap) / 100.0));
+}
+
+// By how much places may be wrong, unless it is said: a tenth of the shortest side [mm].
+double playOf(const std::vector<engine::Version>& scans) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const engine::Version& scan : scans)
+    shortest = std::min({shortest, (scan.grid().width - 1) * scan.grid().spacingXMm(),
+                         (scan.grid().height - 1) * scan.grid().spacingYMm()});
+  return 0.1 * shortest;
+}
+
+// The scan that nothing joins to the first, and why its pairs failed.
+tl::unexpected<engine::Error> notJoined(const std::string& number, const MosaicRun& options,
+                                        const engine::OverlapMotions& found) {
+  const auto scan = static_cast<std::size_t>(std::stoul(number));
+  std::string why = "no other lies where it would overlap it";
+  for (const engine::FailedPair& pair : found.failed) {
+    if (pair.first != scan && pair.second != scan) continue;
+    why = fmt::format("with {}: {}", shownInput(options.files[pair.first == scan ? pair.second : pair.first]),
+                      pair.reason.what);
+    break;
+  }
+  return engine::inputError("no overlap joins this scan to the first", shownInput(options.files[scan]),
+                            why + "; leave it out, or say where scans lie with --layout");
+}
+
+double rootOf(double variance) {
+  return std::sqrt(std::max(0.0, variance));
+}
+
+Report scanReport(const std::string& path, const engine::AdjustedPoses& poses, std::size_t k) {
+  constexpr double kDegree = 180.0 / std::numbers::pi;
+  const engine::RigidMotion& pose = poses.poses[k];
+  const auto angles = pose.angles();
+  const auto c = poses.between(0, k, pose.centre + pose.shift);
+  return {{"scan", path},
+          {"shift_x_mm", pose.shift.x},
+          {"shift_x_error_mm", rootOf(c[0])},
+          {"shift_y_mm", pose.shift.y},
+          {"shift_y_error_mm", rootOf(c[7])},
+          {"shift_z_mm", pose.shift.z},
+          {"shift_z_error_mm", rootOf(c[14])},
+          {"rotation_z_deg", angles.rotation_z},
+          {"rotation_z_error_deg", kDegree * rootOf(c[35])},
+          {"tilt_x_deg", angles.tilt_x},
+          {"tilt_x_error_deg", kDegree * rootOf(c[28])},
+          {"tilt_y_deg", angles.tilt_y},
+          {"tilt_y_error_deg", kDegree * rootOf(c[21])},
+          {"matrix", pose.matrix()}};
+}
+
+engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job) {
+  if (auto status = checkMosaic(options, job); !status) return tl::unexpected(status.error());
+  const std::string& out = options.files.back();
+  if (auto status = checkCompress(options.writing, {{options.files.front(), out, options.to}}); !status)
+    return tl::unexpected(status.error());
+  std::vector<engine::Version> scans;
+  for (const std::string& path : options.scans()) {
+    auto scan = loadSamples(path, options.reading, job);
+    if (!scan) return tl::unexpected(scan.error());
+    if (scan->field.lines() != nullptr)
+      warn(fmt::format("{}: its edge lines do not go along", shownInput(path)));
+    scans.push_back(std::move(scan->field));
+  }
+  const auto places = placesOf(options, scans);
+  if (!places) return tl::unexpected(places.error());
+  engine::AlignOptions align;
+  align.moves = movesOf(options.moves);
+  align.most_rotation_deg = options.rotation.value_or(align.most_rotation_deg);
+  const auto found =
+      engine::overlapMotions(scans, *places, options.within.value_or(playOf(scans)), align, job);
+  if (!found) return tl::unexpected(found.error());
+  const auto middles = engine::middlesOf(scans, job);
+  if (!middles) return tl::unexpected(middles.error());
+  const auto poses = engine::adjustPoses(*middles, found->pairs, align.moves);
+  if (!poses) return notJoined(poses.error().where, options, *found);
+  const auto overlaps = engine::overlapDeviations(scans, *poses, job);
+  if (!overlaps) return tl::unexpected(overlaps.error());
+  const auto grid = engine::gridOverAll(scans, *poses);
+  if (!grid) return tl::unexpected(grid.error());
+  const engine::Blend blend = options.blend == "mean"    ? engine::Blend::kMean
+                              : options.blend == "first" ? engine::Blend::kFirst
+                                                         : engine::Blend::kFade;
+  const auto blended = engine::blendedScans(scans, *poses, *grid, blend, job);
+  if (!blended) return tl::unexpected(blended.error());
+  engine::ExportOptions writing = options.writing;
+  writing.original = *blended;
+  if (auto status = saveField(*blended, out, job, writing, options.to); !status)
+    return tl::unexpected(status.error());
+
+  Report report{{"width", grid->width},       {"height", grid->height},        {"blend", options.blend},
+                {"moves", options.moves},     {"pairs", found->pairs.size()},  {"freedom", poses->freedom},
+                {"misfit", poses->misfit},    {"error_factor", poses->factor}, {"scans", Report::array()},
+                {"overlaps", Report::array()}};
+  for (std::size_t k = 0; k < scans.size(); ++k)
+    report["scans"].push_back(scanReport(options.files[k], *poses, k));
+  for (const engine::OverlapDeviation& overlap : *overlaps)
+    report["overlaps"].push_back({{"a", options.files[overlap.first]},
+                                  {"b", options.files[overlap.second]},
+                                  {"places", overlap.places},
+                                  {"median_mm", overlap.median},
+                                  {"mean_mm", overlap.mean},
+                                  {"rms_mm", overlap.rms},
+                                  {"spread_mm", overlap.spread},
+                                  {"height_error_mm", overlap.height_error}});
+  report["out"] = out;
+  report["hash"] = hashOf(*blended);
+  return report;
+}
+
+void printMosaic(const Report& report) {
+  for (const Report& scan : report["scans"])
+    fmt::print("{}: shift {:.4f}, {:.4f}, {:.4f} mm, rotation {:.4f}, tilt {:.4f}, {:.4f} degrees\n",
+               scan["scan"].get<std::string>(), scan["shift_x_mm"].get<double>(),
+               scan["shift_y_mm"].get<double>(), scan["shift_z_mm"].get<double>(),
+               scan["rotation_z_deg"].get<double>(), scan["tilt_x_deg"].get<double>(),
+               scan["tilt_y_deg"].get<double>());
+  for (const Report& overlap : report["overlaps"]) {
+    const double spread = overlap["spread_mm"].get<double>();
+    const ReadAs height = readLengthAs(std::max(spread, 1e-12), 1.0, "mm");
+    fmt::print("{} over {}: {:.3g} +- {:.2g} {}, spread {:.3g} {}, at {} places\n",
+               overlap["b"].get<std::string>(), overlap["a"].get<std::string>(),
+               overlap["median_mm"].get<double>() / height.size,
+               overlap["height_error_mm"].get<double>() / height.size, height.name, spread / height.size,
+               height.name, overlap["places"].get<std::int64_t>());
+  }
+  const int freedom = report["freedom"].get<int>();
+  if (freedom > 0)
+    fmt::print("{} pairs agree to {:.3g} of their standard errors\n", report["pairs"].get<int>(),
+               std::sqrt(report["misfit"].get<double>() / freedom));
+  else
+    fmt::print("{} pairs, no loop that would test them\n", report["pairs"].get<int>());
+  fmt::print("{}: {} x {} samples, hash {}\n", report["out"].get<std::string>(), report["width"].get<int>(),
+             report["height"].get<int>(), report["hash"].get<std::string>());
+}
+
+}  // namespace
+
+void addMosaic(Command root, Chosen& chosen) {
+  auto options = std::make_shared<MosaicRun>();
+  Command command = addCommand(
+      root, chosen, "mosaic", "Join overlapping scans: all are aligned to each other at once and blended",
+      [options](engine::JobControl& job) { return mosaic(*options, job); }, printMosaic);
+  command.add(
+      {{.name = "IN",
+        .to = &options->files,
+        .text = "The scans, the first of which stays where it is, and the file to write, format by extension",
+        .kind = ValueKind::kInput,
+        .shown = "A B... OUT",
+        .required = true},
+       {.name = "--layout",
+        .to = &options->layout,
+        .text = "The scans lie in so many columns and rows, left to right, then the next row above",
+        .kind = ValueKind::kSize,
+        .shown = "COLUMNSxROWS",
+        .otherwise = "where the files place them; where these state nothing, searched for"},
+       {.name = "--overlap",
+        .to = &options->overlap,
+        .text = "With --layout: share of a side that neighbours have in common, roughly",
+        .range = Range{1.0, kMostOverlap},
+        .unit = "percent",
+        .otherwise = "20"},
+       {.name = "--within",
+        .to = &options->within,
+        .text = "How far the places that files or the layout state may be wrong",
+        .range = Range{0.0, 1e9},
+        .unit = "mm",
+        .otherwise = "a tenth of the shortest side"},
+       {.name = "--moves", .to = &options->moves, .text = "How scans may be moved", .words = alignWords()},
+       {.name = "--rotation",
+        .to = &options->rotation,
+        .text = "Rotations about z that the search tries, both ways",
+        .range = Range{0.0, 180.0},
+        .unit = "degrees",
+        .otherwise = "10"},
+       {.name = "--blend",
+        .to = &options->blend,
+        .text = "The height where several scans have one",
+        .words = {{"fade", "weights by the distance to each scan's rim: no step where a scan ends"},
+                  {"mean", "the mean of all"},
+                  {"first", "that of the first of them"}}}});
+  addForceOption(command, options->replacing);
+  addStreamFormat(command, options->to);
+  addCompressOption(command, options->writing);
+  addScanOptions(command, options->reading);
+  command.notes(
+      "Every two scans that overlap are aligned as fettle align does, and the places of all are those that "
+      "fit all pairs "
+      "best, each by its standard errors. A scan that no overlap joins to the first is refused by its name.\n"
+      "Shifts are those of each scan's middle; the matrix takes millimetres from a scan's lower left sample "
+      "to those from "
+      "the first's. The result has the first scan's samples and continues them; heights of the others are "
+      "bilinear "
+      "between theirs. Holes of one scan are filled by the others. Marks go along, edge lines do not.");
+  command.examples(
+      {{"fettle mosaic west.tif east.tif both.tif", "Two scans, by the places that the files state"},
+       {"fettle mosaic west.tif east.tif both.tif --layout 2x1 --overlap 40 --blend mean",
+        "Two scans side by side that overlap by about two fifths"}});
+}
+
+}  // namespace fettle::app
