@@ -16,7 +16,7 @@ fettle.InputError and fettle.Error.
 import os as _os
 
 from . import _commands, _fettle, _field
-from ._commands import PATH, READING, Command, documented, parameter, path_word
+from ._commands import PATH, READING, WRITING, Command, documented, parameter, path_word
 from ._errors import Error, FettleWarning, InputError
 from ._field import Field, Suggestion
 from ._lines import Line
@@ -44,7 +44,7 @@ _READ = Command(
     summary="Read a scan of any format: rasters, point clouds, meshes, files of instruments, sessions",
 )
 _SYNTH = Command("synth", "synth", hidden=("to", "force"))
-_MOSAIC = Command("mosaic", "mosaic", hidden=("to", "force"), hides=(_field.WRITING,))
+_MOSAIC = Command("mosaic", "mosaic", hidden=("to", "force", "from", "store"), hides=(WRITING,))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 
 

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numbers>
 #include <random>
+#include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>

@@ -2,6 +2,7 @@
 
 #include "engine/nominal/nominal_align.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
