@@ -13,6 +13,7 @@
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_text.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/read_units.h"
 #include "app/commands/scan_files.h"
@@ -97,28 +98,29 @@ tl::unexpected<engine::Error> notJoined(const std::string& number, const MosaicR
                             why + "; leave it out, or say where scans lie with --layout");
 }
 
-double rootOf(double variance) {
-  return std::sqrt(std::max(0.0, variance));
-}
-
-Report scanReport(const std::string& path, const engine::AdjustedPoses& poses, std::size_t k) {
+// Standard errors of what is not free, and of the first scan, are null.
+Report scanReport(const std::string& path, const engine::AdjustedPoses& poses, std::size_t k,
+                  const engine::AlignMoves& moves) {
   constexpr double kDegree = 180.0 / std::numbers::pi;
   const engine::RigidMotion& pose = poses.poses[k];
   const auto angles = pose.angles();
   const auto c = poses.between(0, k, pose.centre + pose.shift);
+  const auto errorOf = [&](std::size_t place, bool free, double unit) {
+    return k > 0 && free ? Report(unit * std::sqrt(std::max(0.0, c[place]))) : Report();
+  };
   return {{"scan", path},
           {"shift_x_mm", pose.shift.x},
-          {"shift_x_error_mm", rootOf(c[0])},
+          {"shift_x_error_mm", errorOf(0, moves.shift, 1.0)},
           {"shift_y_mm", pose.shift.y},
-          {"shift_y_error_mm", rootOf(c[7])},
+          {"shift_y_error_mm", errorOf(7, moves.shift, 1.0)},
           {"shift_z_mm", pose.shift.z},
-          {"shift_z_error_mm", rootOf(c[14])},
+          {"shift_z_error_mm", errorOf(14, true, 1.0)},
           {"rotation_z_deg", angles.rotation_z},
-          {"rotation_z_error_deg", kDegree * rootOf(c[35])},
+          {"rotation_z_error_deg", errorOf(35, moves.rotation, kDegree)},
           {"tilt_x_deg", angles.tilt_x},
-          {"tilt_x_error_deg", kDegree * rootOf(c[28])},
+          {"tilt_x_error_deg", errorOf(28, moves.tilt, kDegree)},
           {"tilt_y_deg", angles.tilt_y},
-          {"tilt_y_error_deg", kDegree * rootOf(c[21])},
+          {"tilt_y_error_deg", errorOf(21, moves.tilt, kDegree)},
           {"matrix", pose.matrix()}};
 }
 
@@ -166,7 +168,7 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
                 {"misfit", poses->misfit},    {"error_factor", poses->factor}, {"scans", Report::array()},
                 {"overlaps", Report::array()}};
   for (std::size_t k = 0; k < scans.size(); ++k)
-    report["scans"].push_back(scanReport(options.files[k], *poses, k));
+    report["scans"].push_back(scanReport(options.files[k], *poses, k, align.moves));
   for (const engine::OverlapDeviation& overlap : *overlaps)
     report["overlaps"].push_back({{"a", options.files[overlap.first]},
                                   {"b", options.files[overlap.second]},
@@ -182,12 +184,20 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
 }
 
 void printMosaic(const Report& report) {
+  double longest = 1e-12;
   for (const Report& scan : report["scans"])
-    fmt::print("{}: shift {:.4f}, {:.4f}, {:.4f} mm, rotation {:.4f}, tilt {:.4f}, {:.4f} degrees\n",
-               scan["scan"].get<std::string>(), scan["shift_x_mm"].get<double>(),
-               scan["shift_y_mm"].get<double>(), scan["shift_z_mm"].get<double>(),
-               scan["rotation_z_deg"].get<double>(), scan["tilt_x_deg"].get<double>(),
-               scan["tilt_y_deg"].get<double>());
+    for (const char* key : {"shift_x_mm", "shift_y_mm", "shift_z_mm"})
+      longest = std::max(longest, std::abs(scan[key].get<double>()));
+  const ReadAs length = readLengthAs(longest, 1.0, "mm"), degrees{"degrees", 1.0};
+  for (const Report& scan : report["scans"]) {
+    const bool first = scan["shift_z_error_mm"].is_null();
+    fmt::print("{}{}\n", scan["scan"].get<std::string>(), first ? " stays" : "");
+    if (first) continue;
+    for (const char* key : {"shift_x", "shift_y", "shift_z"})
+      fmt::print("  {:<10} {}\n", key, shownEstimate(scan, key, "mm", length));
+    for (const char* key : {"rotation_z", "tilt_x", "tilt_y"})
+      fmt::print("  {:<10} {}\n", key, shownEstimate(scan, key, "deg", degrees));
+  }
   for (const Report& overlap : report["overlaps"]) {
     const double spread = overlap["spread_mm"].get<double>();
     const ReadAs height = readLengthAs(std::max(spread, 1e-12), 1.0, "mm");
