@@ -18,7 +18,7 @@ namespace fettle::engine {
 /// The nominal shape of a part: a mesh of triangles, anticlockwise seen from outside. Its coordinates are millimetres
 /// from corner(), its least x and y, so that a mesh far from its zero loses no digit.
 ///
-/// Cost of a million triangles: a second on one core to make, some 130 MB (five times as much while it is made).
+/// Cost of a million triangles: a second on one core to make, some 130 MB (240 MB while it is read and made).
 /// Threading: const functions from any thread.
 class NominalMesh {
  public:
