@@ -21,7 +21,8 @@
 #include "app/work/streams.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/measure/fit.h"
+#include "engine/measure/fit_choice.h"
+#include "engine/measure/fit_relation.h"
 
 namespace fettle::app {
 

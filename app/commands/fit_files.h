@@ -7,7 +7,8 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
-#include "engine/measure/fit.h"
+#include "engine/measure/fit_choice.h"
+#include "engine/measure/fit_relation.h"
 
 namespace fettle::app {
 

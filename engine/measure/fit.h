@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/measure/fit_samples.h"
 #include "engine/measure/fit_shape.h"
 #include "engine/measure/fit_surface.h"
-#include "engine/measure/section_figures.h"
 
 namespace fettle::engine {
 
@@ -72,37 +69,5 @@ struct ShapeFit {
 
 /// The distance of a point [mm, field coordinates] from a fit, above 0 above it; along z to first order with `vertical`.
 [[nodiscard]] double residualAt(const ShapeFit& fit, const glm::dvec3& point, bool vertical) noexcept;
-
-/// A shape that was tried, or why not.
-struct TriedShape {
-  ShapeKind kind = ShapeKind::kPlane;
-  double rms_mm = 0.0;  ///< NaN: refused
-  std::string refused;
-};
-struct ChosenShape {
-  ShapeFit fit;
-  std::vector<TriedShape> tried;
-};
-/// The shape, of some kinds, that describes the samples best. A shape is taken in place of a simpler one that it contains
-/// (plane, then sphere or cylinder, cylinder, then cone, cone or sphere, then torus) only where it lowers the rms by a tenth,
-/// and of those that are left the one with the least Bayesian information (G. Schwarz, Estimating the dimension of a model,
-/// 1978), the samples counted as ShapeFit::correlation says. Chosen by at most some 260,000 of the samples, fitted to all.
-[[nodiscard]] Result<ChosenShape> fitBestShape(const Version& field, const FitRegion& region,
-                                               const std::vector<ShapeKind>& kinds, const FitOptions& options,
-                                               JobControl& job);
-
-/// What lies between two fits of different samples.
-struct ShapeRelation {
-  /// Between normals, axes, or a normal and an axis as the angle between plane and axis [degrees], 0 to 90; NaN without
-  /// two directions.
-  Estimate angle_deg;
-  /// Plane and another: of the other's point from the plane, above 0 above it; of two planes that of the middle of the
-  /// second's samples from the first. Axis and another: from the other's point, of a second axis that nearest to the middle
-  /// of its samples, to the first axis. Spheres, torus centres: between the points [mm].
-  Estimate distance_mm;
-  /// Two axes: the shortest distance between the lines; NaN else, and for parallel ones (angle below three errors).
-  Estimate between_axes_mm;
-};
-[[nodiscard]] ShapeRelation relationOf(const ShapeFit& first, const ShapeFit& second) noexcept;
 
 }  // namespace fettle::engine

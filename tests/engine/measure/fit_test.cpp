@@ -17,6 +17,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/field/builder.h"
+#include "engine/measure/fit_choice.h"
+#include "engine/measure/fit_relation.h"
 
 namespace fettle::engine {
 namespace {

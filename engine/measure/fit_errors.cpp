@@ -1,0 +1,225 @@
+#include "engine/measure/fit_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+
+namespace fettle::engine {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr double kFitSigmas = 3.0;
+constexpr int kParts = 12;  // of the region along each side
+
+// The variance of Tukey's psi under Gaussian noise of variance 1.
+double psiVariance() {
+  static const double variance = [] {
+    double sum = 0.0;
+    constexpr double kStep = 0.01;
+    for (double x = -FitWeights::kTukey; x < FitWeights::kTukey; x += kStep) {
+      const double u = x / FitWeights::kTukey, psi = x * (1.0 - u * u) * (1.0 - u * u);
+      sum += kStep * psi * psi * std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+    }
+    return sum;
+  }();
+  return variance;
+}
+
+// Which number a direction of least information is about.
+std::string undeterminedNumber(const FitModel& model, const Vector& direction) {
+  Eigen::Index most = 0;
+  direction.cwiseAbs().maxCoeff(&most);
+  return fmt::format("its {}", model.nameOf(static_cast<int>(most)));
+}
+
+}  // namespace
+
+tl::unexpected<Error> undetermined(ShapeKind kind, const std::string& what, const std::string& remedy) {
+  return inputError(fmt::format("the samples do not determine {}", what), std::string(infoOf(kind).word),
+                    remedy);
+}
+
+FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitModel& model) {
+  const int n = model.size();
+  const FitModel::Rows rows(model, Vector::Zero(n));
+  const auto make = [n] {
+    FitSums sums;
+    sums.information = sums.noise = Matrix::Zero(n, n);
+    sums.scores.assign(kParts * kParts, Vector::Zero(n));
+    sums.in_part.assign(kParts * kParts, 0);
+    return sums;
+  };
+  const auto merge = [](FitSums& into, const FitSums& from) {
+    into.information += from.information;
+    into.noise += from.noise;
+    for (std::size_t k = 0; k < into.scores.size(); ++k) {
+      into.scores[k] += from.scores[k];
+      into.in_part[k] += from.in_part[k];
+    }
+    into.squares += from.squares;
+    into.psi_squares += from.psi_squares;
+    into.cosines += from.cosines;
+    into.largest = std::max(into.largest, from.largest);
+    into.used += from.used;
+    into.left_out += from.left_out;
+  };
+  const glm::dvec2 low = points.samples->low(), size = points.samples->high() - low;
+  const auto partOf = [&](const glm::dvec3& p) {
+    const auto place = [](double from, double whole) {
+      return whole > 0.0 ? std::clamp(static_cast<int>(from / whole * kParts), 0, kParts - 1) : 0;
+    };
+    return static_cast<std::size_t>(kParts * place(p.y * points.scale - low.y, size.y) +
+                                    place(p.x * points.scale - low.x, size.x));
+  };
+  // At most so many sums at once: the rest is added one after the other.
+  constexpr std::size_t kTogether = 64;
+  FitSums all = make();
+  for (std::size_t first = 0; first < points.groups(); first += kTogether) {
+    std::vector<FitSums> some(std::min(kTogether, points.groups() - first));
+    tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t k) {
+      FitSums& sums = some[k] = make();
+      FitSamples::Block block;
+      Vector row(n);
+      for (std::size_t b = points.begin(first + k); b < points.begin(first + k + 1); ++b) {
+        points.samples->read(b, block);
+        for (int i = 0; i < block.count; ++i) {
+          const glm::dvec3 p = block.points[static_cast<std::size_t>(i)] / points.scale;
+          const FitSurface::At at = rows.surface().at(p);
+          const double factor = weights.factor(at.gradient.z), residual = factor * at.distance;
+          const double share = weights.share(residual);
+          if (share == 0.0) {
+            ++sums.left_out;
+            continue;
+          }
+          rows.derivatives(at, p, row.data());
+          row *= factor;
+          double slope = 1.0;
+          if (weights.robust_scale > 0.0) {
+            const double x2 = std::pow(residual / (FitWeights::kTukey * weights.robust_scale), 2);
+            slope = (1.0 - x2) * (1.0 - 5.0 * x2);
+          }
+          // What noise in height is of a distance.
+          const double cosine = factor * std::max(std::abs(at.gradient.z), FitWeights::kSteepest);
+          const double psi = share * residual;
+          sums.information.noalias() += slope * row * row.transpose();
+          sums.noise.noalias() += cosine * cosine * row * row.transpose();
+          const std::size_t part = partOf(p);
+          sums.scores[part] += psi * row;
+          ++sums.in_part[part];
+          sums.squares += residual * residual;
+          sums.psi_squares += psi * psi;
+          sums.cosines += cosine * cosine;
+          sums.largest = std::max(sums.largest, std::abs(residual));
+          ++sums.used;
+        }
+      }
+    });
+    for (const FitSums& sums : some) merge(all, sums);
+  }
+  return all;
+}
+
+Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, const FitOptions& options,
+                     double rounding) {
+  const int n = model.size();
+  Vector sizes(n);
+  for (int k = 0; k < n; ++k) sizes[k] = std::sqrt(std::max(sums.noise(k, k), 1e-300));
+  const Matrix by = sizes.cwiseInverse().asDiagonal();
+  const Matrix scaled = by * sums.information * by, noise = by * sums.noise * by;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(noise);
+  constexpr double kLeast = 1e-13;
+  if (!(eigen.eigenvalues()[0] > kLeast * eigen.eigenvalues()[n - 1]) ||
+      !(sums.noise.diagonal().minCoeff() > 0.0)) {
+    Vector direction = by * eigen.eigenvectors().col(0);
+    for (int k = 0; k < n; ++k)
+      if (!(sums.noise(k, k) > 1e-24 * sums.noise(0, 0))) direction = Vector::Unit(n, k);
+    return undetermined(model.kind, undeterminedNumber(model, direction),
+                        "take a larger region or a simpler shape");
+  }
+  const Matrix inverse = scaled.completeOrthogonalDecomposition().pseudoInverse();
+  const double free = std::max(1.0, static_cast<double>(sums.used - n));
+  // In parts of the scale.
+  const double of_psi = options.robust ? psiVariance() : 1.0;
+  double variance = options.noise_mm * options.noise_mm / (fit.scale * fit.scale) * of_psi;
+  if (sums.used > n) {
+    const double scatter =
+        sums.psi_squares / std::max(sums.cosines, 1e-300) * static_cast<double>(sums.used) / free;
+    if (std::isnan(variance) || scatter > variance * (1.0 + kFitSigmas * std::sqrt(2.0 / free)))
+      variance = scatter;
+  }
+  variance = std::fmax(variance, rounding * rounding / (fit.scale * fit.scale));
+  // Sums over parts: what independent noise makes of them, and what they are.
+  double parts = 0.0;
+  Matrix seen = Matrix::Zero(n, n);
+  for (std::size_t k = 0; k < sums.scores.size(); ++k) {
+    if (sums.in_part[k] == 0) continue;
+    parts += 1.0;
+    const Vector score = by * sums.scores[k];
+    seen += score * score.transpose();
+  }
+  if (parts > 2.0 * n + 4.0 && static_cast<double>(sums.used) > 8.0 * parts && variance > 0.0) {
+    seen *= parts / (parts - n);
+    const double excess = (variance * noise).ldlt().solve(seen).trace() / n;
+    if (excess > 1.0 + kFitSigmas * std::sqrt(2.0 / (n * (parts - n)))) fit.correlation = excess;
+  }
+  const Matrix covariance = by * (inverse * (fit.correlation * variance * noise) * inverse) * by;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      fit.covariance[static_cast<std::size_t>(a * ShapeFit::kMost + b)] = covariance(a, b);
+  return {};
+}
+
+Status checkDetermined(const ShapeFit& fit, const FitModel& model) {
+  const FitSurface& surface = fit.surface;
+  const auto error = [&](int k) {
+    return std::sqrt(std::max(0.0, fit.covariance[static_cast<std::size_t>(k * ShapeFit::kMost + k)]));
+  };
+  // With exact samples the rounding of sums is left.
+  const auto differs = [](double value, double by) {
+    return std::abs(value) > std::max(kFitSigmas * by, 1e-7);
+  };
+  const ShapeKind kind = model.kind;
+  const char* plane = "fit a plane: the curvature does not differ from 0 by three standard errors";
+  if (kind == ShapeKind::kSphere && !differs(surface.tube, error(3)))
+    return undetermined(kind, "a radius", plane);
+  if (kind == ShapeKind::kCylinder && !differs(surface.ring, error(4)))
+    return undetermined(kind, "a radius", plane);
+  if (kind == ShapeKind::kCone || kind == ShapeKind::kTorus) {
+    if (!differs(surface.ring, error(4)))
+      return undetermined(kind, "an axis",
+                          "fit a plane or a cylinder: it does not differ from one by three standard errors");
+    if (kind == ShapeKind::kCone && !differs(surface.theta, error(5)))
+      return undetermined(kind, "an apex",
+                          "fit a cylinder: the angle does not differ from 0 by three standard errors");
+    if (kind == ShapeKind::kTorus && !differs(surface.tube, error(6)))
+      return undetermined(kind, "a radius of the tube",
+                          "fit a cone or a cylinder: it does not differ from one by three standard errors");
+  }
+  const ShapeFit::Errors errors = fit.errors();
+  if (kind == ShapeKind::kTorus) {
+    if (!(fit.shape.radius > kFitSigmas * errors.radius))
+      return undetermined(kind, "a ring",
+                          "fit a sphere: the ring's radius does not differ from 0 by three standard errors");
+    if (!(fit.shape.radius > fit.shape.tube_radius))
+      return undetermined(kind, "a ring that does not meet itself", "fit a sphere or a cylinder");
+  }
+  constexpr double kWorst = 10.0 * std::numbers::pi / 180.0;
+  if (kind != ShapeKind::kSphere && !(glm::length(errors.direction) < kWorst))
+    return undetermined(kind, "its direction",
+                        "it is known to 10 degrees or worse: take a larger region or a simpler shape");
+  const double all = glm::dot(fit.shape.point, glm::dvec3(1.0)) +
+                     glm::dot(fit.shape.direction, glm::dvec3(1.0)) + fit.shape.radius +
+                     fit.shape.tube_radius + fit.rms_mm + glm::length(errors.point);
+  if (!std::isfinite(all)) return undetermined(kind, "the shape", "take a larger region or a simpler shape");
+  return {};
+}
+
+}  // namespace fettle::engine
