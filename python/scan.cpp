@@ -14,6 +14,7 @@
 #include "engine/base/job.h"
 #include "engine/field/builder.h"
 #include "engine/field/mark_setter.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/tile.h"
 #include "engine/io/geo/named_crs.h"
@@ -217,12 +218,9 @@ Scan withLines(const Scan& scan, const std::vector<LineRow>& rows) {
 py::bytes formOf(const Scan& scan) {
   const auto* formed = scan.data.field.seenOf();
   if (formed == nullptr) return {};
-  engine::PolynomialForm form = *formed->form();
-  if (scan.data.field.reader().sign() < 0.0F) {
-    form.base = -form.base;
-    for (double& coefficient : form.coefficients) coefficient = -coefficient;
-  }
-  return engine::packForm(std::make_shared<const engine::PolynomialForm>(std::move(form)));
+  const engine::NominalForm& form = *formed->form();
+  return engine::packForm(std::make_shared<const engine::NominalForm>(
+      scan.data.field.reader().sign() < 0.0F ? form.inverted() : form));
 }
 
 Scan samplesOf(const Scan& scan) {

@@ -33,7 +33,7 @@
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
 #include "engine/formats/formats.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 #include "engine/measure/line_offsets.h"
 #include "engine/resume/work_identity.h"
 
@@ -219,7 +219,7 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       steps.emplace_back(
           PlannedOnPieces{[&field, level](const engine::SampleRect& r, engine::JobControl& own) {
             const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
-            engine::FormOptions form = formOptionsOf(level->form);
+            engine::FormChoice form = formChoiceOf(level->form);
             form.region = engine::Region::kAll;  // marks of an earlier step are not there yet
             Levelling levelling;
             if (!level->lines.rows.empty()) {
@@ -231,7 +231,7 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
               if (!lines) return engine::Result<engine::Version>(tl::unexpected(lines.error()));
               levelling.lines = *std::move(lines);
             }
-            auto fit = engine::fitForm(piece, form, own);
+            auto fit = engine::fitNominalForm(piece, form, own);
             // Of a piece of holes there is none.
             if (!fit && fit.error().kind == engine::ErrorKind::kInput)
               return engine::Result<engine::Version>(piece);

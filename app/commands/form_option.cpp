@@ -1,14 +1,11 @@
 #include "app/commands/form_option.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/vec3.hpp>
 
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
@@ -19,43 +16,30 @@ namespace fettle::app {
 
 namespace {
 
-struct NamedForm {
-  const char* word;
-  const char* text;
-  int degree;
-};
-constexpr NamedForm kForms[] = {
-    {"none", "none: heights are measured from their mean all the same", 0},
-    {"mean", "the mean height", 0},
-    {"plane", "a plane", 1},
-    {"poly2", "a polynomial of total degree 2", 2},
-    {"poly3", "of total degree 3", 3},
-    {"poly4", "of total degree 4", 4},
-    {"poly5", "of total degree 5", 5},
-};
+constexpr const char* kNoForm = "none";
+constexpr const char* kMeasured = "measured";
 
 }  // namespace
 
 std::vector<Word> formWords() {
   std::vector<Word> words;
-  words.reserve(std::size(kForms));
-  for (const NamedForm& form : kForms) words.emplace_back(form.word, form.text);
+  words.emplace_back(kNoForm, "none: heights are measured from their mean all the same");
+  for (const engine::FormInfo& form : engine::formInfos())
+    words.emplace_back(std::string(form.word), std::string(form.text));
   return words;
 }
 
-std::string formWordOf(const engine::PolynomialForm& form) {
-  // From the end: "none" is of degree 0, too.
-  const auto* found = std::find_if(std::rbegin(kForms), std::rend(kForms), [&](const NamedForm& row) {
-                        return row.degree == form.degree;
-                      }).base();
-  return std::prev(found)->word;
+std::string formWordOf(const engine::NominalForm& form) {
+  return std::string(engine::infoOf(form).word);
 }
 
 void addFormOptions(Command command, FormArguments& arguments) {
   command.add({
       {.name = "--form",
        .to = &arguments.form,
-       .text = "The form that is taken out, fitted by least squares",
+       .text = "The form that is taken out, fitted by least squares: polynomials of heights, shapes of "
+               "orthogonal "
+               "distances, as fettle fit has it",
        .words = formWords()},
       {.name = "--robust",
        .to = &arguments.robust,
@@ -74,22 +58,17 @@ void addFormOptions(Command command, FormArguments& arguments) {
   });
 }
 
-engine::FormOptions formOptionsOf(const FormArguments& arguments) {
-  engine::FormOptions options;
-  for (const NamedForm& form : kForms)
-    if (arguments.form == form.word) options.degree = form.degree;
-  options.robust = arguments.robust;
-  options.region = arguments.region == "marked"     ? engine::Region::kMarked
-                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
-                                                    : engine::Region::kAll;
-  return options;
+engine::FormChoice formChoiceOf(const FormArguments& arguments) {
+  const engine::FormInfo* form = engine::formNamed(arguments.form);
+  return {form != nullptr ? form->kind : engine::FormKind::kMean,
+          engine::regionNamed(arguments.region).value_or(engine::Region::kAll), arguments.robust};
 }
 
 engine::Result<engine::Version> countedOf(const engine::Version& field,
                                           const std::optional<engine::Version>& original,
                                           const std::string& scan, const FormArguments& arguments,
                                           engine::JobControl& job) {
-  if (arguments.region != "measured") return withMarks(field, arguments.marks, job);
+  if (arguments.region != kMeasured) return withMarks(field, arguments.marks, job);
   if (!original)
     return engine::inputError("the file does not say which samples were filled", shownInput(scan),
                               "give the session of fettle fill, or its --filled-out as --marks with --region "
@@ -104,42 +83,63 @@ engine::Status checkForm(const FormArguments& arguments) {
   return {};
 }
 
-engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::string& scan,
-                                       const engine::Imported& imported, const FormArguments& arguments,
-                                       engine::JobControl& job) {
-  const engine::FormOptions options = formOptionsOf(arguments);
-  auto fit = engine::fitForm(field, options, job);
+engine::Result<engine::FittedForm> formOf(const engine::Version& field, const std::string& scan,
+                                          const engine::Imported& imported, const FormArguments& arguments,
+                                          engine::JobControl& job) {
+  const engine::FormChoice choice = formChoiceOf(arguments);
+  auto fit = engine::fitNominalForm(field, choice, job);
   if (!fit) {
     if (fit.error().kind != engine::ErrorKind::kInput) return fit;
+    // What a shape lacks is said by the fit.
+    const bool no_sample = fit.error().where == "form";
     return engine::inputError(fit.error().what, shownInput(scan),
-                              arguments.region == "all" ? "is every sample a hole? fettle info counts them"
-                                                        : "give marks with --marks, or take --region all");
+                              !no_sample                  ? fit.error().remedy
+                              : arguments.region == "all" ? "is every sample a hole? fettle info counts them"
+                                                          : "give marks with --marks, or take --region all");
   }
-  if (fit->samples <= engine::PolynomialForm::terms(options.degree))
+  if (!fit->decided)
     warn(fmt::format(
         "{}: {} samples do not determine the form {}: of those that come nearest to them it is the flattest",
         shownInput(scan), fit->samples, arguments.form));
+  if (fit->beyond > 0)
+    warn(
+        fmt::format("{}: {} of {} samples lie beyond the outline of the {}: there it is continued by a plane",
+                    shownInput(scan), fit->beyond, fit->samples, arguments.form));
   if (imported.in_perspective)
     warn(
         fmt::format("{}: in a camera's perspective a plane is bent: form and figures are those of the "
                     "picture of distances, convert the scan to points and grid them first",
                     shownInput(scan)));
-  if (arguments.form == "none") {
-    fit->form.base = 0.0;
-    fit->form.coefficients.front() = 0.0;
-  }
+  if (arguments.form == kNoForm)
+    fit->form = engine::PolynomialForm{0, fit->form.width(), fit->form.height(), 0.0, {0.0}};
   return fit;
 }
 
-void addForm(Report& report, const FormArguments& arguments, const engine::FormFit& fit,
+void addForm(Report& report, const FormArguments& arguments, const engine::FittedForm& fit,
              const engine::Grid& grid) {
   report["form"] = arguments.form;
   report["robust"] = arguments.robust;
   report["region"] = arguments.region;
-  if (fit.form.degree == 0) return;
-  const engine::PolynomialForm::Gradient gradient = fit.form.gradient();
+  const auto degreesOf = [](double radians) { return radians * 180.0 / std::numbers::pi; };
+  if (fit.fit) {
+    const engine::Shape& shape = fit.fit->shape;
+    const auto vector = [](const glm::dvec3& v) { return Report::array({v.x, v.y, v.z}); };
+    report["point_mm"] = vector(shape.point);
+    if (shape.kind != engine::ShapeKind::kSphere) report["direction"] = vector(shape.direction);
+    if (shape.kind == engine::ShapeKind::kCone)
+      report["half_angle_deg"] = degreesOf(shape.half_angle);
+    else
+      report["radius_mm"] = shape.radius;
+    report["hollow"] = shape.hollow;
+    report["left_out"] = fit.fit->left_out;
+    report["beyond"] = fit.beyond;
+    return;
+  }
+  const engine::PolynomialForm& form = *fit.form.polynomial();
+  if (form.degree == 0) return;
+  const engine::PolynomialForm::Gradient gradient = form.gradient();
   const auto degrees = [&](double per_sample, double spacing_mm) {
-    return std::atan(per_sample * grid.height_unit.mm / spacing_mm) * 180.0 / std::numbers::pi;
+    return degreesOf(std::atan(per_sample * grid.height_unit.mm / spacing_mm));
   };
   report["tilt_x"] = degrees(gradient.by_column, grid.spacingXMm());
   report["tilt_y"] = degrees(gradient.by_row, grid.spacingYMm());

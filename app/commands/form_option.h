@@ -8,7 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/io/import.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 
 namespace fettle::app {
 
@@ -20,17 +20,17 @@ struct FormArguments {
   std::string marks;  ///< a picture of marks instead of the scan's own; empty: none
 };
 
-/// "none", "mean", "plane", "poly2" to "poly5".
+/// "none", "mean", "plane", "poly2" to "poly5", "sphere", "cylinder", "cone".
 [[nodiscard]] std::vector<Word> formWords();
 
 /// The word of a form.
-[[nodiscard]] std::string formWordOf(const engine::PolynomialForm& form);
+[[nodiscard]] std::string formWordOf(const engine::NominalForm& form);
 
 /// --form, --robust, --region, --marks.
 void addFormOptions(Command command, FormArguments& arguments);
 
 /// What the arguments mean, as typed and checked by their rows.
-[[nodiscard]] engine::FormOptions formOptionsOf(const FormArguments& arguments);
+[[nodiscard]] engine::FormChoice formChoiceOf(const FormArguments& arguments);
 
 /// The field that is measured: with the marks of the arguments, and in the region "measured" with holes in place of the
 /// samples that were filled since `original`, that of a session. `scan` is its path. Errors: as withMarks; the region
@@ -44,15 +44,18 @@ void addFormOptions(Command command, FormArguments& arguments);
 /// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples.
 [[nodiscard]] engine::Status checkForm(const FormArguments& arguments);
 
-/// The form of a field; of "none" the form whose height is 0 everywhere. Warns of a form that so few samples do not
-/// determine, and of a scan in a camera's perspective. `scan` is its path. Errors: as engine::fitForm, naming the scan.
-[[nodiscard]] engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::string& scan,
-                                                     const engine::Imported& imported,
-                                                     const FormArguments& arguments, engine::JobControl& job);
+/// The form of a field; of "none" the form whose height is 0 everywhere. Warns of a polynomial that so few samples do not
+/// determine, of samples beyond the outline of a shape, and of a scan in a camera's perspective. `scan` is its path. Errors: as
+/// engine::fitNominalForm, naming the scan.
+[[nodiscard]] engine::Result<engine::FittedForm> formOf(const engine::Version& field, const std::string& scan,
+                                                        const engine::Imported& imported,
+                                                        const FormArguments& arguments,
+                                                        engine::JobControl& job);
 
-/// The form as keys of a report: form, robust, region, and of a plane and more tilt_x, tilt_y [degrees], tilted up to
-/// higher x and y.
-void addForm(Report& report, const FormArguments& arguments, const engine::FormFit& fit,
+/// The form as keys of a report: form, robust, region; of a plane and more tilt_x, tilt_y [degrees], tilted up to
+/// higher x and y; of a shape, as `fettle fit` names them, point_mm, direction, radius_mm or half_angle_deg, hollow, left_out, and
+/// beyond, samples beyond its outline.
+void addForm(Report& report, const FormArguments& arguments, const engine::FittedForm& fit,
              const engine::Grid& grid);
 
 }  // namespace fettle::app

@@ -19,10 +19,10 @@ constexpr const char* kRemove = "remove";
 constexpr const char* kBake = "bake";
 
 // The form of the samples, upright, that count.
-engine::Result<engine::FormFit> fitOver(const engine::Version& samples,
-                                        const std::optional<engine::Version>& original,
-                                        const FormArguments& form, const engine::Imported& imported,
-                                        const std::string& scan, engine::JobControl& job) {
+engine::Result<engine::FittedForm> fitOver(const engine::Version& samples,
+                                           const std::optional<engine::Version>& original,
+                                           const FormArguments& form, const engine::Imported& imported,
+                                           const std::string& scan, engine::JobControl& job) {
   auto counted = countedOf(engine::upright(samples), original, scan, form, job);
   if (!counted) return tl::unexpected(counted.error());
   return formOf(*counted, scan, imported, form, job);
@@ -91,7 +91,7 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
   if (layer == kPut) {
     const auto fit = fitOver(*samples, original, form, *imported, task.in, job);
     if (!fit) return tl::unexpected(fit.error());
-    const auto over = std::make_shared<const engine::PolynomialForm>(fit->form);
+    const auto over = std::make_shared<const engine::NominalForm>(fit->form);
     for (engine::Version* version : {&result, original ? &*original : nullptr}) {
       if (version == nullptr) continue;
       auto shown = shownIn(task, version->withForm(over), job);

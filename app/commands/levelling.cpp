@@ -45,7 +45,7 @@ engine::LineOptions lineOptionsOf(const LineArguments& lines, const FormArgument
       options.degree = row.degree;
     }
   options.axis = lines.scan_axis == "y" ? engine::ScanAxis::kY : engine::ScanAxis::kX;
-  const engine::FormOptions counting = formOptionsOf(form);
+  const engine::FormChoice counting = formChoiceOf(form);
   options.region = counting.region;
   options.robust = counting.robust;
   return options;

@@ -12,7 +12,7 @@
 #include "engine/field/grid.h"
 #include "engine/field/version.h"
 #include "engine/io/import.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 #include "engine/measure/line_offsets.h"
 
 namespace fettle::app {
@@ -32,7 +32,7 @@ struct LineArguments {
 /// What `fettle level` and the step "level" of a recipe take out of a field: offsets of lines, and the form of what is left.
 struct Levelling {
   std::optional<engine::LineOffsets> lines;
-  engine::FormFit fit;
+  engine::FittedForm fit;
 
   /// A field of the same size without both, rounded to float once. Errors: as engine::lowered.
   [[nodiscard]] engine::Result<engine::Version> takenFrom(const engine::Version& field,

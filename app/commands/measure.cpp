@@ -58,7 +58,7 @@ engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& ty
 engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& options,
                                                     const engine::Grid& grid) {
   engine::ArealOptions areal;
-  areal.region = formOptionsOf(options.form).region;
+  areal.region = formChoiceOf(options.form).region;
   const auto wants = [&](const char* group) {
     return options.groups.empty() || std::ranges::find(options.groups, group) != options.groups.end();
   };

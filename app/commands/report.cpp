@@ -21,6 +21,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
 #include "app/terminal.h"
+#include "app/work/form_change.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
@@ -200,12 +201,13 @@ class ScanReport {
       const auto fit = formOf(*counted, options_.scan, imported_, options_.form, job_);
       if (!fit) return tl::unexpected(fit.error());
       engine::ArealOptions areal;
-      areal.region = formOptionsOf(options_.form).region;
+      areal.region = formChoiceOf(options_.form).region;
       const auto parameters = engine::measureAreal(*counted, fit->form, areal, job_);
       if (!parameters) return tl::unexpected(parameters.error());
       addForm(measured.emplace_back(), options_.form, *fit, state.field.grid());
       addAreal(measured.back(), *parameters, {}, state.field.grid());
       report_[measured.size() == states_.size() ? "sq" : "sq_before"] = measured.back()["sq"];
+      if (fit->fit) tilt += fmt::format(" {}: {}.", state.name, formFigures(fit->form));
       if (measured.back().contains("tilt_x"))
         tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                             measured.back()["tilt_x"].get<double>(), measured.back()["tilt_y"].get<double>());

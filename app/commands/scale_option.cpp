@@ -132,7 +132,7 @@ engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const st
   auto rough = filteredBy(*rest, scale.l_kind, *long_, engine::Waves::kShort, "--l-filter", job);
   if (!rough) return tl::unexpected(rough.error());
   result.field = *std::move(rough);
-  result.form = {0, result.form.width, result.form.height, 0.0, {0.0}};
+  result.form = engine::PolynomialForm{0, result.form.width(), result.form.height(), 0.0, {0.0}};
   return result;
 }
 

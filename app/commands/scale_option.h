@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/io/import.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 
 namespace fettle::app {
 
@@ -26,9 +26,8 @@ void addScaleOptions(Command command, ScaleArguments& arguments);
 /// A field as it is measured: `field` about `form`.
 struct ScaleLimited {
   engine::Version field;
-  engine::FormFit fit;  ///< what was taken out between the filters
-  engine::PolynomialForm
-      form;  ///< that of `fit`, or of height 0 where an L-filter made the form's rest heights
+  engine::FittedForm fit;    ///< what was taken out between the filters
+  engine::NominalForm form;  ///< that of `fit`, or of height 0 where an L-filter made the form's rest heights
 };
 
 /// S-filter, form (F-operation) and L-filter, in the order of ISO 25178-3: the S-F or S-L surface. Errors: as

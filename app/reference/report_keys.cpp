@@ -107,11 +107,22 @@ ReportForm noEstimate() {
 }
 
 Keys form() {
-  return {{"form", "string", "none, mean, plane, poly2 to poly5"},
-          {"robust", "boolean", ""},
-          {"region", "string", "all, marked, unmarked, measured"},
-          {"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
-          {"tilt_y?", "number", "degrees"}};
+  return joined({{"form", "string", "none, mean, plane, poly2 to poly5, sphere, cylinder, cone"},
+                 {"robust", "boolean", ""},
+                 {"region", "string", "all, marked, unmarked, measured"}},
+                formFigures());
+}
+
+Keys formFigures() {
+  return {{"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
+          {"tilt_y?", "number", "degrees"},
+          {"point_mm?", "[number]", "of a shape, as the next ones: centre, on the axis, apex; x, y, z"},
+          {"direction?", "[number]", "of an axis; from the apex into the cone"},
+          {"radius_mm?", "number", ""},
+          {"half_angle_deg?", "number", "of a cone"},
+          {"hollow?", "boolean", "seen from inside"},
+          {"left_out?", "integer", "samples that did not count, with robust"},
+          {"beyond?", "integer", "samples that counted beyond the outline"}};
 }
 
 }  // namespace fettle::app::reports

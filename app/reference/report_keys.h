@@ -29,6 +29,7 @@ using Keys = std::vector<ReportKey>;
 [[nodiscard]] ReportForm noEstimate();
 /// What is taken out of a surface before it is measured.
 [[nodiscard]] Keys form();
+[[nodiscard]] Keys formFigures();
 
 /// Of info, measure, section, align, fit, compare, lines, journal, recipe, devices.
 [[nodiscard]] std::vector<ReportSchema> inspecting();

@@ -121,7 +121,7 @@ void addFilters(const Parts& p, Report& r) {
   r["draws_lines"] = p.settings.draw_lines;
   r["marking"] = p.marking.edit.busy();
   const engine::FieldForm& form = p.document.client()->newest().formOver();
-  r["form"] = form != nullptr ? Report(form->degree) : Report();
+  r["form"] = form != nullptr ? Report(std::string(engine::infoOf(*form).word)) : Report();
   r["fitting_form"] = p.form.busy();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
   r["applying"] = filters.applying();

@@ -1,5 +1,6 @@
 #include "app/work/form_change.h"
 
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 namespace fettle::app {
 namespace {
 
-std::string stepName(FormStep step, const engine::PolynomialForm& form) {
+std::string stepName(FormStep step, const engine::NominalForm& form) {
   switch (step) {
     case FormStep::kTakeOut:
       return fmt::format("Form out: {}", formName(form));
@@ -23,10 +24,17 @@ std::string stepName(FormStep step, const engine::PolynomialForm& form) {
 
 }  // namespace
 
-std::string formName(const engine::PolynomialForm& form) {
-  if (form.degree == 0) return "mean height";
-  if (form.degree == 1) return "plane";
-  return fmt::format("polynomial of degree {}", form.degree);
+std::string formName(const engine::NominalForm& form) {
+  return std::string(engine::infoOf(form).title);
+}
+
+std::string formFigures(const engine::NominalForm& form) {
+  const engine::ShapeForm* shape = form.shape();
+  if (shape == nullptr) return {};
+  const char* hollow = shape->curvature > 0.0 ? ", hollow" : "";
+  if (shape->shape == engine::FormShape::kCone)
+    return fmt::format("half angle {:.4g} degrees{}", shape->halfAngle() * 180.0 / std::numbers::pi, hollow);
+  return fmt::format("radius {:.5g} mm{}", shape->radius(), hollow);
 }
 
 engine::Status FormChange::moveTo(const engine::Version& field, engine::JobControl& job) {

@@ -1,17 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/version.h"
+#include "engine/measure/form_fit.h"
 
 namespace fettle::app {
 
-/// "plane", "polynomial of degree 2", "mean height".
-[[nodiscard]] std::string formName(const engine::PolynomialForm& form);
+/// "plane", "polynomial of degree 2", "mean height", "sphere".
+[[nodiscard]] std::string formName(const engine::NominalForm& form);
+/// What a shape is like, "radius 12.5 mm, hollow", "half angle 30.1 degrees"; empty for a polynomial.
+[[nodiscard]] std::string formFigures(const engine::NominalForm& form);
 
 /// What is done to the form over a field.
 enum class FormStep : std::uint8_t {
@@ -23,11 +27,12 @@ enum class FormStep : std::uint8_t {
 /// A step that changes the form over a field, worked out beside the loop: LoopClient::changeForm() makes it. Upright.
 struct FormChange {
   FormStep step = FormStep::kPutBack;
-  engine::FieldForm form;    ///< of kTakeOut
-  std::string name;          ///< of the step
-  engine::Version base;      ///< the newest field it was worked out on
-  engine::Version changed;   ///< as it is seen then
-  engine::Version original;  ///< the original scan under the same form
+  engine::FieldForm form;                    ///< of kTakeOut
+  std::string name;                          ///< of the step
+  std::optional<engine::FormChoice> choice;  ///< that found `form`
+  engine::Version base;                      ///< the newest field it was worked out on
+  engine::Version changed;                   ///< as it is seen then
+  engine::Version original;                  ///< the original scan under the same form
   engine::StoredStates stored;
 
   /// Works `changed` out for another state of the field: time proportional to the tiles in which it differs from `base`.

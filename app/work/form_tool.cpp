@@ -6,20 +6,21 @@
 namespace fettle::app {
 namespace {
 
-engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::FormOptions& options,
+engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::FormChoice& options,
                                     engine::JobControl& job) {
   const auto samples = engine::withoutLayer(field, job);
   if (!samples) return tl::unexpected(samples.error());
-  const auto fit = engine::fitForm(*samples, options, job);
+  const auto fit = engine::fitNominalForm(*samples, options, job);
   if (!fit) {
     engine::Error error = fit.error();
-    if (error.kind == engine::ErrorKind::kInput)
+    if (error.kind == engine::ErrorKind::kInput && error.where == "form")
       error.remedy = options.region == engine::Region::kAll ? "every sample is a hole"
                                                             : "mark samples, or fit by all of them";
     return tl::unexpected(error);
   }
-  return FormTool::Fit{options, std::make_shared<const engine::PolynomialForm>(fit->form), fit->samples,
-                       fit->rms, fit->samples > engine::PolynomialForm::terms(options.degree)};
+  return FormTool::Fit{options,      std::make_shared<const engine::NominalForm>(fit->form),
+                       fit->samples, fit->rms,
+                       fit->decided, fit->beyond};
 }
 
 }  // namespace
@@ -39,6 +40,7 @@ void FormTool::takeOut(const LoopClient& client) {
     if (!fit) return tl::unexpected(fit.error());
     auto change = makeFormChange(FormStep::kTakeOut, fit->form, field, scan, job);
     if (!change) return tl::unexpected(change.error());
+    change->choice = what;
     return Work{*std::move(fit), *std::move(change)};
   });
 }

@@ -7,7 +7,7 @@
 #include "app/work/background.h"
 #include "app/work/form_change.h"
 #include "app/work/loop_client.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 
 namespace fettle::app {
 
@@ -16,15 +16,16 @@ namespace fettle::app {
 class FormTool {
  public:
   /// Edited by the panel.
-  engine::FormOptions options;
+  engine::FormChoice options;
 
   /// A fit: how far the samples that count are from the form.
   struct Fit {
-    engine::FormOptions options;
+    engine::FormChoice options;
     engine::FieldForm form;
     std::int64_t samples = 0;
-    double rms = 0.0;     ///< [height_unit]
-    bool decided = true;  ///< false: so few samples do not determine the form
+    double rms = 0.0;         ///< [height_unit]
+    bool decided = true;      ///< false: so few samples do not determine the form
+    std::int64_t beyond = 0;  ///< samples that count beyond the outline of a shape
   };
 
   /// Fits `options` to the samples of the newest field, with the form that lies over it: fit() has the result.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/field/difference.h"
+#include "engine/measure/form_kind.h"
 #include "engine/session/form_codec.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/loop/pacer.h"
@@ -317,6 +318,10 @@ bool LoopClient::changeForm(FormChange& change) {
   StepKeeper::HandChange made;
   made.data = engine::packForm(change.form);
   made.heights = change.step == FormStep::kMakeHeights;
+  if (change.choice)
+    made.fitted = haptic::journal::FormFitted{std::string(engine::infoOf(change.choice->kind).word),
+                                              std::string(engine::wordOf(change.choice->region)),
+                                              change.choice->robust};
   const engine::Version after = change.changed;
   steps_.change(change.name, engine::StepKind::kForm, after, place_, std::move(made));
   restore(after);

@@ -164,6 +164,7 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   made.lines = kind == engine::StepKind::kLines;
   made.marks = kind == engine::StepKind::kMark;
   made.suggested = change->suggested;
+  made.fitted = std::move(change->fitted);
   journal_.commit(made, history_.step(state), std::move(change->data));
 }
 

@@ -107,7 +107,8 @@ class StepKeeper {
   struct HandChange {
     std::string data;  ///< as of haptic::packMarkChanges, haptic::packLineChange or engine::packForm
     std::optional<haptic::journal::EdgesSuggested> suggested;
-    bool heights = false;  ///< of kForm: what was seen are the samples
+    bool heights = false;                                    ///< of kForm: what was seen are the samples
+    std::optional<haptic::journal::FormFitted> fitted = {};  ///< of kForm
   };
   /// Changes the marks (kMark), the edge lines and marks (kLines) or the form (kForm) of the newest step's field.
   void change(std::string name, engine::StepKind kind, const engine::Version& field,

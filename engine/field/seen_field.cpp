@@ -16,6 +16,7 @@
 
 #include "engine/field/difference_inl.h"
 #include "engine/field/live_field.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/tile_fill.h"
 

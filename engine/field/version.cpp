@@ -1,6 +1,7 @@
 #include "engine/field/version.h"
 
 #include "engine/field/line_cuts.h"
+#include "engine/field/nominal_form.h"
 
 #include <algorithm>
 #include <bit>
@@ -46,7 +47,7 @@ Version Version::withLines(EdgeLines lines) const {
 }
 
 Version Version::withForm(FieldForm form) const {
-  assert(form == nullptr || (form->width == grid().width && form->height == grid().height));
+  assert(form == nullptr || (form->width() == grid().width && form->height() == grid().height));
   FieldDescription description = *description_;
   description.form = std::move(form);
   return withDescription(std::move(description));

@@ -7,18 +7,18 @@
 #include "engine/field/edge_line.h"
 #include "engine/field/grid.h"
 #include "engine/field/node_pool.h"
-#include "engine/field/polynomial_form.h"
 #include "engine/field/reader.h"
 
 namespace fettle::engine {
 
 class LiveField;
 class LineCuts;
+class NominalForm;
 class Version;
 struct SeenPair;
 
 /// The form that lies over a field, or null.
-using FieldForm = std::shared_ptr<const PolynomialForm>;
+using FieldForm = std::shared_ptr<const NominalForm>;
 
 /// What versions share beyond samples: where the samples lie, the edge lines between them, and the form over them.
 struct FieldDescription {

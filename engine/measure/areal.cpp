@@ -23,8 +23,8 @@ namespace {
 constexpr int kHaloSide = kTileSide + 1;
 
 // The region's samples of a rectangle less the form; NaN elsewhere.
-void readResiduals(const FieldReader& field, const PolynomialForm& form, Region region,
-                   const SampleRect& rect, double* out) noexcept {
+void readResiduals(const FieldReader& field, const NominalForm& form, Region region, const SampleRect& rect,
+                   double* out) noexcept {
   float z[kHaloSide * kHaloSide];
   readRegion(field, region, rect, z, kHaloSide);
   form.readHeights(rect, out, kHaloSide);
@@ -89,7 +89,7 @@ struct SlopePart {
   CompensatedSum gradient, excess;
 };
 
-SlopePart slopesOf(const FieldReader& field, const PolynomialForm& form, Region region, JobControl& job) {
+SlopePart slopesOf(const FieldReader& field, const NominalForm& form, Region region, JobControl& job) {
   const Grid& grid = field.grid();
   const double mm = grid.height_unit.mm, sx = grid.spacingXMm(), sy = grid.spacingYMm();
   job.begin("measuring slopes", tileCount(field));
@@ -137,7 +137,7 @@ Result<SpatialAnalysis> spatialOf(const Surface& surface, JobControl& job) {
 
 }  // namespace
 
-Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form,
+Result<ArealParameters> measureAreal(const Version& field, const NominalForm& form,
                                      const ArealOptions& options, JobControl& job) try {
   const FieldReader reader = field.reader();
   const Region region = options.region;

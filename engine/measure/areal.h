@@ -7,10 +7,11 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/version.h"
-#include "engine/measure/form.h"
 #include "engine/measure/hills.h"
 #include "engine/measure/material_ratio.h"
+#include "engine/measure/region.h"
 #include "engine/measure/spatial.h"
 
 namespace fettle::engine {
@@ -69,7 +70,7 @@ struct ArealOptions {
 /// 4 bytes per sample while heights are sorted, 28 for features, 40 for spatial parameters, which are not stated where
 /// so much is not free. Errors: kInput for a region without samples; kFailed without memory;
 /// kCancelled. Thread: any; a long job on all workers of the calling arena.
-[[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form,
+[[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const NominalForm& form,
                                                    const ArealOptions& options, JobControl& job);
 
 }  // namespace fettle::engine

@@ -340,8 +340,8 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
   return fit;
 }
 
-Result<Version> withoutForm(const Version& field, const PolynomialForm& form, JobControl& job) {
-  assert(form.width == field.grid().width && form.height == field.grid().height);
+Result<Version> withoutForm(const Version& field, const NominalForm& form, JobControl& job) {
+  assert(form.width() == field.grid().width && form.height() == field.grid().height);
   return lowered(
       field, "removing the form",
       [&](const SampleRect& rect, double* out) { form.readHeights(rect, out, kTileSide); }, job);

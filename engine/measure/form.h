@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/polynomial_form.h"
 #include "engine/field/version.h"
 #include "engine/measure/region.h"
@@ -40,6 +41,6 @@ struct FormFit {
 
 /// The field without the form: height - form, signs applied, rounded to float once. Holes, marks, edge lines and the
 /// field's place stay. Errors: kFailed without memory; kCancelled. Thread: as fitForm.
-[[nodiscard]] Result<Version> withoutForm(const Version& field, const PolynomialForm& form, JobControl& job);
+[[nodiscard]] Result<Version> withoutForm(const Version& field, const NominalForm& form, JobControl& job);
 
 }  // namespace fettle::engine

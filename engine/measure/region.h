@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include "engine/field/reader.h"
 #include "engine/field/sample_rect.h"
@@ -13,6 +16,11 @@ enum class Region : std::uint8_t {
   kMarked,
   kUnmarked,
 };
+
+/// "all", "marked", "unmarked".
+[[nodiscard]] std::string_view wordOf(Region region) noexcept;
+/// Nothing for another word.
+[[nodiscard]] std::optional<Region> regionNamed(std::string_view word) noexcept;
 
 /// As FieldReader::readHeights, with NaN where a sample is not in the region. The rectangle may reach over the field's
 /// border; it has at most (kTileSide + 1) x (kTileSide + 1) samples. Any thread; no allocation.

@@ -17,7 +17,7 @@ struct ExtentPart {
 
 }  // namespace
 
-Result<Surface> surfaceOf(const Version& field, const PolynomialForm& form, double mean, Region region,
+Result<Surface> surfaceOf(const Version& field, const NominalForm& form, double mean, Region region,
                           JobControl& job) {
   const FieldReader reader = field.reader();
   const Grid& grid = reader.grid();

@@ -6,9 +6,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
-#include "engine/measure/form.h"
 #include "engine/measure/region.h"
 
 namespace fettle::engine {
@@ -31,7 +31,7 @@ struct Surface {
 /// Reads it: heights less `form` and less `mean`, rounded to float once. A region without samples is a surface of none.
 /// Memory: 4 bytes per sample of the rectangle. Errors: kCancelled. Throws std::bad_alloc. Thread: any; on all workers of
 /// the calling arena.
-[[nodiscard]] Result<Surface> surfaceOf(const Version& field, const PolynomialForm& form, double mean,
+[[nodiscard]] Result<Surface> surfaceOf(const Version& field, const NominalForm& form, double mean,
                                         Region region, JobControl& job);
 
 }  // namespace fettle::engine

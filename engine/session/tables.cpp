@@ -46,7 +46,10 @@ CREATE TABLE forms(step INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLO
 PRAGMA user_version=3;
 )";
 
-constexpr std::int64_t kLinesFormat = 2, kFormsFormat = 3;
+// The tables are those of before: the numbers of a shape stand where those of a polynomial did.
+constexpr const char* kShapesSchema = "PRAGMA user_version=4;";
+
+constexpr std::int64_t kLinesFormat = 2, kFormsFormat = 3, kShapesFormat = 4;
 
 StepTime timeOf(std::int64_t ms) {
   return StepTime(std::chrono::milliseconds(ms));
@@ -329,7 +332,9 @@ Result<bool> SessionTables::hasTablesOf(std::int64_t format) {
 }
 
 Status SessionTables::makeTablesOf(std::int64_t format) {
-  for (const auto& [of, schema] : {std::pair(kLinesFormat, kLinesSchema), {kFormsFormat, kFormsSchema}}) {
+  for (const auto& [of, schema] : {std::pair(kLinesFormat, kLinesSchema),
+                                   {kFormsFormat, kFormsSchema},
+                                   {kShapesFormat, kShapesSchema}}) {
     if (of > format) break;
     const Result<bool> there = hasTablesOf(of);
     if (!there) return tl::unexpected(there.error());
@@ -392,7 +397,8 @@ Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRo
 }
 
 Status SessionTables::insertForm(std::int64_t step, std::string_view packed) {
-  if (Status status = makeTablesOf(kFormsFormat); !status) return status;
+  if (Status status = makeTablesOf(isPackedShape(packed) ? kShapesFormat : kFormsFormat); !status)
+    return status;
   const std::string data = packBytes(packed);
   return run("INSERT INTO forms VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});
 }

@@ -17,9 +17,10 @@ namespace fettle::engine {
 // and its ranges; errors are those of Database, and damaged().
 
 inline constexpr std::int64_t kSessionApplicationId = 0x4654544C;  // "FTTL"
-/// user_version: 3 where a step has changed the form over the field, else 2 where one has changed edge lines, else 1, so
-/// that a program that knows no forms, or no lines, reads the sessions without them.
-inline constexpr std::int64_t kSessionFormat = 3;
+/// user_version: 4 where a step has laid a shape over the field, else 3 where one has changed the form over it, else 2 where
+/// one has changed edge lines, else 1, so that a program that knows no shapes, no forms, or no lines, reads the sessions
+/// without them.
+inline constexpr std::int64_t kSessionFormat = 4;
 
 /// The only row that changes: the user's position, and the expected numbers of rows.
 struct HeadRow {

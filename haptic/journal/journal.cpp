@@ -87,6 +87,13 @@ std::optional<journal::EdgesSuggested> suggestedOf(const json& in) {
                                  found->at("thickness").get<double>()};
 }
 
+std::optional<journal::FormFitted> fittedOf(const json& in) {
+  const auto found = in.find("fitted");
+  if (found == in.end()) return std::nullopt;
+  return journal::FormFitted{found->at("form").get<std::string>(), found->at("region").get<std::string>(),
+                             found->at("robust").get<bool>()};
+}
+
 journal::Entry entryOf(const json& in) {
   const auto& what = in.at("do").get_ref<const std::string&>();
   const auto id = [&] { return in.at("id").get<std::uint64_t>(); };
@@ -102,7 +109,8 @@ journal::Entry entryOf(const json& in) {
     if (!kind) throw std::out_of_range("an unknown kind of step");
     return journal::StepMade{state(),         in.at("name").get<std::string>(), *kind,
                              placeOf(in),     in.value("marks", false),         in.value("lines", false),
-                             suggestedOf(in), in.value("form", false),          in.value("heights", false)};
+                             suggestedOf(in), in.value("form", false),          in.value("heights", false),
+                             fittedOf(in)};
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
@@ -149,6 +157,9 @@ std::string journalText(const journal::Entry& entry) {
               out["suggested"] = {{"scale", e.suggested->scale},
                                   {"sensitivity", e.suggested->sensitivity},
                                   {"thickness", e.suggested->thickness}};
+            if (e.fitted)
+              out["fitted"] = {
+                  {"form", e.fitted->form}, {"region", e.fitted->region}, {"robust", e.fitted->robust}};
             put(out, e.at);
           },
           [&](const journal::RestoreRequested& e) {

@@ -56,11 +56,17 @@ struct EdgesSuggested {
   double sensitivity = 0.0;
   double thickness = 0.0;  ///< [samples]
 };
+/// How a form was found that a step laid over the field (engine::FormChoice, as words), to be found so on another scan.
+struct FormFitted {
+  std::string form;
+  std::string region;
+  bool robust = false;
+};
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
 /// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge
 /// lines (mark_codec.h); with `form` under the form of the entry's data (engine::packForm), with `heights` what was seen
 /// of it as samples, under none. With `suggested` these were the suggested edges of the heights before the step: a replay
-/// takes them from the data, a recipe suggests them again on another scan.
+/// takes them from the data, a recipe suggests them again on another scan. So it is with `fitted` of a form.
 struct StepMade {
   std::int64_t state = 0;
   std::string name;
@@ -71,6 +77,7 @@ struct StepMade {
   std::optional<EdgesSuggested> suggested = {};
   bool form = false;
   bool heights = false;
+  std::optional<FormFitted> fitted = {};
 };
 /// The restoring of state `state` was requested ...
 struct RestoreRequested {

@@ -199,7 +199,7 @@ TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   expectRefusedStep(folder, "do = \"level\"\nrows = \"medium\"\n", "rows is not one of median, mean");
   expectRefusedStep(folder, "do = \"level\"\nscan_axis = \"y\"\n", "scan_axis is that of lines: add rows");
   expectRefusedStep(folder, "do = \"level\"\nform = \"none\"\n", "form is not one of mean, plane");
-  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"sphere\"\n";
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"torus\"\n";
   expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "form is not one of mean, plane");
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nrobust = 1\n";
   expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "neither true nor false");

@@ -385,6 +385,22 @@ class Level(unittest.TestCase):
         with self.assertRaisesRegex(fettle.InputError, "no form lies over"):
             scan.level(layer="remove")
 
+    def test_a_ball_is_seen_without_its_sphere_and_comes_back(self):
+        y, x = np.mgrid[0:80, 0:96] * 0.1
+        ball = fettle.Field(np.sqrt(400.0 - (x - 4.0) ** 2 - (y - 5.0) ** 2), spacing=0.1, unit="mm")
+        formed = ball.level(layer="put", form="sphere")
+        self.assertAlmostEqual(formed.report["radius_mm"], 20.0, places=3)
+        self.assertLess(float(np.abs(np.asarray(formed)).max()), 1e-5)
+        self.assertEqual(formed.hash, ball.hash)
+        for field in (formed, formed.inverted()):
+            other = pickle.loads(pickle.dumps(field))
+            np.testing.assert_array_equal(np.asarray(other), np.asarray(field))
+            self.assertEqual(other.info()["form"], "sphere")
+            self.assertEqual(other.level(layer="remove").hash, field.level(layer="remove").hash)
+        np.testing.assert_array_equal(np.asarray(formed.level(layer="bake")), np.asarray(ball.level(form="sphere")))
+        with self.assertRaisesRegex(fettle.InputError, "do not determine a radius"):
+            fettle.Field(np.zeros((50, 60)), spacing=0.1, unit="mm").level(form="sphere")
+
 
 class ElsewhereAndBack(unittest.TestCase):
     def test_a_field_goes_through_pickle_as_it_is(self):

@@ -14,14 +14,21 @@ void writeWrapped(const std::string& text) {
   ImGui::PopTextWrapPos();
 }
 
-void degreeField(engine::FormOptions& options) {
-  constexpr const char* kForms[] = {"mean height",  "plane",        "polynomial 2",
-                                    "polynomial 3", "polynomial 4", "polynomial 5"};
-  static_assert(std::size(kForms) == engine::PolynomialForm::kMostDegree + 1);
-  (void)field("form", [&] { return ImGui::Combo("##form", &options.degree, kForms, std::size(kForms)); });
+std::string shortTitle(const engine::FormInfo& form) {
+  return form.degree >= 2 ? fmt::format("polynomial {}", form.degree) : std::string(form.title);
 }
 
-void regionField(engine::FormOptions& options) {
+void formKindField(engine::FormChoice& options) {
+  (void)field("form", [&] {
+    if (!ImGui::BeginCombo("##form", shortTitle(engine::infoOf(options.kind)).c_str())) return false;
+    for (const engine::FormInfo& form : engine::formInfos())
+      if (ImGui::Selectable(shortTitle(form).c_str(), form.kind == options.kind)) options.kind = form.kind;
+    ImGui::EndCombo();
+    return true;
+  });
+}
+
+void regionField(engine::FormChoice& options) {
   constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
   constexpr engine::Region kRegions[] = {engine::Region::kAll, engine::Region::kMarked,
                                          engine::Region::kUnmarked};
@@ -32,13 +39,23 @@ void regionField(engine::FormOptions& options) {
     options.region = kRegions[chosen];
 }
 
+std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
+  std::string text = fmt::format("{} of {} samples\n", formName(*fit.form), fit.samples);
+  if (const std::string figures = formFigures(*fit.form); !figures.empty()) text += figures + "\n";
+  text += fmt::format("rms of what is left {}", lengthText(fit.rms, units.height, 3));
+  if (fit.beyond > 0)
+    text += fmt::format("\n{} samples lie beyond its outline: there it is continued by a plane", fit.beyond);
+  return text;
+}
+
 }  // namespace
 
 void formPanel(const PanelContext& context, FormTool& form) {
   const engine::FieldForm& over = context.client.newest().formOver();
   writeWrapped(over != nullptr ? "taken out: " + formName(*over) : std::string("nothing is taken out"));
+  if (over != nullptr && over->shape() != nullptr) writeWrapped(formFigures(*over));
   beginFields();
-  degreeField(form.options);
+  formKindField(form.options);
   regionField(form.options);
   endFields();
   ImGui::Checkbox("without steps and spikes", &form.options.robust);
@@ -57,9 +74,7 @@ void formPanel(const PanelContext& context, FormTool& form) {
     sameLineIfFits("Make it heights");
     actionButton("Make it heights", Action::kFormHeights, context.act);
   }
-  if (const auto& fit = form.fit())
-    writeWrapped(fmt::format("{} of {} samples\nrms of what is left {}", formName(*fit->form), fit->samples,
-                             lengthText(fit->rms, context.units.height, 3)));
+  if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
 }
 
 }  // namespace fettle::app

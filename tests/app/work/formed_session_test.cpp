@@ -13,6 +13,7 @@
 
 #include "app/work/open_document.h"
 #include "engine/field/builder.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "haptic/journal/session_player.h"
@@ -37,7 +38,7 @@ engine::Version highPart() {
 
 engine::Version partUnderForm() {
   const engine::Version part = highPart();
-  return part.withForm(std::make_shared<const engine::PolynomialForm>(
+  return part.withForm(std::make_shared<const engine::NominalForm>(
       engine::PolynomialForm{1, part.grid().width, part.grid().height, 1000.0, {0.1, -0.2, 0.3}}));
 }
 

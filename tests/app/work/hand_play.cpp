@@ -161,7 +161,11 @@ std::string HandPlay::form() {
   std::string what = "form put back";
   const auto choice = random_() % 4;
   if (client_.newest().formOver() == nullptr || choice == 0) {
-    form_.options.degree = 1 + static_cast<int>(random_() % 3);
+    // Of a part that has none of them a shape may be refused, and is as welcome as another otherwise.
+    constexpr engine::FormKind kKinds[] = {engine::FormKind::kPlane,       engine::FormKind::kPolynomial2,
+                                           engine::FormKind::kPolynomial3, engine::FormKind::kSphere,
+                                           engine::FormKind::kCylinder,    engine::FormKind::kCone};
+    form_.options.kind = kKinds[random_() % std::size(kKinds)];
     form_.options.robust = random_() % 4 == 0;
     form_.options.region = random_() % 4 == 0 ? engine::Region::kUnmarked : engine::Region::kAll;
     form_.takeOut(client_);

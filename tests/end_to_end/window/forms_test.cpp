@@ -56,7 +56,7 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     EXPECT_EQ(fitted["steps"], 0);
     EXPECT_TRUE(user.reads("rms of what is left"));
     const State out = user.click("Take out");
-    EXPECT_EQ(out["form"], 2);
+    EXPECT_EQ(out["form"], "poly2");
     EXPECT_EQ(out["steps"], 1);
     EXPECT_LT(spanOf(out), 0.8 * spanOf(first));
     EXPECT_TRUE(user.reads("taken out: polynomial of degree 2"));
@@ -79,7 +79,7 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     EXPECT_NEAR(spanOf(back), spanOf(first), 1e-6 * spanOf(first));
     (void)saveAs(user, without);
     const State again = user.key("ctrl+z");
-    EXPECT_EQ(again["form"], 2);
+    EXPECT_EQ(again["form"], "poly2");
     EXPECT_EQ(again["steps"], 1);
     (void)saveAs(user, session);
     program->signal(SIGTERM);
@@ -97,7 +97,7 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     const auto program = start({session});
     User user(display, *program, "formed");
     const State seen = opened(*program);
-    EXPECT_EQ(seen["form"], 2);
+    EXPECT_EQ(seen["form"], "poly2");
     EXPECT_EQ(seen["notices"], State::array());
     const State heights = user.key("alt+l");
     EXPECT_TRUE(heights["form"].is_null());

@@ -10,6 +10,7 @@
 #include "engine/field/builder.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
+#include "engine/field/nominal_form.h"
 
 namespace fettle::engine {
 namespace {
@@ -211,7 +212,7 @@ TEST(History, AnInversionTouchesNoTileAndUndoesExactly) {
 TEST(History, AFormTouchesNoTileAndUndoesExactly) {
   History history(someField(70, 70));
   const Version start = history.current();
-  const auto form = std::make_shared<const PolynomialForm>(PolynomialForm{0, 70, 70, 1.0, {0.0}});
+  const auto form = std::make_shared<const NominalForm>(PolynomialForm{0, 70, 70, 1.0, {0.0}});
   ASSERT_TRUE(history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0}, start.withForm(form)));
   EXPECT_FALSE(history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0}, start.withForm(form)));
   EXPECT_EQ(history.bytes(), 0U);

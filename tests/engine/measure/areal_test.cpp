@@ -15,6 +15,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/field/builder.h"
+#include "engine/measure/form.h"
 
 namespace fettle::engine {
 namespace {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include "engine/field/nominal_form.h"
 #include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/play.h"
@@ -129,8 +130,8 @@ TEST(Damage, FormsThatWereChangedAreNoticed) {
   session.history = History(session.original);
   for (const double base : {1.0, 2.0})
     session.history.push({"Form", StepKind::kForm, {}, {}, 0},
-                         session.original.withForm(std::make_shared<const PolynomialForm>(
-                             PolynomialForm{0, 100, 80, base, {0.0}})));
+                         session.original.withForm(
+                             std::make_shared<const NominalForm>(PolynomialForm{0, 100, 80, base, {0.0}})));
   for (const auto& [sql, reason] :
        {std::pair("DELETE FROM forms WHERE step=2", "the form of step 2 is missing"),
         {"UPDATE forms SET step=7 WHERE step=2", "the form of step 7 does not fit"},

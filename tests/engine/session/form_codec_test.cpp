@@ -11,11 +11,13 @@
 
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
+#include "engine/field/nominal_form.h"
 #include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/session/database.h"
 #include "engine/session/session.h"
 #include "tests/engine/session/play.h"
+#include "tests/support/shape_forms.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::engine {
@@ -27,7 +29,13 @@ FieldForm formOver(const Grid& grid, int degree) {
     form.coefficients.push_back(k % 3 == 0   ? -0.0
                                 : k % 3 == 1 ? std::numeric_limits<double>::denorm_min()
                                              : -k / 7.0);
-  return std::make_shared<const PolynomialForm>(std::move(form));
+  return std::make_shared<const NominalForm>(std::move(form));
+}
+
+constexpr FormShape kEveryShape[] = {FormShape::kSphere, FormShape::kCylinder, FormShape::kCone};
+
+FieldForm shapeOver(const Grid& grid, FormShape shape) {
+  return std::make_shared<const NominalForm>(someShape(grid, shape, 1.0 / 3.0, 7));
 }
 
 std::int64_t sessionFormatOf(const std::string& path) {
@@ -51,9 +59,20 @@ TEST(FormCodec, EveryBitComesBack) {
     ASSERT_TRUE(back);
     ASSERT_TRUE(*back);
     EXPECT_EQ(packForm(*back), bytes);
-    EXPECT_EQ((*back)->degree, degree);
-    EXPECT_EQ((*back)->width, 90);
-    EXPECT_EQ((*back)->height, 70);
+    ASSERT_NE((*back)->polynomial(), nullptr);
+    EXPECT_EQ((*back)->polynomial()->degree, degree);
+    EXPECT_EQ((*back)->width(), 90);
+    EXPECT_EQ((*back)->height(), 70);
+    EXPECT_FALSE(isPackedShape(bytes));
+  }
+  for (const FormShape shape : kEveryShape) {
+    const std::string bytes = packForm(shapeOver(field.grid(), shape));
+    const auto back = unpackForm(bytes, field.grid());
+    ASSERT_TRUE(back);
+    ASSERT_TRUE(*back);
+    EXPECT_EQ(**back, *shapeOver(field.grid(), shape));
+    EXPECT_EQ(packForm(*back), bytes);
+    EXPECT_TRUE(isPackedShape(bytes));
   }
   EXPECT_EQ(packForm(nullptr), "");
   const auto none = unpackForm("", field.grid());
@@ -73,10 +92,43 @@ TEST(FormCodec, OtherBytesAreRefused) {
   EXPECT_FALSE(unpackForm(std::string(200, '\xff'), field.grid()));
   for (const double number :
        {std::numeric_limits<double>::infinity(), -1e39, std::numeric_limits<double>::quiet_NaN()}) {
-    PolynomialForm form = *formOver(field.grid(), 1);
+    PolynomialForm form = *formOver(field.grid(), 1)->polynomial();
     form.coefficients[1] = number;
-    EXPECT_FALSE(unpackForm(packForm(std::make_shared<const PolynomialForm>(form)), field.grid()));
+    EXPECT_FALSE(unpackForm(packForm(std::make_shared<const NominalForm>(form)), field.grid()));
   }
+}
+
+TEST(FormCodec, ShapesThatHaveNoHeightsAreRefused) {
+  const Version field = strangeField(1, 90, 70);
+  for (const FormShape shape : kEveryShape) {
+    const std::string bytes = packForm(shapeOver(field.grid(), shape));
+    for (std::size_t size = 1; size < bytes.size(); ++size)
+      EXPECT_FALSE(unpackForm(std::string_view(bytes).substr(0, size), field.grid())) << size;
+    EXPECT_FALSE(unpackForm(bytes + 'x', field.grid()));
+    const auto refused = [&](const auto& change) {
+      ShapeForm form = *shapeOver(field.grid(), shape)->shape();
+      change(form);
+      return !unpackForm(packForm(std::make_shared<const NominalForm>(form)), field.grid());
+    };
+    for (const double number :
+         {std::numeric_limits<double>::infinity(), -1e39, std::numeric_limits<double>::quiet_NaN()}) {
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.base = number; }));
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.column = number; }));
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.curvature = number; }));
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.normal.x = number; }));
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.axis.z = number; }));
+      EXPECT_TRUE(refused([&](ShapeForm& f) { f.height_mm = number; }));
+    }
+    EXPECT_TRUE(refused([](ShapeForm& f) { f.curvature = 0.0; }));
+    EXPECT_TRUE(refused([](ShapeForm& f) { f.spacing_x_mm = 0.0; }));
+    EXPECT_TRUE(refused([](ShapeForm& f) { f.normal = {1.0, 0.0, 0.0}; }));
+    EXPECT_TRUE(refused([](ShapeForm& f) { f.normal = -f.normal; }));
+    EXPECT_TRUE(refused([](ShapeForm& f) { f.axis *= 1.01; }));
+    std::string other = bytes;
+    other[0] = 19;
+    EXPECT_FALSE(unpackForm(other, field.grid()));
+  }
+  EXPECT_TRUE(unpackForm(packForm(shapeOver(field.grid(), FormShape::kCylinder)), field.grid()));
 }
 
 TEST(SessionForms, OnlyASessionWithAFormNeedsAProgramThatKnowsThem) {
@@ -96,6 +148,14 @@ TEST(SessionForms, OnlyASessionWithAFormNeedsAProgramThatKnowsThem) {
   ASSERT_TRUE(saveSession(session, path, job));
   EXPECT_EQ(sessionFormatOf(path), 3);
   EXPECT_EQ(differenceOnDisk(session, path), "");
+  // A shape asks for a program that knows shapes.
+  Session shaped = session;
+  for (const FormShape shape : kEveryShape)
+    shaped.history.push({"Form", StepKind::kForm, {}, {}, 0},
+                        session.original.withForm(shapeOver(session.original.grid(), shape)));
+  ASSERT_TRUE(saveSession(shaped, path, job));
+  EXPECT_EQ(sessionFormatOf(path), 4);
+  EXPECT_EQ(differenceOnDisk(shaped, path), "");
   // Nothing was stored of the heights, in nor out.
   const auto size = saveSession(session, path, job);
   ASSERT_TRUE(size);
@@ -109,20 +169,21 @@ TEST(SessionForms, AFieldWithAFormGoesInAndComesOutWithIt) {
   const std::string path = folder.file("a.fettle");
   JobControl job;
   const Version plain = strangeField(2, 90, 70);
-  const FieldForm form = formOver(plain.grid(), 3);
-  ExportOptions options;
-  for (const Version& worked : {plain, strangeField(3, 90, 70)})
-    for (const Version& formed : {worked.withForm(form), worked.withForm(form).inverted()}) {
-      options.original = formed.reader().sign() < 0.0F ? plain.inverted() : plain;
-      ASSERT_TRUE(exportField(formed, path, options, job));
-      const auto read = importField(path, {}, job);
-      ASSERT_TRUE(read) << read.error().line();
-      // What is read is what is seen, of the scan as well; and the same samples lie under it.
-      EXPECT_EQ(difference(SeenField::of(formed, job)->seen(), read->field), "");
-      EXPECT_EQ(difference(*restored(read->field, job), formed), "");
-      ASSERT_TRUE(read->original);
-      EXPECT_EQ(difference(*restored(*read->original, job), options.original->withForm(form)), "");
-    }
+  for (const FieldForm& form : {formOver(plain.grid(), 3), shapeOver(plain.grid(), FormShape::kSphere),
+                                shapeOver(plain.grid(), FormShape::kCone)})
+    for (const Version& worked : {plain, strangeField(3, 90, 70)})
+      for (const Version& formed : {worked.withForm(form), worked.withForm(form).inverted()}) {
+        ExportOptions options;
+        options.original = formed.reader().sign() < 0.0F ? plain.inverted() : plain;
+        ASSERT_TRUE(exportField(formed, path, options, job));
+        const auto read = importField(path, {}, job);
+        ASSERT_TRUE(read) << read.error().line();
+        // What is read is what is seen, of the scan as well; and the same samples lie under it.
+        EXPECT_EQ(difference(SeenField::of(formed, job)->seen(), read->field), "");
+        EXPECT_EQ(difference(*restored(read->field, job), formed), "");
+        ASSERT_TRUE(read->original);
+        EXPECT_EQ(difference(*restored(*read->original, job), options.original->withForm(form)), "");
+      }
 }
 
 TEST(SessionForms, WhatIsSeenIsWrittenWithItsForm) {

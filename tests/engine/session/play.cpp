@@ -12,10 +12,12 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
+#include "engine/field/nominal_form.h"
 #include "engine/formats/formats.h"
 #include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/tile_codec.h"
+#include "tests/support/shape_forms.h"
 
 namespace fettle::engine {
 
@@ -86,14 +88,18 @@ EdgeLines someLines(Random& random) {
   return lines.empty() ? EdgeLines() : std::make_shared<const std::vector<EdgeLine>>(std::move(lines));
 }
 
-// Of any degree; sometimes none.
+// Of any degree, or a shape; sometimes none.
 FieldForm someForm(Random& random, const Version& field) {
-  const int degree = below(random, PolynomialForm::kMostDegree + 2) - 1;
+  const int degree = below(random, PolynomialForm::kMostDegree + 5) - 1;
   if (degree < 0) return nullptr;
+  if (degree > PolynomialForm::kMostDegree)
+    return std::make_shared<const NominalForm>(
+        someShape(field.grid(), static_cast<FormShape>(degree - PolynomialForm::kMostDegree - 1), 1.0,
+                  static_cast<unsigned>(random())));
   const auto real = [&] { return std::ldexp(static_cast<double>(random()), below(random, 100) - 100); };
   PolynomialForm form{degree, field.grid().width, field.grid().height, -real(), {}};
   for (int k = 0; k < PolynomialForm::terms(degree); ++k) form.coefficients.push_back(real());
-  return std::make_shared<const PolynomialForm>(std::move(form));
+  return std::make_shared<const NominalForm>(std::move(form));
 }
 
 }  // namespace

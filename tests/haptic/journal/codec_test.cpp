@@ -185,6 +185,27 @@ TEST(Journal, AStepOfBeforeHasNoNumbersOfASuggestionAndKeepsItsText) {
   EXPECT_FALSE(haptic::journalEntry(half));
 }
 
+TEST(Journal, AFormKeepsHowItWasFound) {
+  haptic::journal::StepMade step{3, "Form out: sphere", engine::StepKind::kForm, {71, true}};
+  step.form = true;
+  step.fitted = {"sphere", "unmarked", true};
+  const auto entry = haptic::journalEntry(haptic::journalText(step));
+  ASSERT_TRUE(entry) << entry.error().line();
+  const auto& read = std::get<haptic::journal::StepMade>(*entry);
+  ASSERT_TRUE(read.fitted);
+  EXPECT_EQ(read.fitted->form, "sphere");
+  EXPECT_EQ(read.fitted->region, "unmarked");
+  EXPECT_TRUE(read.fitted->robust);
+  // As programs before wrote it.
+  const std::string old =
+      R"({"answered":true,"do":"step","form":true,"kind":"form","name":"Form out: plane","state":2,"tick":71})";
+  const auto before = haptic::journalEntry(old);
+  ASSERT_TRUE(before) << before.error().line();
+  EXPECT_FALSE(std::get<haptic::journal::StepMade>(*before).fitted);
+  EXPECT_EQ(haptic::journalText(*before), old);
+  EXPECT_FALSE(haptic::journalEntry(std::string(old).insert(1, R"("fitted":{"form":"plane"},)")));
+}
+
 TEST(Journal, ALevelKeepsTheSearchThatItNamedWhenItWasWritten) {
   const auto levelOf = [](const char* text) {
     const auto entry = haptic::journalEntry(text);

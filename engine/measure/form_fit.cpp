@@ -1,0 +1,145 @@
+#include "engine/measure/form_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/compare/tile_sums.h"
+#include "engine/measure/fit_regions.h"
+#include "engine/measure/fit_samples.h"
+#include "engine/measure/form.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kMostFitted = 1 << 22;  // samples
+
+// The region's samples about a form.
+struct AboutForm {
+  CompensatedSum square;
+  std::int64_t samples = 0, beyond = 0;
+};
+
+Status addAbout(const Version& field, Region region, FittedForm& fitted, JobControl& job) {
+  const FieldReader reader = field.reader();
+  const ShapeForm& shape = *fitted.form.shape();
+  job.begin("fitting the form", tileCount(reader));
+  const auto parts = forEachTile<AboutForm>(reader, job, [&](const SampleRect& rect, AboutForm& part) {
+    float z[kTileSamples];
+    double form[kTileSamples];
+    readRegion(reader, region, rect, z, kTileSide);
+    shape.readHeights(rect, form, kTileSide);
+    for (int r = 0; r < rect.rows; ++r)
+      for (int c = 0; c < rect.columns; ++c) {
+        const int k = r * kTileSide + c;
+        if (std::isnan(z[k])) continue;
+        const double distance = z[k] - form[k];
+        part.square.add(distance * distance);
+        ++part.samples;
+        if (shape.beyondOutline(rect.column + c, rect.row + r)) ++part.beyond;
+      }
+  });
+  if (job.cancelled()) return cancelled();
+  AboutForm all;
+  for (const AboutForm& part : parts) {
+    all.square.add(part.square);
+    all.samples += part.samples;
+    all.beyond += part.beyond;
+  }
+  fitted.samples = all.samples;
+  fitted.beyond = all.beyond;
+  fitted.rms = std::sqrt(all.square.value() / static_cast<double>(all.samples));
+  return {};
+}
+
+tl::unexpected<Error> noSampleForForm(Region region) {
+  return inputError("there is no sample that a form could be fitted to", "form",
+                    region == Region::kAll ? "" : "mark some, or fit it to all samples");
+}
+
+Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const FormChoice& choice,
+                                JobControl& job) {
+  const auto region = wholeRegion(field, choice.region, job);
+  if (!region) return tl::unexpected(region.error());
+  if (region->samples == 0) return noSampleForForm(choice.region);
+  const auto stride = static_cast<std::int32_t>(
+      std::ceil(std::sqrt(static_cast<double>(region->samples) / kMostFitted) - 1e-9));
+  FitSamples samples(field, *region, std::max(1, stride));
+  // A region that is thinner than the stride.
+  constexpr std::size_t kFew = 1 << 16;
+  if (samples.stride() > 1 && samples.size() < kFew) samples = FitSamples(field, *region);
+  auto fit = fitShape(samples, kind, {.robust = choice.robust}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  const auto form = formOfShape(*fit, field.grid());
+  if (!form) return tl::unexpected(form.error());
+  FittedForm fitted;
+  fitted.form = *form;
+  fitted.fit = *std::move(fit);
+  if (auto done = addAbout(field, choice.region, fitted, job); !done) return tl::unexpected(done.error());
+  return fitted;
+}
+
+}  // namespace
+
+Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid) {
+  FitSurface surface = fit.surface;
+  glm::dvec3 normal = surface.normal();
+  ShapeForm form;
+  form.width = grid.width;
+  form.height = grid.height;
+  form.spacing_x_mm = grid.spacingXMm();
+  form.spacing_y_mm = grid.spacingYMm();
+  form.height_mm = grid.height_unit.mm;
+  form.axis = glm::normalize(surface.axial);
+  switch (fit.shape.kind) {
+    case ShapeKind::kSphere:
+      form.shape = FormShape::kSphere;
+      form.curvature = surface.tube / fit.scale;
+      // Every point describes it as well; the top one where the first lies near the equator.
+      if (normal.z < 0.5) {
+        surface.foot += (normal - glm::dvec3(0.0, 0.0, 1.0)) / surface.tube;
+        normal = {0.0, 0.0, 1.0};
+      }
+      break;
+    case ShapeKind::kCylinder:
+      form.shape = FormShape::kCylinder;
+      form.curvature = surface.ring / fit.scale;
+      normal -= glm::dot(normal, form.axis) * form.axis;
+      break;
+    default:
+      form.shape = FormShape::kCone;
+      form.curvature = surface.ring * std::cos(surface.theta) / fit.scale;
+      break;
+  }
+  form.normal = glm::normalize(normal);
+  const glm::dvec3 foot = fit.middle + fit.scale * surface.foot;
+  form.column = foot.x / form.spacing_x_mm;
+  form.row = foot.y / form.spacing_y_mm;
+  form.base = foot.z / form.height_mm;
+  if (!form.sound())
+    return inputError("the shape is too steep to have a height above each sample",
+                      std::string(infoOf(fit.shape.kind).word),
+                      "take another form, or a region where it is flatter than 87 degrees");
+  return form;
+}
+
+Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice, JobControl& job) {
+  const FormInfo& info = infoOf(choice.kind);
+  if (info.shape) return fitShapeForm(field, *info.shape, choice, job);
+  auto fit = fitForm(field, {info.degree, choice.region, choice.robust}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  FittedForm fitted;
+  fitted.samples = fit->samples;
+  fitted.rms = fit->rms;
+  fitted.rounds = fit->rounds;
+  fitted.decided = fit->samples > PolynomialForm::terms(info.degree);
+  fitted.form = std::move(fit->form);
+  return fitted;
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/nominal_form.h"
+#include "engine/field/version.h"
+#include "engine/measure/fit.h"
+#include "engine/measure/form_kind.h"
+#include "engine/measure/region.h"
+
+namespace fettle::engine {
+
+/// Which form, and the samples that count.
+struct FormChoice {
+  FormKind kind = FormKind::kPlane;
+  Region region = Region::kAll;
+  bool robust = false;  ///< steps, spikes and other samples far from the form do not count
+
+  friend bool operator==(const FormChoice&, const FormChoice&) = default;
+};
+
+/// A form of a field, fitted to the samples of a region.
+struct FittedForm {
+  NominalForm form;
+  std::int64_t samples = 0;  ///< of the region
+  double rms = 0.0;  ///< of the region's samples about the form, each with the same weight [height_unit]
+  int rounds = 1;    ///< of weights, of a polynomial
+  bool decided =
+      true;  ///< false: so few samples do not determine the polynomial, it is the flattest of those
+  std::optional<ShapeFit> fit;  ///< of a shape
+  std::int64_t beyond = 0;      ///< samples of the region beyond the outline of the shape (shape_form.h)
+};
+
+/// A polynomial by fitForm() (form.h), of heights; a shape by fitShape() (fit.h), of orthogonal distances, as `fettle fit` has
+/// it and ISO 25178-3 for the F-operation: a steep flank then counts no more than a flat one. Signs applied.
+///
+/// A shape is fitted to at most some four million samples, evenly spread over larger regions: its figures then have the standard
+/// errors of as many. Refused (kInput): a region without samples; what the samples do not determine, as fitShape; a shape
+/// that is steeper than 87 degrees where its samples lie, as an upright cylinder, since it has no height above a place.
+/// Errors else, accuracy, threads and cost as of those two; one more pass.
+[[nodiscard]] Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice,
+                                                JobControl& job);
+
+/// The form that a fitted sphere, cylinder or cone is over a field of this grid. Errors: one that is too steep (kInput).
+[[nodiscard]] Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid);
+
+}  // namespace fettle::engine
