@@ -122,6 +122,8 @@ inline void navigate(Parts& p) {
     p.marking.edges.drop();
   else if (p.form.busy())
     p.form.cancel();
+  else if (p.form.previewed())
+    p.form.dropPreview();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
   else
@@ -299,6 +301,16 @@ inline bool canApply(const Parts& p) {
 
 inline bool hasForm(const Parts& p) {
   return hasField(p) && p.document.client()->newest().formOver() != nullptr;
+}
+inline bool formIsPreviewed(const Parts& p) {
+  return p.form.previewed().has_value();
+}
+inline void formPreview(Parts& p) {
+  if (formIsPreviewed(p))
+    p.form.dropPreview();
+  else
+    p.form.preview(clientOf(p));
+  p.picture.requestRedraw();
 }
 inline void formOut(Parts& p) {
   p.form.takeOut(clientOf(p));

@@ -127,6 +127,8 @@ constexpr ActionRow kRows[] = {
               kField, moveSplit<-1>},
     ActionRow{Action::kSplitRight, "Filter", "Split line to the right", Key::kRight, kControl, kNoKey,
               kNoMenu, kField, moveSplit<1>},
+    ActionRow{Action::kFormPreview, "Filter", "Colours show what is left without the form", letter('L'),
+              kControlShift, kNoKey, kThird, kField, formPreview, formIsPreviewed},
     ActionRow{Action::kFormOut, "Filter", "Take the form out of what is seen", letter('L'), kShift, kNoKey,
               kThird, kField, formOut},
     ActionRow{Action::kFormBack, "Filter", "Put the form back", letter('L'), kControl, kNoKey, kThird, kField,

@@ -65,6 +65,7 @@ enum class Action : std::uint8_t {
   kSplitPreview,
   kSplitLeft,
   kSplitRight,
+  kFormPreview,
   kFormOut,
   kFormBack,
   kFormHeights,

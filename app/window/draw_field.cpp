@@ -46,7 +46,10 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
     return v.reader().sign() == sign ? v : v.inverted();
   };
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
-  if (display.deviation) shown.original = likeField(client.original());
+  if (const auto& form = parts.form.previewed())
+    shown.original = likeField(form->surface);
+  else if (display.deviation)
+    shown.original = likeField(client.original());
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
   if (parts.marking.edges.suggestion() != nullptr) shown.accepted = client.field();
   return shown;

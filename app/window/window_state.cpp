@@ -123,6 +123,8 @@ void addFilters(const Parts& p, Report& r) {
   const engine::FieldForm& form = p.document.client()->newest().formOver();
   r["form"] = form != nullptr ? Report(std::string(engine::infoOf(*form).word)) : Report();
   r["fitting_form"] = p.form.busy();
+  const auto& preview = p.form.previewed();
+  r["form_preview"] = preview ? Report(std::string(engine::infoOf(preview->options.kind).word)) : Report();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
   r["applying"] = filters.applying();
   r["filters_applied"] = filters.applied();

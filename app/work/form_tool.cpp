@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "engine/measure/form_surface.h"
+
 namespace fettle::app {
 namespace {
 
@@ -29,8 +31,27 @@ void FormTool::measure(const LoopClient& client) {
   working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
     auto fit = fitOf(field, what, job);
     if (!fit) return tl::unexpected(fit.error());
-    return Work{*std::move(fit), std::nullopt};
+    return Work{*std::move(fit), std::nullopt, std::nullopt};
   });
+}
+
+void FormTool::preview(const LoopClient& client) {
+  working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+    auto fit = fitOf(field, what, job);
+    if (!fit) return tl::unexpected(fit.error());
+    const engine::FieldForm over = field.formOver();
+    auto surface = engine::formSurface(field.grid(), *fit->form, over.get(), job);
+    if (!surface) return tl::unexpected(surface.error());
+    return Work{*std::move(fit), std::nullopt, Preview{what, *std::move(surface), over}};
+  });
+}
+
+void FormTool::followOptions(const LoopClient& client) {
+  if (preview_ && !working_.busy() && !(preview_->options == options)) preview(client);
+}
+
+void FormTool::dropPreview() {
+  preview_.reset();
 }
 
 void FormTool::takeOut(const LoopClient& client) {
@@ -41,7 +62,7 @@ void FormTool::takeOut(const LoopClient& client) {
     auto change = makeFormChange(FormStep::kTakeOut, fit->form, field, scan, job);
     if (!change) return tl::unexpected(change.error());
     change->choice = what;
-    return Work{*std::move(fit), *std::move(change)};
+    return Work{*std::move(fit), *std::move(change), std::nullopt};
   });
 }
 
@@ -51,22 +72,32 @@ void FormTool::start(const LoopClient& client, FormStep step) {
       [field = client.newest(), scan = client.scan(), step](engine::JobControl& job) -> engine::Result<Work> {
         auto change = makeFormChange(step, nullptr, field, scan, job);
         if (!change) return tl::unexpected(change.error());
-        return Work{std::nullopt, *std::move(change)};
+        return Work{std::nullopt, *std::move(change), std::nullopt};
       });
 }
 
 bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
+  bool changed = false;
+  if (preview_ && preview_->over != client.newest().formOver()) {
+    preview_.reset();
+    changed = true;
+  }
   const bool dropped = working_.cancelling();
   auto done = working_.take();
-  if (!done) return false;
-  if (dropped) return true;
+  if (!done) return changed;
+  if (dropped) {
+    preview_.reset();
+    return true;
+  }
   if (!*done) {
+    preview_.reset();  // of other options
     if (done->error().kind != engine::ErrorKind::kCancelled)
       notices.push_back({done->error().what, done->error().remedy});
     return true;
   }
   Work work = std::move(**done);
   if (work.fit) fit_ = work.fit;
+  if (work.preview) preview_ = std::move(work.preview);
   if (work.fit && !work.fit->decided)
     notices.push_back({"so few samples do not determine the form",
                        "of those that come nearest to them it is the flattest"});
@@ -75,7 +106,7 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   working_.start([field = client.newest(),
                   work = std::move(work)](engine::JobControl& job) mutable -> engine::Result<Work> {
     if (auto moved = work.change->moveTo(field, job); !moved) return tl::unexpected(moved.error());
-    return Work{std::nullopt, std::move(work.change)};
+    return Work{std::nullopt, std::move(work.change), std::nullopt};
   });
   return true;
 }
@@ -83,6 +114,7 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
 void FormTool::clear() {
   working_.cancel();
   fit_.reset();
+  preview_.reset();
 }
 
 }  // namespace fettle::app

@@ -28,10 +28,23 @@ class FormTool {
     std::int64_t beyond = 0;  ///< samples that count beyond the outline of a shape
   };
 
+  /// A form before it is taken out: what is seen less `surface` is what would be seen without it. Nothing else changes.
+  struct Preview {
+    engine::FormChoice options;
+    engine::Version surface;  ///< upright
+    engine::FieldForm over;   ///< that lies over the field: under another one the surface is another
+  };
+
   /// Fits `options` to the samples of the newest field, with the form that lies over it: fit() has the result.
   void measure(const LoopClient& client);
   /// Fits, and takes the form out, in place of the one over the field, if any.
   void takeOut(const LoopClient& client);
+  /// Fits, and works out the preview. It ends with the form over the field.
+  void preview(const LoopClient& client);
+  /// Works it out again where `options` are others than those of the preview that is shown.
+  void followOptions(const LoopClient& client);
+  void dropPreview();
+  [[nodiscard]] const std::optional<Preview>& previewed() const noexcept { return preview_; }
   /// For a field under a form.
   void putBack(const LoopClient& client) { start(client, FormStep::kPutBack); }
   void makeHeights(const LoopClient& client) { start(client, FormStep::kMakeHeights); }
@@ -51,10 +64,12 @@ class FormTool {
   struct Work {
     std::optional<Fit> fit;
     std::optional<FormChange> change;
+    std::optional<Preview> preview;
   };
   void start(const LoopClient& client, FormStep step);
 
   std::optional<Fit> fit_;
+  std::optional<Preview> preview_;
   Background<Work> working_;
 };
 

@@ -59,6 +59,7 @@ void formPanel(const PanelContext& context, FormTool& form) {
   regionField(form.options);
   endFields();
   ImGui::Checkbox("without steps and spikes", &form.options.robust);
+  form.followOptions(context.client);
   if (form.busy()) {
     workBar(form.progress(), -ImGui::GetFontSize() * 5.0F, "fitting");
     ImGui::SameLine();
@@ -66,6 +67,10 @@ void formPanel(const PanelContext& context, FormTool& form) {
     return;
   }
   if (ImGui::Button("Fit")) form.measure(context.client);
+  const bool previewed = form.previewed().has_value();
+  const char* const preview = previewed ? "Drop preview" : "Preview";
+  sameLineIfFits(preview);
+  actionButton(preview, Action::kFormPreview, context.act);
   sameLineIfFits("Take out");
   actionButton("Take out", Action::kFormOut, context.act);
   if (over != nullptr) {
@@ -74,6 +79,7 @@ void formPanel(const PanelContext& context, FormTool& form) {
     sameLineIfFits("Make it heights");
     actionButton("Make it heights", Action::kFormHeights, context.act);
   }
+  if (previewed) writeWrapped("preview: colours are heights without the form, touch is with it");
   if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
 }
 

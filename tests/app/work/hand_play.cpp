@@ -168,6 +168,12 @@ std::string HandPlay::form() {
     form_.options.kind = kKinds[random_() % std::size(kKinds)];
     form_.options.robust = random_() % 4 == 0;
     form_.options.region = random_() % 4 == 0 ? engine::Region::kUnmarked : engine::Region::kAll;
+    // Looked at before, sometimes dropped: only a step leaves a trace.
+    if (random_() % 3 == 0) {
+      form_.preview(client_);
+      while (form_.busy()) wait(1);
+      if (random_() % 2 == 0) form_.dropPreview();
+    }
     form_.takeOut(client_);
     what = "form taken out";
   } else if (choice == 1) {
@@ -179,6 +185,7 @@ std::string HandPlay::form() {
   // A hand may work on meanwhile.
   if (random_() % 2 == 0) static_cast<void>(stroke(random_() % 2 == 0));
   while (form_.busy()) wait(1);
+  form_.dropPreview();
   return what;
 }
 

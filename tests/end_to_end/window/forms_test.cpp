@@ -51,6 +51,29 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     const Screen bent = user.look("bent");
     (void)user.click("plane");
     (void)user.click("polynomial 2");
+    // Before: by colours, over the surface as it is, and gone again without a trace.
+    const State previewed = user.key("ctrl+shift+l");
+    EXPECT_EQ(previewed["form_preview"], "poly2");
+    EXPECT_EQ(previewed["steps"], 0);
+    EXPECT_TRUE(previewed["form"].is_null());
+    EXPECT_LT(spanOf(previewed), 0.8 * spanOf(first));
+    EXPECT_TRUE(user.reads("preview: colours are heights without the form"));
+    user.at({20, 790});
+    (void)user.changed("preview", bent);
+    // It follows the form that is chosen.
+    (void)user.click("polynomial 2");
+    EXPECT_EQ(user.click("polynomial 3")["form_preview"], "poly3");
+    (void)user.click("polynomial 3");
+    EXPECT_EQ(user.click("polynomial 2")["form_preview"], "poly2");
+    EXPECT_TRUE(user.key("Escape")["form_preview"].is_null());
+    EXPECT_TRUE(user.click("Preview")["form_preview"].is_string());
+    const State dropped = user.click("Drop preview");
+    EXPECT_TRUE(dropped["form_preview"].is_null());
+    EXPECT_EQ(dropped["steps"], 0);
+    EXPECT_EQ(dropped["colours"], first["colours"]);
+    user.at({20, 790});
+    (void)user.same("preview dropped", bent);
+    (void)user.click("Preview");
     const State fitted = user.click("Fit");
     EXPECT_TRUE(fitted["form_rms"].is_number());
     EXPECT_EQ(fitted["steps"], 0);
@@ -58,6 +81,7 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     const State out = user.click("Take out");
     EXPECT_EQ(out["form"], "poly2");
     EXPECT_EQ(out["steps"], 1);
+    EXPECT_TRUE(out["form_preview"].is_null());  // it is what is seen now
     EXPECT_LT(spanOf(out), 0.8 * spanOf(first));
     EXPECT_TRUE(user.reads("taken out: polynomial of degree 2"));
     EXPECT_TRUE(user.reads("Form out: polynomial of degree 2"));

@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/measure/form.h"
+#include "engine/measure/form_surface.h"
 #include "tests/engine/measure/fields.h"
 #include "tests/support/shape_forms.h"
 
@@ -103,9 +104,11 @@ TEST(ShapeForms, AreFoundAndTakenOutOfExactHeights) {
       EXPECT_NEAR(figureOf(fit) / truth.figure, 1.0, 200.0 * rounding) << static_cast<int>(truth.kind);
       // What is left is what is left: the form of the layer and of heights, and of a picture, are one.
       const auto without = withoutForm(field, fit.form, job);
-      ASSERT_TRUE(without);
+      const auto surface = formSurface(field.grid(), fit.form, nullptr, job);
+      ASSERT_TRUE(without && surface);
       for (int k = 0; k < 121; k += 8) {
         EXPECT_LT(std::abs(without->reader().heightAt(k, 120 - k)), 8.0 * rounding);
+        EXPECT_EQ(surface->reader().heightAt(k, 120 - k), static_cast<float>(fit.form.heightAt(k, 120 - k)));
       }
     }
 }
@@ -236,6 +239,31 @@ TEST(ShapeForms, HaveTheSameBitsForAnyNumberOfThreads) {
   const FittedForm again = found(field, truth.kind, true);
   EXPECT_EQ(fit.form, again.form);
   EXPECT_EQ(fit.rms, again.rms);
+}
+
+// A polynomial over the field already: the surface is the difference.
+TEST(ShapeForms, ASurfaceOverAnotherFormIsWhatTheyDifferBy) {
+  Grid grid;
+  grid.width = 130;
+  grid.height = 70;
+  const NominalForm plane = PolynomialForm{1, 130, 70, 3.0, {0.5, 0.25, -0.125}};
+  const NominalForm sphere = someShape(grid, FormShape::kSphere, 2.0, 4);
+  JobControl job;
+  const auto surface = formSurface(grid, sphere, &plane, job);
+  ASSERT_TRUE(surface);
+  std::vector<double> a(70 * 65), b(70 * 65);
+  for (int c : {0, 64, 129}) {
+    const SampleRect rect{c / 64 * 64, 0, std::min(64, 130 - c / 64 * 64), 64};
+    sphere.readHeights(rect, a.data(), 65);
+    plane.readHeights(rect, b.data(), 65);
+    for (int r = 0; r < 64; r += 9) {
+      const auto k = static_cast<std::size_t>(65 * r + c - rect.column);
+      EXPECT_EQ(surface->reader().heightAt(c, r), static_cast<float>(a[k] - b[k]));
+    }
+  }
+  JobControl cancelled_job;
+  cancelled_job.cancel();
+  EXPECT_EQ(formSurface(grid, sphere, nullptr, cancelled_job).error().kind, ErrorKind::kCancelled);
 }
 
 TEST(FormKinds, AreNamedOnceEach) {
