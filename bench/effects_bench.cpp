@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <span>
+#include <utility>
 
+#include "bench/bench_forms.h"
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "engine/base/stopwatch.h"
@@ -28,6 +30,7 @@ struct EffectCase {
   std::string name;
   haptic::Scene scene;
   std::optional<haptic::EffectKind> effect;  // whose bytes the row reports
+  engine::Version field = {};                // another than the workpiece
 };
 
 haptic::Scene sceneOf(std::vector<haptic::EffectKind> effects) {
@@ -59,6 +62,18 @@ std::vector<EffectCase> cases() {
   ball.scene.effects = kinds;
   all.push_back(ball);
   return all;
+}
+
+// Without effects over fields that lie under a form.
+engine::Status addFormCases(const engine::Version& field, std::vector<EffectCase>& all,
+                            engine::JobControl& job) {
+  for (const auto& [name, form] : {std::pair("under a plane", benchPlane(field.grid())),
+                                   {"under a sphere", benchSphere(field.grid())}}) {
+    auto seen = bentAndSeen(field, form, job);
+    if (!seen) return tl::unexpected(seen.error());
+    all.push_back({name, sceneOf({}), std::nullopt, *std::move(seen)});
+  }
+  return {};
 }
 
 // The workpiece with a marked line every 64 rows, for edge snap.
@@ -118,6 +133,7 @@ engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field
   const haptic::EffectList& effects = tick.effects();
   out.bytes = static_cast<std::int64_t>(what.effect ? effects.bytesOf(*what.effect)
                                                     : effects.bytes() + tick.tipBytes());
+  if (!what.field.empty()) out.bytes += bytesOfSeen(what.field);
   return out;
 }
 
@@ -155,7 +171,9 @@ engine::Result<EffectsBenchReport> benchEffects(const EffectsBenchOptions& optio
   motion.ticks = options.ticks;
   motion.tool = haptic::Tool::kSmooth;  // does nothing where the scene has no smoothing
   const std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
-  const std::vector<EffectCase> all = cases();
+  std::vector<EffectCase> all = cases();
+  if (auto added = addFormCases(field, all, job); !added) return tl::unexpected(added.error());
+  const auto fieldOf = [&](const EffectCase& what) { return what.field.empty() ? field : what.field; };
   std::vector<std::vector<double>> times(all.size());
   report.rows.resize(all.size());
   job.begin("measuring", all.size() * (static_cast<std::size_t>(options.repeats) + 1));
@@ -164,14 +182,14 @@ engine::Result<EffectsBenchReport> benchEffects(const EffectsBenchOptions& optio
     if (job.cancelled()) return engine::cancelled();
     EffectsBenchRow& row = report.rows[k];
     row.name = all[k].name;
-    const InstructionCount counted = count(all[k], field, strokes);
+    const InstructionCount counted = count(all[k], fieldOf(all[k]), strokes);
     if (counted.instructions) row.instructions = static_cast<double>(*counted.instructions);
     if (counted.by != CountedBy::kNothing) report.counted_by = counted.by;
     job.advance(1);
   }
   for (int i = 0; i < options.repeats; ++i)
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const auto outcome = run(all[k], field, strokes, job);
+      const auto outcome = run(all[k], fieldOf(all[k]), strokes, job);
       if (!outcome) return tl::unexpected(outcome.error());
       EffectsBenchRow& row = report.rows[k];
       if (i > 0 && outcome->hash != row.hash)

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/bench_forms.h"
 #include "bench/machine.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
@@ -111,7 +112,8 @@ struct Scene {
   render::FrameInput input;
   Camera camera = Camera::kOrbits;
   Brush brush = Brush::kRests;
-  bool stylus = false;  // moves
+  bool stylus = false;                        // moves
+  std::optional<engine::Version> other = {};  // shown in turn with the field
 };
 
 engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& scene,
@@ -119,6 +121,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   const render::Shown& shown = scene.shown;
   render::FrameInput input = scene.input;
   const bool works = scene.brush == Brush::kWorks;
+  const bool edits_picture = works || scene.other;
   RenderBenchRow row;
   row.name = scene.name;
   row.samples = shown.versions.front().grid().samples();
@@ -147,6 +150,12 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
     double cpu_before = cpuMs();
     engine::Stopwatch watch;
     double update_ms = 0.0;
+    if (scene.other) {
+      render::Shown next = shown;
+      if (i % 2 == 0) next.versions = {*scene.other};
+      if (auto ok = picture.update(next); !ok) return tl::unexpected(ok.error());
+      update_ms = watch.ms();
+    }
     if (works) {
       const auto at = static_cast<std::int32_t>(side / 4 + (side / 2 - 40) * i / options.frames);
       live.reader().readHeights(at, at, 31, 31, patch.data(), 31);
@@ -165,10 +174,10 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
     const auto stats = picture.drawAndWait(input);
     if (!stats) return tl::unexpected(stats.error());
     frames.push_back(watch.ms());
-    if (works) edits.push_back(frames.back());
+    if (edits_picture) edits.push_back(frames.back());
     redrawn += stats->redrawn;
     cpu += cpuMs() - cpu_before;
-    uploads.push_back(works ? std::max(update_ms, stats->upload.ms) : 0.0);
+    uploads.push_back(edits_picture ? std::max(update_ms, stats->upload.ms) : 0.0);
     bytes += stats->upload.bytes;
     row.tiles += stats->upload.tiles;
     changed += stats->upload.changed_samples;
@@ -184,7 +193,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   row.cpu_ms = cpu / options.frames;
   row.redrawn = redrawn / options.frames;
   row.bytes = bytes;
-  if (works) {
+  if (edits_picture) {
     row.edit_p50_ms = percentile(edits, 0.5);
     row.edit_p99_ms = percentile(edits, 0.99);
   }
@@ -288,7 +297,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (9 * options.sides.size() + 5));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (9 * options.sides.size() + 7));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
@@ -339,6 +348,15 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       scenes[first + 5].input.form.occlusion = 0.8;
       scenes[first + 6].name = "cavity";
       scenes[first + 6].input.form.cavity = 0.5;
+      // What is seen under a form is drawn as any field; when a form comes or goes, all tiles are others.
+      const auto seen = bentAndSeen(*field, benchSphere(field->grid()), job);
+      if (!seen) return tl::unexpected(seen.error());
+      scenes.insert(scenes.end(), 2, all_round);
+      scenes[first + 7].name = "under a sphere";
+      scenes[first + 7].shown.versions = {*seen};
+      scenes[first + 8].name = "sphere in, out";
+      scenes[first + 8].shown.versions = {*seen->seenOf()};
+      scenes[first + 8].other = *seen;
     }
     if (options.in_motion == render::Sharpness::kHalf) {
       Scene moving = all_round;

@@ -77,7 +77,8 @@ struct RenderBenchReport {
 /// sides, plain, at half resolution ("moving", as in the window) and while a brush of 31 x 31 samples works;
 /// from one side, the brush with frames drawn in parts and as a whole, and a stylus that moves over the
 /// surface; and as finely as the window draws a picture at rest. At the first size also each render effect
-/// alone, for comparison with the plain row, so that an effect left out can be seen to cost nothing. Errors:
+/// alone, for comparison with the plain row, so that an effect left out can be seen to cost nothing, and a field under a
+/// sphere at rest and with the sphere put back and taken out again in each frame. Errors:
 /// kInput for options out of range, kCancelled, those of LivePicture. Thread: any; blocks.
 [[nodiscard]] engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
                                                             engine::JobControl& job);

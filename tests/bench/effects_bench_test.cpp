@@ -69,6 +69,17 @@ TEST(EffectsBench, HasARowForEveryKindAndNothingIsHeldForNone) {
   if (none.instructions) {
     EXPECT_LT(*none.instructions, *all.instructions);
   }
+  // A form is taken out of what is touched before it is touched: a tick does the same, over tiles of their own. The heights
+  // are those of the other rows up to rounding, which may lead a search over one cell more.
+  for (const char* form : {"under a plane", "under a sphere"}) {
+    EXPECT_GE(row(form).bytes, 64 * 64 * 4) << form;
+    EXPECT_NEAR(static_cast<double>(row(form).contact_ticks), static_cast<double>(none.contact_ticks),
+                0.02 * static_cast<double>(none.contact_ticks))
+        << form;
+    if (none.instructions) {
+      EXPECT_NEAR(*row(form).instructions, *none.instructions, 0.25 * *none.instructions) << form;
+    }
+  }
 }
 
 TEST(EffectsBench, OptionsOutOfRangeAreRefused) {
