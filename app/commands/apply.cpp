@@ -14,6 +14,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/filling.h"
 #include "app/commands/finished_scans.h"
+#include "app/commands/level_layer.h"
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
@@ -28,6 +29,7 @@
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/piece.h"
+#include "engine/field/seen_field.h"
 #include "engine/fill/fill.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -180,6 +182,34 @@ engine::Status take(const RecipeTransform& step, Applied& at, engine::JobControl
   return {};
 }
 
+engine::Status take(const RecipeForm& step, Applied& at, engine::JobControl& job) {
+  auto layered = withLayer(step.layer, step.form, at.field, at.original, at.imported, at.task.in, job);
+  if (!layered) return tl::unexpected(layered.error());
+  Report done{{"do", "form"}, {"layer", step.layer}};
+  if (layered->fit) {
+    addForm(done, step.form, *layered->fit, at.field.grid());
+    done["rms"] = layered->fit->rms;
+  } else {
+    done["form"] = formWordOf(*at.field.formOver());
+  }
+  at.field = std::move(layered->field);
+  at.original = std::move(layered->original);
+  at.steps.push_back(std::move(done));
+  return {};
+}
+
+// What is seen under a form, as the next command would see it that reads the session which this one wrote: so that a recipe
+// has the bits of its steps one by one.
+engine::Status seeAsStored(Applied& at, engine::JobControl& job) {
+  if (at.field.seenOf() == nullptr) return {};
+  const auto stored = engine::restored(at.field, job);
+  if (!stored) return tl::unexpected(stored.error());
+  auto seen = engine::seenNear(*stored, at.field, job);
+  if (!seen) return tl::unexpected(seen.error());
+  at.field = *std::move(seen);
+  return {};
+}
+
 // The steps that take long, of a scan as it is before the first one.
 engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recipe& recipe,
                                       const BatchTask& task, const engine::Version& field,
@@ -298,13 +328,16 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   writing.recipe = imported->recipe;
   bool worked_on = isWorkedOn(*imported);
   for (std::size_t k = 0; k < recipe.steps.size(); ++k) {
-    // What a session begins with is levelled and transformed, too: by a fit that is known only where it is that of an
-    // unchanged scan.
-    if (!std::holds_alternative<RecipeLevel>(recipe.steps[k]) &&
-        !std::holds_alternative<RecipeTransform>(recipe.steps[k]))
-      worked_on = true;
-    else
+    // What a session begins with is levelled and transformed, too, or loses the form that is baked: by a fit that is known
+    // only where it is that of an unchanged scan. A layer is a step after that.
+    const auto* form = std::get_if<RecipeForm>(&recipe.steps[k]);
+    if (form != nullptr && form->layer != kLayerBake)
+      writing.recipe = recipeTextWith(writing.recipe, recipe.steps[k]);
+    else if (form != nullptr || std::holds_alternative<RecipeLevel>(recipe.steps[k]) ||
+             std::holds_alternative<RecipeTransform>(recipe.steps[k]))
       writing.recipe = worked_on ? "" : recipeTextWith(writing.recipe, recipe.steps[k]);
+    else
+      worked_on = true;
     if (auto done = std::visit([&](const auto& step) { return take(step, at, job); }, recipe.steps[k]);
         !done) {
       engine::Error error = done.error();
@@ -312,6 +345,7 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
         error.what = fmt::format("step {} of the recipe: {}", k + 1, error.what);
       return tl::unexpected(std::move(error));
     }
+    if (auto seen = seeAsStored(at, job); !seen) return tl::unexpected(seen.error());
   }
   const double seconds = watch.seconds();
   writing.original = at.original;

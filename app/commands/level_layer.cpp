@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "app/commands/original_scan.h"
+#include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
@@ -14,10 +16,6 @@ namespace fettle::app {
 
 namespace {
 
-constexpr const char* kPut = "put";
-constexpr const char* kRemove = "remove";
-constexpr const char* kBake = "bake";
-
 // The form of the samples, upright, that count.
 engine::Result<engine::FittedForm> fitOver(const engine::Version& samples,
                                            const std::optional<engine::Version>& original,
@@ -26,6 +24,20 @@ engine::Result<engine::FittedForm> fitOver(const engine::Version& samples,
   auto counted = countedOf(engine::upright(samples), original, scan, form, job);
   if (!counted) return tl::unexpected(counted.error());
   return formOf(*counted, scan, imported, form, job);
+}
+
+tl::unexpected<engine::Error> noLayer(const std::string& scan) {
+  return engine::inputError("no form lies over the scan", shownInput(scan),
+                            "name a session of fettle level --layer put");
+}
+
+// What the scan with which the result begins was made by, and the form over it: once that is baked what was done since,
+// strokes and filters, is among its heights.
+std::string recipeAfter(const std::string& layer, const FormArguments& form,
+                        const engine::Imported& imported) {
+  if (layer == kLayerPut && form.region == "measured") return imported.recipe;
+  if (layer == kLayerBake && isWorkedOn(imported)) return {};
+  return recipeTextWith(imported.recipe, RecipeForm{layer, form});
 }
 
 // Files store the form beside the samples; what stays in memory is what is seen.
@@ -40,16 +52,16 @@ engine::Result<engine::Version> shownIn(const BatchTask& task, const engine::Ver
 }  // namespace
 
 std::vector<Word> layerWords() {
-  return {{kPut,
+  return {{kLayerPut,
            "lay the form over the scan: it is taken out of what is seen, touched and measured, no sample "
            "changes"},
-          {kRemove, "take the layer of a session away: its samples are what they are"},
-          {kBake, "make what is seen of a session its samples"}};
+          {kLayerRemove, "take the layer of a session away: its samples are what they are"},
+          {kLayerBake, "make what is seen of a session its samples"}};
 }
 
 engine::Status checkLayer(const std::string& layer, const FormArguments& form,
                           const std::vector<BatchTask>& tasks) {
-  const bool put = layer == kPut;
+  const bool put = layer == kLayerPut;
   if (put && form.form == "none")
     return engine::inputError("there is no form to lay over a scan", "--form",
                               "name another than none, or take --layer remove");
@@ -61,12 +73,33 @@ engine::Status checkLayer(const std::string& layer, const FormArguments& form,
                                         {!form.marks.empty(), "--marks"}})
       if (given)
         return engine::inputError("the session's layer has its form", option, "omit it, or take --layer put");
-  if (layer == kBake) return {};
+  if (layer == kLayerBake) return {};
   for (const BatchTask& task : tasks)
     if (memoryPlace(task.out) == nullptr && !writesSession(task))
       return engine::inputError("only a session stores samples and the form over them", shownOutput(task.out),
                                 "write a session, NAME.fettle");
   return {};
+}
+
+engine::Result<Layered> withLayer(const std::string& layer, const FormArguments& form,
+                                  const engine::Version& field, const engine::Version& original,
+                                  const engine::Imported& imported, const std::string& scan,
+                                  engine::JobControl& job) {
+  if (layer != kLayerPut && field.seenOf() == nullptr) return noLayer(scan);
+  if (layer == kLayerBake) return Layered{engine::madeHeights(field), engine::madeHeights(original), {}};
+  auto samples = engine::withoutLayer(field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  auto first = engine::withoutLayer(original, job);
+  if (!first) return tl::unexpected(first.error());
+  if (layer == kLayerRemove) return Layered{*std::move(samples), *std::move(first), {}};
+  auto fit = formOf(engine::upright(*samples), scan, imported, form, job);
+  if (!fit) return tl::unexpected(fit.error());
+  const auto over = std::make_shared<const engine::NominalForm>(fit->form);
+  const auto seen = engine::SeenField::of(samples->withForm(over), job);
+  if (!seen) return tl::unexpected(seen.error());
+  auto limit = engine::seenNear(first->withForm(over), seen->seen(), job);
+  if (!limit) return tl::unexpected(limit.error());
+  return Layered{seen->seen(), *std::move(limit), *std::move(fit)};
 }
 
 engine::Result<Report> changeLayer(const std::string& layer, const FormArguments& form,
@@ -75,9 +108,7 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
   const auto imported = loadScan(task.in, reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Grid& grid = imported->field.grid();
-  if (layer != kPut && imported->field.seenOf() == nullptr)
-    return engine::inputError("no form lies over the scan", shownInput(task.in),
-                              "name a session of fettle level --layer put");
+  if (layer != kLayerPut && imported->field.seenOf() == nullptr) return noLayer(task.in);
   const auto samples = engine::withoutLayer(imported->field, job);
   if (!samples) return tl::unexpected(samples.error());
   std::optional<engine::Version> original;
@@ -88,7 +119,7 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
   }
   Report report{{"layer", layer}};
   engine::Version result = *samples;
-  if (layer == kPut) {
+  if (layer == kLayerPut) {
     const auto fit = fitOver(*samples, original, form, *imported, task.in, job);
     if (!fit) return tl::unexpected(fit.error());
     const auto over = std::make_shared<const engine::NominalForm>(fit->form);
@@ -103,15 +134,14 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
   } else {
     report["form"] = formWordOf(*imported->field.seenOf()->form());
   }
-  if (layer == kBake) {
+  if (layer == kLayerBake) {
     // Changes since the scan stay what they were: its first state loses the same form.
     result = imported->field.withSeenOf(nullptr);
     if (imported->original) original = imported->original->withSeenOf(nullptr);
   }
   engine::ExportOptions exported = writing;
   exported.original = std::move(original);
-  // What a session begins with is the same under a layer, and another once that is baked.
-  if (layer != kBake) exported.recipe = imported->recipe;
+  exported.recipe = recipeAfter(layer, form, *imported);
   if (auto status = saveField(result, task.out, job, exported, task.to); !status)
     return tl::unexpected(status.error());
   report["unit"] = grid.height_unit.name;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,18 @@
 #include "app/commands/scan_options.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/version.h"
 #include "engine/io/export.h"
+#include "engine/io/import.h"
+#include "engine/measure/form_fit.h"
 
 namespace fettle::app {
 
 // `fettle level --layer`: a form as a layer over the field of a session (engine/field/seen_field.h) instead of heights.
+
+inline constexpr const char* kLayerPut = "put";
+inline constexpr const char* kLayerRemove = "remove";
+inline constexpr const char* kLayerBake = "bake";
 
 /// "put", "remove", "bake".
 [[nodiscard]] std::vector<Word> layerWords();
@@ -21,6 +29,20 @@ namespace fettle::app {
 /// Refuses a form of which the layer says nothing, or which no layer can be, and an output that stores no layer.
 [[nodiscard]] engine::Status checkLayer(const std::string& layer, const FormArguments& form,
                                         const std::vector<BatchTask>& tasks);
+
+/// A field and the original that its changes are limited from, under another form, both as they are seen.
+struct Layered {
+  engine::Version field;
+  engine::Version original;
+  std::optional<engine::FittedForm> fit;  ///< of a form that was put
+};
+
+/// The same of a field that is in memory, as a step of a recipe does it. `scan` is its path. Errors: those of formOf; no form
+/// to remove or bake (kInput).
+[[nodiscard]] engine::Result<Layered> withLayer(const std::string& layer, const FormArguments& form,
+                                                const engine::Version& field, const engine::Version& original,
+                                                const engine::Imported& imported, const std::string& scan,
+                                                engine::JobControl& job);
 
 /// Puts a form over a scan, takes it away or makes it heights, and writes the result.
 [[nodiscard]] engine::Result<Report> changeLayer(const std::string& layer, const FormArguments& form,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
 #include "app/work/open_document.h"
 #include "engine/field/seen_field.h"
@@ -83,7 +84,8 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
 }
 
 bool isWorkedOn(const engine::Imported& imported) {
-  if (imported.field.seenOf() != nullptr) return true;  // the form is a step
+  // The form is a step that the recipe may name.
+  if (imported.field.seenOf() != nullptr && !putsForm(imported.recipe)) return true;
   return imported.original && (imported.original->lines() != imported.field.lines() ||
                                !engine::tilesThatDiffer(*imported.original, imported.field).empty());
 }

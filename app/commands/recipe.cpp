@@ -5,6 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/recipe_file.h"
+#include "app/commands/recipe_of_session.h"
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "engine/formats/formats.h"
@@ -46,8 +47,10 @@ void addRecipe(Command root, Chosen& chosen) {
                 .kind = ValueKind::kInput,
                 .required = true}});
   command.notes(
-      "Filters, suggested edges, inversions, and the levels and transforms with which a session begins are "
-      "repeated. Strokes, "
+      "Filters, suggested edges, inversions, forms that are put over the field, removed or made heights, and "
+      "the "
+      "levels and transforms with which a session begins are repeated; a form is fitted to each scan again. "
+      "Strokes, "
       "and marks and lines that a hand drew, "
       "belong to their scan: a warning and a comment name each that is left out. fettle apply does the "
       "steps.");

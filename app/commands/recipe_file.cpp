@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -15,12 +14,12 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include "app/commands/level_layer.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/filter/catalogue.h"
-#include "engine/filter/noise_range.h"
 #include "engine/io/import.h"
-#include "haptic/journal/journal.h"
+#include "engine/session/session.h"
 
 namespace fettle::app {
 
@@ -34,6 +33,7 @@ constexpr const char* kInvertWord = "invert";
 constexpr const char* kLevelWord = "level";
 constexpr const char* kFillWord = "fill";
 constexpr const char* kTransformWord = "transform";
+constexpr const char* kFormWord = "form";
 constexpr const char* kRecipeRemedy = "the page File formats of the documentation describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
@@ -45,7 +45,9 @@ class StepReader {
 
   [[nodiscard]] RecipeStep read() {
     const std::string what = word(
-        "do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord, kTransformWord}, "");
+        "do",
+        {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord, kTransformWord, kFormWord},
+        "");
     if (what == kFilterWord) {
       onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change",
                       "cutoff", "radius"});
@@ -66,6 +68,10 @@ class StepReader {
     if (what == kTransformWord) {
       onlyKeys(what, {"do", "crop", "crop_samples", "mirror", "turn", "angle", "to_spacing", "method"});
       return transform();
+    }
+    if (what == kFormWord) {
+      onlyKeys(what, {"do", "layer", "form", "robust", "region"});
+      return form();
     }
     onlyKeys(what, {"do"});
     return RecipeInvert{};
@@ -223,12 +229,31 @@ class StepReader {
     step.lines.scan_axis = word("scan_axis", {"x", "y"}, step.lines.scan_axis);
     if (step.lines.rows.empty() && table_.contains("scan_axis"))
       complain(*table_.get("scan_axis"), "scan_axis is that of lines: add rows");
+    fitted(step.form, !step.lines.rows.empty());
+    return step;
+  }
+
+  // Which form, and by which samples.
+  void fitted(FormArguments& what, bool with_none) {
     std::vector<std::string> forms;
     for (const Word& form : formWords())
-      if (form.word != "none" || !step.lines.rows.empty()) forms.push_back(form.word);
-    step.form.form = word("form", forms, step.form.form);
-    step.form.region = word("region", {"all", "marked", "unmarked"}, step.form.region);
-    yesOrNo("robust", step.form.robust);
+      if (form.word != "none" || with_none) forms.push_back(form.word);
+    what.form = word("form", forms, what.form);
+    what.region = word("region", {"all", "marked", "unmarked"}, what.region);
+    yesOrNo("robust", what.robust);
+  }
+
+  RecipeForm form() {
+    RecipeForm step;
+    std::vector<std::string> layers;
+    for (const Word& layer : layerWords()) layers.push_back(layer.word);
+    step.layer = word("layer", layers, "");
+    if (step.layer == kLayerPut)
+      fitted(step.form, false);
+    else
+      for (const char* key : {"form", "robust", "region"})
+        if (const toml::node* node = table_.get(key))
+          complain(*node, fmt::format("{} is that of a form that is put, and the field has its own", key));
     return step;
   }
 
@@ -356,106 +381,21 @@ std::string textOf(const RecipeTransform& step) {
   return text;
 }
 
+std::string textOf(const RecipeForm& step) {
+  std::string text = fmt::format("do = \"{}\"\nlayer = \"{}\"\n", kFormWord, step.layer);
+  if (step.layer != kLayerPut) return text;
+  return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
+                            step.form.region);
+}
+
 std::string textOf(const RecipeInvert&) {
   return fmt::format("do = \"{}\"\n", kInvertWord);
-}
-
-// What led to the states of a session, as its journal says: the last entry of a number counts, since a step after an undo
-// replaces those above it.
-struct Made {
-  haptic::journal::StepMade step;
-  std::optional<engine::FilterSpec> filter;
-};
-
-std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
-  std::map<std::int64_t, Made> made;
-  std::optional<engine::FilterSpec> begun;
-  for (const engine::JournalEntry& row : session.journal) {
-    const auto entry = haptic::journalEntry(row.action);
-    if (!entry) continue;
-    if (const auto* filter = std::get_if<haptic::journal::FilterBegun>(&*entry)) begun = filter->spec;
-    if (const auto* step = std::get_if<haptic::journal::StepMade>(&*entry)) {
-      made[step->state] = {*step, step->kind == engine::StepKind::kFilter ? begun : std::nullopt};
-      if (step->kind == engine::StepKind::kFilter) begun.reset();
-    }
-  }
-  return made;
-}
-
-// What made the scan with which the session begins.
-void addNoted(const engine::Session& session, Recipe& recipe) {
-  const auto note = session.notes.find(engine::kRecipeNote);
-  if (note == session.notes.end()) return;
-  auto noted = parseRecipe(note->second, engine::kRecipeNote);
-  if (!noted) {
-    recipe.left_out.push_back(fmt::format("what made the scan of step 0: {}", noted.error().line()));
-    return;
-  }
-  for (RecipeStep& step : noted->steps)
-    if (const auto* level = std::get_if<RecipeLevel>(&step); level != nullptr && level->form.region != "all")
-      recipe.left_out.push_back(fmt::format(
-          "the level of the {} samples of step 0: which these are belongs to this scan", level->form.region));
-    else
-      recipe.steps.push_back(std::move(step));
 }
 
 }  // namespace
 
 double RecipeLength::in(const engine::Grid& grid) const noexcept {
   return unit ? value * unit->mm / grid.height_unit.mm : value;
-}
-
-engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job) {
-  const engine::History& history = session.history;
-  const std::map<std::int64_t, Made> made = madeBy(session);
-  // A unit that is no length, such as volts, is that of the scan; a recipe names only those that it can read.
-  const engine::LengthUnit& unit = history.current().grid().height_unit;
-  const auto known = engine::lengthUnitFromName(unit.name);
-  const auto length = [&](double value) {
-    return RecipeLength{value, known && known->mm == unit.mm ? known : std::nullopt};
-  };
-  Recipe recipe;
-  addNoted(session, recipe);
-  for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
-    const engine::StepInfo& info = history.info(k);
-    const auto leave = [&](const char* why) {
-      recipe.left_out.push_back(fmt::format("step {}, {}: {}", k, info.name, why));
-    };
-    const auto entry = made.find(k);
-    if (info.kind == engine::StepKind::kInvert) {
-      recipe.steps.emplace_back(RecipeInvert{});
-    } else if (entry != made.end() && entry->second.step.suggested) {
-      const haptic::journal::EdgesSuggested& numbers = *entry->second.step.suggested;
-      RecipeEdges step;
-      step.become = info.kind == engine::StepKind::kLines ? EdgesBecome::kLines : EdgesBecome::kMarks;
-      step.scale = numbers.scale;
-      step.choice.sensitivity = numbers.sensitivity;
-      step.choice.thickness = numbers.thickness;
-      recipe.steps.emplace_back(step);
-    } else if (info.kind != engine::StepKind::kFilter) {
-      leave(info.kind == engine::StepKind::kImport ? "the session stores its result, not how it was made"
-                                                   : "it belongs to this scan");
-    } else if (entry == made.end() || !entry->second.filter) {
-      leave("the session stores its result, not the numbers of the filter");
-    } else {
-      RecipeFilter step;
-      step.spec = *entry->second.filter;
-      if (engine::hasRange(step.spec.kind)) {
-        engine::FilterSpec of_noise = step.spec;
-        of_noise.range_sigma = 0.0;
-        const auto measured = engine::withMeasuredRange(of_noise, history.state(k - 1), job);
-        if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
-          return tl::unexpected(measured.error());
-        if (!measured || measured->range_sigma != step.spec.range_sigma)
-          step.range_sigma = length(step.spec.range_sigma);
-        step.spec.range_sigma = 0.0;
-      }
-      if (step.spec.max_change) step.max_change = length(*step.spec.max_change);
-      step.spec.max_change.reset();
-      recipe.steps.emplace_back(step);
-    }
-  }
-  return recipe;
 }
 
 std::string recipeText(const Recipe& recipe) {
@@ -477,6 +417,12 @@ std::string recipeTextWith(const std::string& earlier, const RecipeStep& step) {
   }
   recipe.steps.push_back(step);
   return recipeText(recipe);
+}
+
+bool putsForm(const std::string& recipe) {
+  const auto read = parseRecipe(recipe, engine::kRecipeNote);
+  const auto* last = read ? std::get_if<RecipeForm>(&read->steps.back()) : nullptr;
+  return last != nullptr && last->layer == kLayerPut;
 }
 
 engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name) try {

@@ -15,7 +15,6 @@
 #include "engine/field/grid.h"
 #include "engine/filter/filter.h"
 #include "engine/marks/edge_suggestion.h"
-#include "engine/session/session.h"
 
 namespace fettle::app {
 
@@ -68,8 +67,14 @@ struct RecipeTransform {
   TransformArguments what;
 };
 
-using RecipeStep =
-    std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel, RecipeFill, RecipeTransform>;
+/// The layer of form over the field is changed, as `fettle level --layer` does.
+struct RecipeForm {
+  std::string layer = "put";  ///< a word of layerWords()
+  FormArguments form;         ///< that is put; of it not `marks`
+};
+
+using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel, RecipeFill,
+                                RecipeTransform, RecipeForm>;
 
 struct Recipe {
   std::vector<RecipeStep> steps;
@@ -77,18 +82,14 @@ struct Recipe {
   std::vector<std::string> left_out;
 };
 
-/// The steps that made the scan with which the session begins, as its note says (engine::kRecipeNote), and those that led
-/// from there to its present state, undone ones left out. Strokes, and marks and lines that were set by
-/// hand, belong to one scan and are left out, as are steps whose numbers the session does not store: those of a command,
-/// and suggested edges that were searched in other heights than those of the step before. A range sigma that is that of the noise before the step is left to each scan's noise. `session` was opened with its
-/// journal and with every step. Errors: cancelled.
-[[nodiscard]] engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job);
-
 [[nodiscard]] std::string recipeText(const Recipe& recipe);
 
 /// The text of a recipe with one more step at its end; `earlier` is such a text, or empty for none. Empty where it cannot be
 /// read: then it is not known what came before the step.
 [[nodiscard]] std::string recipeTextWith(const std::string& earlier, const RecipeStep& step);
+
+/// Whether the last step of such a text puts a form over the field.
+[[nodiscard]] bool putsForm(const std::string& recipe);
 
 /// Errors (kInput), with the line: no TOML, another version, an unknown or missing key, a value out of range,
 /// no steps.

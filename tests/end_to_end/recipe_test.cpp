@@ -235,11 +235,67 @@ TEST(Recipes, OfALevelledSessionBeginsWithTheLevelAndDoesItAgain) {
   // A level after a filter whose numbers are not stored would not be the same on another scan.
   ASSERT_EQ(fettle({"level", file("e.fettle"), file("f.fettle")}).status, 0);
   expectRefused(fettle({"recipe", file("f.fettle")}), "the session has no steps");
-  // A form laid over a session leaves what it begins with as it is; a level of what is seen under one does not.
-  ASSERT_EQ(fettle({"level", file("b.fettle"), file("g.fettle"), "--layer", "put"}).status, 0);
-  EXPECT_EQ(fettleJson({"recipe", file("g.fettle")})["steps"], 2);
-  ASSERT_EQ(fettle({"level", file("g.fettle"), file("h.fettle"), "--rows", "mean"}).status, 0);
-  expectRefused(fettle({"recipe", file("h.fettle")}), "the session has no steps");
+  // A form laid over a session is one more step, and what is seen under it is levelled again.
+  const auto put = fettleJson({"level", file("b.fettle"), file("g.fettle"), "--layer", "put"});
+  (void)recipeOf("g.fettle");
+  EXPECT_EQ(fettleJson({"recipe", file("g.fettle")})["steps"], 3);
+  EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("g2.fettle")})["hash"], put["hash"]);
+  const auto rows = fettleJson({"level", file("g.fettle"), file("h.fettle"), "--rows", "mean"});
+  (void)recipeOf("h.fettle");
+  EXPECT_EQ(fettleJson({"recipe", file("h.fettle")})["steps"], 4);
+  EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("h2.fettle")})["hash"],
+            rows["hash"]);
+}
+
+// put, filters under the form, bake, put and remove: as the commands one by one, and the same recipe from their sessions.
+TEST(Recipes, FormsArePutBakedAndRemovedAsByTheCommands) {
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder.file(name); };
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--part", "die", "--size", "160x128", "--seed", "3"}).status, 0);
+  for (const char* form : {"poly2", "sphere"}) {
+    const auto put = fettleJson(
+        {"level", file("s.tif"), file("a.fettle"), "--layer", "put", "--form", form, "--robust", "--force"});
+    std::ofstream(file("put.toml")) << fettle({"recipe", file("a.fettle")}).out;
+    const auto applied = fettleJson({"apply", file("put.toml"), file("s.tif"), file("b.fettle"), "--force"});
+    EXPECT_EQ(applied["hash"], put["hash"]);
+    for (const char* key : {"form", "robust", "region", "rms"})
+      EXPECT_EQ(applied["steps"][0][key], put[key]) << key;
+    EXPECT_EQ(fettleJson({"info", file("b.fettle")})["form"], form);
+    EXPECT_EQ(fettle({"recipe", file("b.fettle")}).out, fettle({"recipe", file("a.fettle")}).out);
+    // Another format holds the heights with the form; the layer of a session goes in and out.
+    EXPECT_EQ(fettleJson({"apply", file("put.toml"), file("s.tif"), file("b.tif")})["hash"], put["hash"]);
+    EXPECT_EQ(fettleJson({"info", file("b.tif")})["min"], fettleJson({"info", file("s.tif")})["min"]);
+    // Under the form, and baked.
+    ASSERT_EQ(fettle({"filter", file("a.fettle"), file("c.fettle"), "--filter", "median", "--window", "5",
+                      "--force"})
+                  .status,
+              0);
+    const auto baked =
+        fettleJson({"level", file("c.fettle"), file("d.fettle"), "--layer", "bake", "--force"});
+    std::ofstream(file("bake.toml"))
+        << "recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"put\"\nform = \"" << form
+        << "\"\nrobust = true\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 5\n"
+           "[[step]]\ndo = \"form\"\nlayer = \"bake\"\n";
+    EXPECT_EQ(fettleJson({"apply", file("bake.toml"), file("s.tif"), file("e.fettle"), "--force"})["hash"],
+              baked["hash"]);
+    EXPECT_FALSE(fettleJson({"info", file("e.fettle")}).contains("form"));
+    // Baked at once it is what fettle level takes out, with a recipe of two steps.
+    ASSERT_EQ(fettle({"level", file("a.fettle"), file("f.fettle"), "--layer", "bake", "--force"}).status, 0);
+    EXPECT_EQ(fettleJson({"recipe", file("f.fettle")})["steps"], 2);
+    ASSERT_EQ(
+        fettle({"level", file("s.tif"), file("l.fettle"), "--form", form, "--robust", "--force"}).status, 0);
+    EXPECT_EQ(fettleJson({"info", file("f.fettle")})["max"], fettleJson({"info", file("l.fettle")})["max"]);
+    // Removed.
+    std::ofstream(file("out.toml")) << "recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"put\"\nform = \""
+                                    << form << "\"\n[[step]]\ndo = \"form\"\nlayer = \"remove\"\n";
+    const auto removed = fettleJson({"apply", file("out.toml"), file("s.tif"), file("g.fettle"), "--force"});
+    EXPECT_EQ(removed["steps"][1]["form"], form);
+    EXPECT_FALSE(fettleJson({"info", file("g.fettle")}).contains("form"));
+    EXPECT_EQ(fettleJson({"info", file("g.fettle")})["max"], fettleJson({"info", file("s.tif")})["max"]);
+  }
+  std::ofstream(file("bad.toml")) << "recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"remove\"\n";
+  expectRefused(fettle({"apply", file("bad.toml"), file("s.tif"), file("h.tif")}),
+                "no form lies over the scan");
 }
 
 TEST(Recipes, ALevelByMarksBelongsToItsScan) {

@@ -55,6 +55,9 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"level", scan, file("layer.fettle"), "--layer", "put"});
   run({"info", file("layer.fettle")});
   run({"level", file("layer.fettle"), file("level.tif"), "--layer", "bake"});
+  run({"synth", file("die.tif"), "--part", "die", "--size", "96x80"});
+  run({"level", file("die.tif"), file("level.tif"), "--form", "sphere"});
+  run({"measure", file("die.tif"), "--form", "sphere", "--only", "height"});
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid", "--s-filter", "3", "--l-filter", "20"});
   run({"fill", scan, file("full.fettle"), "--border"});
@@ -88,6 +91,10 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
       << "recipe = 1\n[[step]]\ndo = \"mark_edges\"\n[[step]]\ndo = \"locate_edges\"\n"
          "[[step]]\ndo = \"invert\"\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\n";
   run({"apply", file("c.toml"), scan, out});
+  std::ofstream(file("form.toml"))
+      << "recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"put\"\nform = \"sphere\"\n"
+         "[[step]]\ndo = \"form\"\nlayer = \"bake\"\n";
+  run({"apply", file("form.toml"), file("die.tif"), out});
   run({"apply", file("c.toml"), scan, file("none.tif"), "--estimate"});
   run({"render", scan, file("p.png"), "--size", "64x64"});
   run({"devices"});

@@ -1,15 +1,20 @@
 // Recipes: the steps of a session as text, and that text read again.
 
 #include "app/commands/recipe_file.h"
+#include "app/commands/recipe_of_session.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/field/live_field.h"
+#include "engine/field/nominal_form.h"
 #include "engine/filter/noise_range.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/journal/journal.h"
@@ -48,10 +53,25 @@ class Work {
     ASSERT_TRUE(session_.history.push(info, after));
     note(haptic::journal::StepMade{session_.history.number(), name, kind, {}, false, false, suggested});
   }
-  void withoutJournal(const std::string& name, const engine::Version& after) {
+  // As LoopClient::changeForm() makes it: under a form, or under none.
+  void form(const std::string& name, const engine::Version& after,
+            std::optional<haptic::journal::FormFitted> fitted = {}, bool heights = false) {
     engine::StepInfo info;
     info.name = name;
-    info.kind = StepKind::kFilter;
+    info.kind = StepKind::kForm;
+    ASSERT_TRUE(session_.history.push(info, after));
+    haptic::journal::StepMade made{session_.history.number(), name, StepKind::kForm, {}};
+    made.form = !heights;
+    made.heights = heights;
+    made.fitted = std::move(fitted);
+    note(made);
+  }
+  void noted(const std::string& recipe) { session_.notes[engine::kRecipeNote] = recipe; }
+  void withoutJournal(const std::string& name, const engine::Version& after,
+                      StepKind kind = StepKind::kFilter) {
+    engine::StepInfo info;
+    info.name = name;
+    info.kind = kind;
     ASSERT_TRUE(session_.history.push(info, after));
   }
   void undo() { ASSERT_TRUE(session_.history.undo().has_value()); }
@@ -152,6 +172,85 @@ TEST(Recipe, AFilterOfACommandIsLeftOutSinceNoSessionStoresItsNumbers) {
   EXPECT_EQ(recipe.left_out.size(), 1U);
 }
 
+engine::Version under(const engine::Version& field, double height) {
+  const engine::Grid& grid = field.grid();
+  return field.withForm(std::make_shared<const engine::NominalForm>(
+      engine::PolynomialForm{0, grid.width, grid.height, height, {0.0}}));
+}
+
+TEST(Recipe, HasTheFormsThatWerePutRemovedAndMadeHeights) {
+  Work work(scan());
+  work.form("Form out: sphere", under(work.field(), 1.0), {{"sphere", "all", true}});
+  work.filter(specOf(FilterKind::kMedian, 5), "Median 5");
+  work.form("Form out: plane", under(work.field(), 2.0), {{"plane", "unmarked", false}});
+  work.form("Form back: plane", work.field().withForm(nullptr));
+  work.form("Form out: cone", under(work.field(), 3.0), {{"cone", "all", false}});
+  work.form("Heights without cone", work.field().withForm(nullptr), {}, true);
+  const Recipe recipe = work.recipe();
+  EXPECT_TRUE(recipe.left_out.empty());
+  ASSERT_EQ(recipe.steps.size(), 6U);
+  const auto step = [&](std::size_t k) { return std::get<RecipeForm>(recipe.steps[k]); };
+  EXPECT_EQ(step(0).layer, "put");
+  EXPECT_EQ(step(0).form.form, "sphere");
+  EXPECT_TRUE(step(0).form.robust);
+  EXPECT_TRUE(std::holds_alternative<RecipeFilter>(recipe.steps[1]));
+  EXPECT_EQ(step(2).form.region, "unmarked");
+  EXPECT_EQ(step(3).layer, "remove");
+  EXPECT_EQ(step(4).form.form, "cone");
+  EXPECT_EQ(step(5).layer, "bake");
+  // What is written is read to the same.
+  const auto read = parseRecipe(recipeText(recipe), "a.toml");
+  ASSERT_TRUE(read) << read.error().line();
+  EXPECT_EQ(recipeText(*read), recipeText(recipe));
+}
+
+TEST(Recipe, LeavesOutFormsThatBelongToTheScanAndWhatIsDoneToThem) {
+  Work work(scan());
+  engine::LiveField live(work.field(), engine::Growth::kAllowed);
+  ASSERT_TRUE(live.setMark(3, 7, true));
+  work.step("Lasso", StepKind::kMark, live.snapshot());
+  work.form("Form out: plane", under(work.field(), 2.0), {{"plane", "marked", false}});
+  work.form("Form back: plane", work.field().withForm(nullptr));
+  // A session of a program that did not note how forms are found.
+  work.form("Form out: plane", under(work.field(), 2.0));
+  work.form("Heights without plane", work.field().withForm(nullptr), {}, true);
+  work.form("Form out: mean height", under(work.field(), 4.0), {{"mean", "all", false}});
+  const Recipe recipe = work.recipe();
+  ASSERT_EQ(recipe.steps.size(), 1U);
+  EXPECT_EQ(std::get<RecipeForm>(recipe.steps[0]).form.form, "mean");
+  EXPECT_EQ(recipe.left_out,
+            (std::vector<std::string>{
+                "step 1, Lasso: it belongs to this scan",
+                "step 2, Form out: plane: which samples it was fitted to belongs to this scan",
+                "step 3, Form back: plane: the form that was over the field is left out",
+                "step 4, Form out: plane: the session stores the form, not how it was fitted",
+                "step 5, Heights without plane: the form that was over the field is left out"}));
+}
+
+TEST(Recipe, OfACommandsLayerIsThatOfItsNoteWhileItIsAStep) {
+  const std::string put = recipeTextWith("", RecipeForm{"put", {"poly2", true, "all", {}}});
+  EXPECT_TRUE(putsForm(put));
+  EXPECT_FALSE(putsForm(recipeTextWith(put, RecipeForm{"remove", {}})));
+  EXPECT_FALSE(putsForm(""));
+  Work work(scan());
+  work.noted(put);
+  EXPECT_TRUE(work.recipe().steps.empty());
+  work.withoutJournal("Form", under(work.field(), 1.0), StepKind::kForm);
+  work.filter(specOf(FilterKind::kMedian, 5), "Median 5");
+  EXPECT_EQ(work.recipe().steps.size(), 2U);
+  EXPECT_EQ(std::get<RecipeForm>(work.recipe().steps.at(0)).form.form, "poly2");
+  work.undo();
+  work.undo();
+  EXPECT_TRUE(work.recipe().steps.empty());
+  // What was baked is among the heights of step 0, and by marks it is not repeated.
+  work.noted(recipeTextWith(put, RecipeForm{"bake", {}}));
+  EXPECT_EQ(work.recipe().steps.size(), 2U);
+  work.noted(recipeTextWith(recipeTextWith("", RecipeForm{"put", {"plane", false, "marked", {}}}),
+                            RecipeForm{"bake", {}}));
+  EXPECT_TRUE(work.recipe().steps.empty());
+  EXPECT_EQ(work.recipe().left_out.size(), 2U);
+}
+
 TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
   Recipe recipe;
   RecipeFilter filter;
@@ -195,6 +294,14 @@ TEST(Recipe, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"fitler\"").find("line 3: do is not one of"),
             std::string::npos);
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"fitler\"").find("did you mean filter?"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"form\"").find("line 2: the step has no \"layer\""),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"put\"\nform = \"none\"")
+                .find("line 5: form is not one of mean, plane"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"bake\"\nrobust = true")
+                .find("line 5: robust is that of a form that is put"),
+            std::string::npos);
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"").find("line 2: the step has no \"filter\""),
             std::string::npos);
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 4")

@@ -1,0 +1,193 @@
+#include "app/commands/recipe_of_session.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands/level_layer.h"
+#include "engine/field/seen_field.h"
+#include "engine/filter/catalogue.h"
+#include "engine/filter/noise_range.h"
+#include "haptic/journal/journal.h"
+
+namespace fettle::app {
+
+namespace {
+
+// What led to the states of a session, as its journal says: the last entry of a number counts, since a step after an undo
+// replaces those above it.
+struct Made {
+  haptic::journal::StepMade step;
+  std::optional<engine::FilterSpec> filter;
+};
+
+std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
+  std::map<std::int64_t, Made> made;
+  std::optional<engine::FilterSpec> begun;
+  for (const engine::JournalEntry& row : session.journal) {
+    const auto entry = haptic::journalEntry(row.action);
+    if (!entry) continue;
+    if (const auto* filter = std::get_if<haptic::journal::FilterBegun>(&*entry)) begun = filter->spec;
+    if (const auto* step = std::get_if<haptic::journal::StepMade>(&*entry)) {
+      made[step->state] = {*step, step->kind == engine::StepKind::kFilter ? begun : std::nullopt};
+      if (step->kind == engine::StepKind::kFilter) begun.reset();
+    }
+  }
+  return made;
+}
+
+// What made the scan with which the session begins; apart the form that a command laid over it, which is a step.
+std::optional<RecipeForm> addNoted(const engine::Session& session, Recipe& recipe) {
+  const auto note = session.notes.find(engine::kRecipeNote);
+  if (note == session.notes.end()) return std::nullopt;
+  auto noted = parseRecipe(note->second, engine::kRecipeNote);
+  if (!noted) {
+    recipe.left_out.push_back(fmt::format("what made the scan of step 0: {}", noted.error().line()));
+    return std::nullopt;
+  }
+  std::optional<RecipeForm> over;
+  if (const auto* last = std::get_if<RecipeForm>(&noted->steps.back());
+      last != nullptr && last->layer == kLayerPut) {
+    over = *last;
+    noted->steps.pop_back();
+  }
+  bool lies = false;  // a form that is not left out
+  for (RecipeStep& step : noted->steps) {
+    const auto* level = std::get_if<RecipeLevel>(&step);
+    const auto* form = std::get_if<RecipeForm>(&step);
+    const FormArguments* by = level != nullptr ? &level->form : form != nullptr ? &form->form : nullptr;
+    if (by != nullptr && by->region != "all") {
+      recipe.left_out.push_back(
+          fmt::format("the {} of the {} samples of step 0: which these are belongs to this scan",
+                      level != nullptr ? "level" : "form", by->region));
+      lies = false;
+    } else if (form != nullptr && form->layer != kLayerPut && !lies) {
+      recipe.left_out.push_back(
+          fmt::format("to {} the form of step 0, which is left out itself", form->layer));
+    } else {
+      lies = form != nullptr ? form->layer == kLayerPut : lies;
+      recipe.steps.push_back(std::move(step));
+    }
+  }
+  return over;
+}
+
+bool hasMarks(const engine::Version& field) {
+  return field.reader().root().marked_children != 0;
+}
+
+using Reason = tl::unexpected<const char*>;
+
+// The steps of the form over the field, as they follow each other.
+class FormSteps {
+ public:
+  // `over`: that a command laid over the scan. `chosen`: whether marks of a hand chose samples of the scan.
+  FormSteps(std::optional<RecipeForm> over, bool chosen) : over_(std::move(over)), chosen_(chosen) {}
+
+  // Marks that the recipe does not set again.
+  void marksLeftOut() noexcept { chosen_ = true; }
+
+  // The step that led to `after`, or why it is left out. `made`: what the journal says of it, if anything.
+  tl::expected<RecipeForm, const char*> next(const haptic::journal::StepMade* made,
+                                             const engine::Version& after) {
+    std::optional<RecipeForm> step;
+    bool chosen = chosen_;
+    if (made == nullptr) {
+      step = std::exchange(over_, std::nullopt);
+      chosen = true;
+    } else if (made->heights) {
+      step = RecipeForm{kLayerBake, {}};
+    } else if (made->fitted) {
+      step = RecipeForm{kLayerPut, {made->fitted->form, made->fitted->robust, made->fitted->region, {}}};
+    } else if (after.formOver() == nullptr) {
+      step = RecipeForm{kLayerRemove, {}};
+    }
+    if (!step) {
+      lies_ = false;
+      return Reason("the session stores the form, not how it was fitted");
+    }
+    if (step->layer == kLayerPut) {
+      lies_ = step->form.region == "all" || !chosen;
+      if (!lies_) return Reason("which samples it was fitted to belongs to this scan");
+      return *step;
+    }
+    if (!std::exchange(lies_, false)) return Reason("the form that was over the field is left out");
+    return *step;
+  }
+
+ private:
+  std::optional<RecipeForm> over_;
+  bool chosen_;
+  bool lies_ = false;  // a form, after the steps that are not left out
+};
+
+}  // namespace
+
+engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job) {
+  const engine::History& history = session.history;
+  const std::map<std::int64_t, Made> made = madeBy(session);
+  // A unit that is no length, such as volts, is that of the scan; a recipe names only those that it can read.
+  const engine::LengthUnit& unit = history.current().grid().height_unit;
+  const auto known = engine::lengthUnitFromName(unit.name);
+  const auto length = [&](double value) {
+    return RecipeLength{value, known && known->mm == unit.mm ? known : std::nullopt};
+  };
+  Recipe recipe;
+  FormSteps forms(addNoted(session, recipe), hasMarks(session.original));
+  for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
+    const engine::StepInfo& info = history.info(k);
+    const auto leave = [&](const char* why) {
+      if (info.kind == engine::StepKind::kMark || info.kind == engine::StepKind::kLines ||
+          info.kind == engine::StepKind::kImport)
+        forms.marksLeftOut();
+      recipe.left_out.push_back(fmt::format("step {}, {}: {}", k, info.name, why));
+    };
+    const auto entry = made.find(k);
+    if (info.kind == engine::StepKind::kInvert) {
+      recipe.steps.emplace_back(RecipeInvert{});
+    } else if (info.kind == engine::StepKind::kForm) {
+      const auto step = forms.next(entry == made.end() ? nullptr : &entry->second.step, history.state(k));
+      if (step)
+        recipe.steps.emplace_back(*step);
+      else
+        leave(step.error());
+    } else if (entry != made.end() && entry->second.step.suggested) {
+      const haptic::journal::EdgesSuggested& numbers = *entry->second.step.suggested;
+      RecipeEdges step;
+      step.become = info.kind == engine::StepKind::kLines ? EdgesBecome::kLines : EdgesBecome::kMarks;
+      step.scale = numbers.scale;
+      step.choice.sensitivity = numbers.sensitivity;
+      step.choice.thickness = numbers.thickness;
+      recipe.steps.emplace_back(step);
+    } else if (info.kind != engine::StepKind::kFilter) {
+      leave(info.kind == engine::StepKind::kImport ? "the session stores its result, not how it was made"
+                                                   : "it belongs to this scan");
+    } else if (entry == made.end() || !entry->second.filter) {
+      leave("the session stores its result, not the numbers of the filter");
+    } else {
+      RecipeFilter step;
+      step.spec = *entry->second.filter;
+      if (engine::hasRange(step.spec.kind)) {
+        engine::FilterSpec of_noise = step.spec;
+        of_noise.range_sigma = 0.0;
+        const auto before = engine::SeenField::of(history.state(k - 1), job);
+        if (!before) return tl::unexpected(before.error());
+        const auto measured = engine::withMeasuredRange(of_noise, before->seen(), job);
+        if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
+          return tl::unexpected(measured.error());
+        if (!measured || measured->range_sigma != step.spec.range_sigma)
+          step.range_sigma = length(step.spec.range_sigma);
+        step.spec.range_sigma = 0.0;
+      }
+      if (step.spec.max_change) step.max_change = length(*step.spec.max_change);
+      step.spec.max_change.reset();
+      recipe.steps.emplace_back(step);
+    }
+  }
+  return recipe;
+}
+
+}  // namespace fettle::app
