@@ -39,7 +39,7 @@ void FormTool::preview(const LoopClient& client) {
   working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
     auto fit = fitOf(field, what, job);
     if (!fit) return tl::unexpected(fit.error());
-    const engine::FieldForm over = field.formOver();
+    const engine::FieldForm& over = field.formOver();
     auto surface = engine::formSurface(field.grid(), *fit->form, over.get(), job);
     if (!surface) return tl::unexpected(surface.error());
     return Work{*std::move(fit), std::nullopt, Preview{what, *std::move(surface), over}};

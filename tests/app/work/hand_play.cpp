@@ -161,18 +161,15 @@ std::string HandPlay::form() {
   std::string what = "form put back";
   const auto choice = random_() % 4;
   if (client_.newest().formOver() == nullptr || choice == 0) {
-    // Of a part that has none of them a shape may be refused, and is as welcome as another otherwise.
-    constexpr engine::FormKind kKinds[] = {engine::FormKind::kPlane,       engine::FormKind::kPolynomial2,
-                                           engine::FormKind::kPolynomial3, engine::FormKind::kSphere,
-                                           engine::FormKind::kCylinder,    engine::FormKind::kCone};
+    constexpr engine::FormKind kKinds[] = {engine::FormKind::kPlane, engine::FormKind::kSphere,
+                                           engine::FormKind::kPolynomial3};
     form_.options.kind = kKinds[random_() % std::size(kKinds)];
     form_.options.robust = random_() % 4 == 0;
     form_.options.region = random_() % 4 == 0 ? engine::Region::kUnmarked : engine::Region::kAll;
-    // Looked at before, sometimes dropped: only a step leaves a trace.
-    if (random_() % 3 == 0) {
+    // Looked at before: only a step leaves a trace.
+    if (form_.options.robust) {
       form_.preview(client_);
       while (form_.busy()) wait(1);
-      if (random_() % 2 == 0) form_.dropPreview();
     }
     form_.takeOut(client_);
     what = "form taken out";
