@@ -398,7 +398,7 @@ class Level(unittest.TestCase):
             self.assertEqual(other.info()["form"], "sphere")
             self.assertEqual(other.level(layer="remove").hash, field.level(layer="remove").hash)
         np.testing.assert_array_equal(np.asarray(formed.level(layer="bake")), np.asarray(ball.level(form="sphere")))
-        with self.assertRaisesRegex(fettle.InputError, "do not determine a radius"):
+        with self.assertRaisesRegex(fettle.InputError, "do not determine a sphere"):
             fettle.Field(np.zeros((50, 60)), spacing=0.1, unit="mm").level(form="sphere")
 
 
