@@ -5,7 +5,9 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,10 +18,14 @@
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
 #include "app/commands/output_checks.h"
-#include "app/commands/report_page.h"
+#include "app/commands/plots/gnuplot.h"
+#include "app/commands/report_sections.h"
+#include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
+#include "app/commands/surface_plots.h"
+#include "app/pages/report_page.h"
 #include "app/terminal.h"
 #include "app/work/form_change.h"
 #include "app/work/memory_places.h"
@@ -41,14 +47,11 @@ namespace {
 struct ReportArguments {
   std::string scan, out, original;
   std::string title;  // empty: the scan's name
+  std::string type;   // empty: by the name of `out`, else html
   FormArguments form;
+  ScaleArguments scale;
+  ReportSections sections;
   ScanOptions reading;
-};
-
-// A state of the surface that the page shows: the scan as it was measured, and as it is.
-struct ShownState {
-  std::string name;
-  engine::Version field;
 };
 
 std::string nameOf(const std::string& path) {
@@ -59,39 +62,74 @@ std::string plain(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "no sample";
 }
 
+// Surface texture, of one or several states side by side; `states` names them.
+ReportPage::Table textureTable(const std::vector<ArealLine>& lines, const std::vector<std::string>& states,
+                               std::string note) {
+  ReportPage::Table table{"Surface texture", std::move(note), {}, {}};
+  table.heads = {"Parameter", "Meaning"};
+  table.heads.insert(table.heads.end(), states.begin(), states.end());
+  table.heads.emplace_back("Unit");
+  for (const ArealLine& line : lines) {
+    std::vector<std::string> row = {line.name, line.text};
+    row.insert(row.end(), line.values.begin(), line.values.end());
+    row.push_back(line.unit);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 class ScanReport {
  public:
   ScanReport(const ReportArguments& options, engine::JobControl& job) : options_(options), job_(job) {}
 
   engine::Result<Report> write() {
+    const auto extension = extensionOf();
+    if (!extension) return tl::unexpected(extension.error());
     if (auto status = checkForm(options_.form); !status) return tl::unexpected(status.error());
     if (auto status =
-            checkOutputs({{options_.out, OutputKind::kPage, ".html"}},
+            checkOutputs({{options_.out, OutputKind::kPage, *extension}},
                          {options_.scan, options_.original, options_.form.marks}, Replacing::kNoWork, job_);
         !status)
       return tl::unexpected(status.error());
+    if (auto status = checkSections(options_.sections); !status) return tl::unexpected(status.error());
     if (auto status = read(); !status) return tl::unexpected(status.error());
     page_.title = options_.title.empty() ? nameOf(options_.scan) : options_.title;
     page_.made_with = fmt::format("Made by fettle {} of {}, read as {}.", FETTLE_VERSION,
                                   nameOf(options_.scan), imported_.format);
-    addScan();
-    for (const auto part : {&ScanReport::addNoise, &ScanReport::addDeviation, &ScanReport::addTexture,
-                            &ScanReport::addSteps, &ScanReport::addPictures})
+    for (const auto part :
+         {&ScanReport::compare, &ScanReport::addPictures, &ScanReport::addScan, &ScanReport::addNoise,
+          &ScanReport::addDeviation, &ScanReport::addTexture, &ScanReport::addCurves,
+          &ScanReport::addSections, &ScanReport::addSettings, &ScanReport::addSteps})
       if (auto status = (this->*part)(); !status) return tl::unexpected(status.error());
-    std::string text = reportPage(page_);
+    engine::Result<std::string> text = *extension == kPdf ? reportPdf(page_) : reportHtml(page_);
+    if (!text) return tl::unexpected(text.error());
     if (MemoryPlace* place = memoryPlace(options_.out)) {
-      place->page = std::move(text);
+      place->page = *std::move(text);
     } else {
-      const auto written = writeTo(options_.out, ".html", job_, [&](const std::string& file) {
-        return engine::writeFileAtomically(file, text);
+      const auto written = writeTo(options_.out, *extension, job_, [&](const std::string& file) {
+        return engine::writeFileAtomically(file, *text);
       });
       if (!written) return tl::unexpected(written.error());
     }
-    report_["pictures"] = page_.pictures.size();
     return std::move(report_);
   }
 
  private:
+  static constexpr const char* kPdf = ".pdf";
+
+  // With its dot, in lower case.
+  [[nodiscard]] engine::Result<std::string> extensionOf() const {
+    const bool named = !isStream(options_.out) && memoryPlace(options_.out) == nullptr;
+    const std::string of_name =
+        named ? withDot(std::filesystem::path(options_.out).extension().string()) : std::string();
+    if (options_.type.empty()) return named ? of_name : std::string(".html");
+    const std::string typed = withDot(options_.type);
+    if (named && (typed == kPdf) != (of_name == kPdf))
+      return engine::inputError(fmt::format("--type {} is not what the file's name says", options_.type),
+                                options_.out, "leave --type out, or name another file");
+    return typed;
+  }
+
   engine::Status read() {
     auto imported = loadScan(options_.scan, options_.reading, job_);
     if (!imported) return tl::unexpected(imported.error());
@@ -122,7 +160,7 @@ class ScanReport {
     return first;
   }
 
-  void addScan() {
+  engine::Status addScan() {
     const engine::Grid& grid = imported_.field.grid();
     ReportPage::Table about{"Scan", "", {"", ""}, {}};
     about.rows = {
@@ -140,7 +178,7 @@ class ScanReport {
       if (const std::int64_t filled = engine::countFilled(imported_.field, *imported_.original); filled > 0)
         about.rows.push_back({"Filled samples, not measured", fmt::format("{}", filled)});
     for (const std::string& warning : imported_.warnings) about.rows.push_back({"Note", warning});
-    page_.tables.push_back(std::move(about));
+    page_.parts.emplace_back(std::move(about));
 
     heights_ = {"Heights",
                 "",
@@ -159,6 +197,7 @@ class ScanReport {
     }
     report_["hash"] = hashOf(states_.back().field);
     if (states_.size() > 1) report_["original_hash"] = hashOf(states_.front().field);
+    return {};
   }
 
   engine::Status addNoise() {
@@ -171,66 +210,176 @@ class ScanReport {
     heights_.rows.insert(heights_.rows.end() - 1, std::move(row));
     for (std::size_t i = 0; i < heights_.rows.size(); ++i)
       heights_.rows[i].push_back(i >= 2 && i + 1 < heights_.rows.size() ? heightUnit() : "");
-    page_.tables.push_back(std::move(heights_));
+    page_.parts.emplace_back(std::move(heights_));
+    return {};
+  }
+
+  // The change, which the pictures' colours follow.
+  engine::Status compare() {
+    if (states_.size() < 2) return {};
+    const auto found = engine::compareFields(states_.front().field, states_.back().field, job_);
+    if (!found) return tl::unexpected(found.error());
+    change_ = *found;
     return {};
   }
 
   engine::Status addDeviation() {
-    if (states_.size() < 2) return {};
-    const auto found = engine::compareFields(states_.front().field, states_.back().field, job_);
-    if (!found) return tl::unexpected(found.error());
-    p99_ = found->p99;
-    page_.tables.push_back({"Change from before to after",
-                            fmt::format("Over the {} samples that both have.", found->samples),
-                            {"", "", "Unit"},
-                            {{"Root mean square", plain(found->rms), heightUnit()},
-                             {"Mean", plain(found->mean), heightUnit()},
-                             {"99 % of the samples change by at most", plain(found->p99), heightUnit()},
-                             {"Largest", plain(found->max_abs), heightUnit()}}});
-    report_["rms_change"] = found->rms;
-    report_["max_change"] = found->max_abs;
+    if (!change_) return {};
+    page_.parts.emplace_back(
+        ReportPage::Table{"Change from before to after",
+                          fmt::format("Over the {} samples that both have.", change_->samples),
+                          {"", "", "Unit"},
+                          {{"Root mean square", plain(change_->rms), heightUnit()},
+                           {"Mean", plain(change_->mean), heightUnit()},
+                           {"99 % of the samples change by at most", plain(change_->p99), heightUnit()},
+                           {"Largest", plain(change_->max_abs), heightUnit()}}});
+    report_["rms_change"] = change_->rms;
+    report_["max_change"] = change_->max_abs;
     return {};
   }
 
   engine::Status addTexture() {
-    std::vector<Report> measured;
+    std::vector<Report> reports;
     std::string tilt;
     for (const ShownState& state : states_) {
       const auto counted = countedOf(state.field, imported_.original, options_.scan, options_.form, job_);
       if (!counted) return tl::unexpected(counted.error());
-      const auto fit = formOf(*counted, options_.scan, imported_, options_.form, job_);
-      if (!fit) return tl::unexpected(fit.error());
+      const auto limited =
+          scaleLimited(*counted, options_.scan, imported_, options_.form, options_.scale, job_);
+      if (!limited) return tl::unexpected(limited.error());
       engine::ArealOptions areal;
       areal.region = formChoiceOf(options_.form).region;
-      const auto parameters = engine::measureAreal(*counted, fit->form, areal, job_);
+      areal.at_ratios = curveRatios();
+      areal.analysis = true;
+      auto parameters = engine::measureAreal(limited->field, limited->form, areal, job_);
       if (!parameters) return tl::unexpected(parameters.error());
-      addForm(measured.emplace_back(), options_.form, *fit, state.field.grid());
-      addAreal(measured.back(), *parameters, {}, state.field.grid());
-      report_[measured.size() == states_.size() ? "sq" : "sq_before"] = measured.back()["sq"];
-      if (fit->fit) tilt += fmt::format(" {}: {}.", state.name, formFigures(fit->form));
-      if (measured.back().contains("tilt_x"))
+      addForm(reports.emplace_back(), options_.form, limited->fit, state.field.grid());
+      addAreal(reports.back(), *parameters, {}, state.field.grid());
+      measured_.push_back(*std::move(parameters));
+      report_[reports.size() == states_.size() ? "sq" : "sq_before"] = reports.back()["sq"];
+      if (limited->fit.fit) tilt += fmt::format(" {}: {}.", state.name, formFigures(limited->fit.form));
+      if (reports.back().contains("tilt_x"))
         tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
-                            measured.back()["tilt_x"].get<double>(), measured.back()["tilt_y"].get<double>());
+                            reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());
     }
-    page_.tables.push_back(textureTable(
-        arealLines(measured), heads({}),
+    page_.parts.emplace_back(textureTable(
+        arealLines(reports), heads({}),
         fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
                     options_.form.robust ? " (robust)" : "",
                     options_.form.region == "all" ? "all" : "the " + options_.form.region, tilt)));
     return {};
   }
 
-  // The steps of a session. One from standard input is gone after it was read, and Python's scans have none.
-  engine::Status addSteps() {
-    report_["steps"] = 0;
+  // The curves of all states over each other. They are no reason to refuse a report: without gnuplot, or where there was
+  // no memory for an autocorrelation, a sentence stands in their place.
+  engine::Status addCurves() {
+    page_.parts.emplace_back(ReportPage::Heading{"Curves"});
+    report_["curves"] = 0;
+    if (const auto able = plotsCanBeMade(); !able) {
+      const std::string why = fmt::format("No curves are drawn: {}", able.error().line());
+      warn(why);
+      page_.parts.emplace_back(ReportPage::Paragraph{why + "."});
+      return {};
+    }
+    std::vector<PlottedState> all, analysed;
+    std::string none;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      const PlottedState state{states_.size() > 1 ? states_[i].name : "", &measured_[i]};
+      all.push_back(state);
+      if (measured_[i].analysis != nullptr)
+        analysed.push_back(state);
+      else
+        none = measured_[i].spatial.no_sal;
+    }
+    int drawn = 0;
+    const auto draw = [&](const char* caption, const std::string& script) -> engine::Status {
+      auto svg = drawnByGnuplot(script);
+      if (!svg) return tl::unexpected(svg.error());
+      page_.parts.emplace_back(ReportPage::Plot{caption, *std::move(svg)});
+      ++drawn;
+      return {};
+    };
+    const engine::Grid& grid = imported_.field.grid();
+    if (auto status = draw("Material ratio (Abbott) curve", abbottPlot(all, grid)); !status) return status;
+    if (!analysed.empty()) {
+      if (auto status =
+              draw("Autocorrelation in the directions of its fastest and slowest decay, or along x and y",
+                   correlationPlot(analysed));
+          !status)
+        return status;
+      if (auto status =
+              draw("Power spectral density of profiles along x and along y", spectrumPlot(analysed, grid));
+          !status)
+        return status;
+    }
+    if (analysed.size() < all.size())
+      page_.parts.emplace_back(ReportPage::Paragraph{
+          fmt::format("No autocorrelation and no spectrum{}: {}.", analysed.empty() ? "" : " of one state",
+                      none.empty() ? "there was no memory for it" : none)});
+    report_["curves"] = drawn;
+    return {};
+  }
+
+  engine::Status addSections() {
+    report_["sections"] = options_.sections.lines.size();
+    return app::addSections(page_, options_.sections, states_, job_);
+  }
+
+  // What the figures depend on besides the samples; of a session also what made its scan and how it was touched.
+  engine::Status addSettings() {
+    ReportPage::Table settings{"Settings", "", {"Setting", "Value"}, {}};
+    const auto add = [&settings](const char* name, std::string value) {
+      settings.rows.push_back({name, std::move(value)});
+    };
+    add("Form", options_.form.form + (options_.form.robust ? ", robust" : ""));
+    add("Samples that count",
+        options_.form.region + (options_.form.marks.empty() ? "" : " by " + nameOf(options_.form.marks)));
+    for (const auto& [name, cut_off, kind] :
+         {std::tuple("S-filter", &options_.scale.s_filter, &options_.scale.s_kind),
+          {"L-filter", &options_.scale.l_filter, &options_.scale.l_kind}})
+      add(name, cut_off->empty() ? "none" : fmt::format("{} mm, {}", *cut_off, *kind));
+    if (const std::string reading = scanOptionsText(options_.reading); !reading.empty())
+      add("Read with", reading.substr(1));
+    if (const auto status = loadWork(); !status) return status;
+    if (session_) {
+      if (!session_->scan.path.empty()) add("Scan of the session", nameOf(session_->scan.path));
+      if (!session_->scan.format.empty()) add("Format of that scan", session_->scan.format);
+      for (const auto& [note, name] :
+           {std::pair("recipe", "Recipe of the scan"), {"scene", "Scene of touch"}})
+        if (const auto found = session_->notes.find(note); found != session_->notes.end())
+          add(name, settingsOf(found->second));
+    }
+    page_.parts.emplace_back(std::move(settings));
+    return {};
+  }
+
+  // A TOML text as one line: its settings without comments.
+  static std::string settingsOf(const std::string& toml) {
+    std::string line, out;
+    std::istringstream in(toml);
+    while (std::getline(in, line))
+      if (const std::size_t at = line.find_first_not_of(" \t\r"); at != std::string::npos && line[at] != '#')
+        out += (out.empty() ? "" : "; ") + line.substr(at);
+    return out;
+  }
+
+  // The session with all its steps. One from standard input is gone after it was read, and Python's scans have none.
+  engine::Status loadWork() {
     if (imported_.format != "Fettle" || isStream(options_.scan) || memoryPlace(options_.scan) != nullptr)
       return {};
     engine::SessionOpenOptions opening;
     opening.history_bytes = engine::History::kNoBound;
     opening.journal = engine::JournalReading::kLeave;
-    const auto session = loadSession(options_.scan, opening, job_);
+    auto session = loadSession(options_.scan, opening, job_);
     if (!session) return tl::unexpected(session.error());
-    const engine::History& history = session->history;
+    session_ = *std::move(session);
+    return {};
+  }
+
+  engine::Status addSteps() {
+    report_["steps"] = 0;
+    if (!session_) return {};
+    const engine::History& history = session_->history;
     ReportPage::Table steps{
         "Steps",
         "Times are UTC. A hash is that of the samples and marks after the step, as fettle info and other "
@@ -247,7 +396,7 @@ class ScanReport {
                             fmt::format("#{}", hashOf(history.state(k)))});
     }
     report_["steps"] = steps.rows.size();
-    if (!steps.rows.empty()) page_.tables.push_back(std::move(steps));
+    if (!steps.rows.empty()) page_.parts.emplace_back(std::move(steps));
     return {};
   }
 
@@ -260,13 +409,17 @@ class ScanReport {
     render::View view;
     view.width = 1400;
     view.height = 640;
+    int drawn_pictures = 0;
     const auto draw = [&](const render::Shown& shown, const render::FrameInput& input,
                           std::string caption) -> engine::Status {
       const auto drawn = drawPicture(**picture, shown, input, file, job_);
       if (!drawn) return tl::unexpected(drawn.error());
       std::ifstream in(file, std::ios::binary);
-      page_.pictures.push_back({std::move(caption), std::string(std::istreambuf_iterator<char>(in),
-                                                                std::istreambuf_iterator<char>())});
+      page_.parts.emplace_back(ReportPage::Picture{
+          std::move(caption),
+          std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>())});
+      ++drawn_pictures;
+      report_["pictures"] = drawn_pictures;
       return {};
     };
     render::Shown shown;
@@ -287,7 +440,7 @@ class ScanReport {
     shown.versions = {states_.back().field};
     shown.original = states_.front().field;
     input.titles = {"Change"};
-    if (p99_ > 0.0) input.range = render::ValueRange{-p99_, p99_};
+    if (change_->p99 > 0.0) input.range = render::ValueRange{-change_->p99, change_->p99};
     return draw(shown, input, "Change from before to after; colours end at 99 % of the samples");
   }
 
@@ -295,7 +448,9 @@ class ScanReport {
   engine::JobControl& job_;
   engine::Imported imported_;
   std::vector<ShownState> states_;
-  double p99_ = 0.0;
+  std::optional<engine::Deviation> change_;
+  std::vector<engine::ArealParameters> measured_;  // of each state
+  std::optional<engine::Session> session_;
   ReportPage::Table heights_;
   ReportPage page_;
   Report report_ = Report::object();
@@ -313,9 +468,9 @@ void addReport(Command root, Chosen& chosen) {
                 .text = "The scan or session; - for standard input",
                 .kind = ValueKind::kInput,
                 .required = true},
-               {.name = "HTML",
+               {.name = "OUT",
                 .to = &options->out,
-                .text = "The page to write; - for standard output",
+                .text = "The page to write, .html or .pdf; - for standard output",
                 .kind = ValueKind::kOutput,
                 .required = true},
                {.name = "--original",
@@ -325,16 +480,25 @@ void addReport(Command root, Chosen& chosen) {
                {.name = "--title",
                 .to = &options->title,
                 .text = "Heading of the page",
-                .otherwise = "the file's name"}});
+                .otherwise = "the file's name"},
+               {.name = "--type",
+                .to = &options->type,
+                .text = "What the page is written as",
+                .words = {Word(std::string("html")), Word(std::string("pdf"))},
+                .otherwise = "by the name of OUT; to standard output html"}});
+  addSectionOptions(command, options->sections);
   addFormOptions(command, options->form);
+  addScaleOptions(command, options->scale);
   addScanOptions(command, options->reading);
   command.notes(
       "One file without links to others: pictures from the side and from above, noise, surface texture about "
-      "a form, of a "
-      "session before and after, with its steps and the hash of each state. The same scan gives the same "
-      "page, on one "
-      "machine to the byte. A browser prints it to paper or PDF with text that can be searched.");
+      "a form, its material ratio curve, autocorrelation and power spectrum, sections, of a session before "
+      "and after, with its settings, its steps and the hash of each state. The same scan gives the same "
+      "page, "
+      "on one machine to the byte. In a PDF text can be selected and searched; it is A4.");
   command.examples({{"fettle report scan.tif report.html", "Pictures and figures of a scan"},
+                    {"fettle report work.fettle report.pdf --section 1,2:9,2",
+                     "Of a session, with a section before and after"},
                     {"fettle report clean.tif report.html --original scan.tif --form poly2 --robust",
                      "What a filter has changed, about a slightly bent surface"}});
 }

@@ -41,22 +41,6 @@ using engine::Stretch;
 
 using Points = std::vector<glm::dvec2>;
 
-engine::Result<Points> pointsOf(const std::string& text) {
-  Points points;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(':', from), text.size());
-    const std::vector<double> xy = numbersOf(std::string_view(text).substr(from, end - from), 2);
-    if (xy.empty())
-      return engine::inputError(fmt::format("'{}' is no polyline", text), "--line",
-                                "give X,Y:X,Y with as many points as you like, in mm");
-    points.emplace_back(xy[0], xy[1]);
-    from = end + 1;
-  }
-  if (points.size() < 2)
-    return engine::inputError(fmt::format("'{}' is one point", text), "--line", "give two or more, X,Y:X,Y");
-  return points;
-}
-
 // The lines along which sections are taken, in field coordinates [mm].
 engine::Result<std::vector<Points>> pathsOf(const SectionArguments& options, const engine::Version& field,
                                             engine::JobControl& job) {
@@ -67,7 +51,7 @@ engine::Result<std::vector<Points>> pathsOf(const SectionArguments& options, con
   if (!options.from.empty())
     paths.push_back({{options.from[0], options.from[1]}, {options.to[0], options.to[1]}});
   for (const std::string& text : options.polylines) {
-    auto points = pointsOf(text);
+    auto points = polylineOf(text, "--line");
     if (!points) return tl::unexpected(points.error());
     paths.push_back(*std::move(points));
   }
@@ -396,7 +380,7 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
   for (std::size_t i = 0; i < paths->size(); ++i) {
     auto section = engine::sectionAlong(scan->field, (*paths)[i], of, job);
     if (!section) return tl::unexpected(section.error());
-    drawn.push_back({fmt::format("section {}", i), *std::move(section), {}, {}});
+    drawn.push_back({fmt::format("section {}", i), *std::move(section), {}, {}, {}});
     DrawnSection& last = drawn.back();
     Report one = describedSection(i, last.section);
     auto figures = Figures(options, scan->noise_mm).of(last.section, last.marks);

@@ -92,7 +92,7 @@ std::string sectionDxf(const std::vector<DrawnSection>& sections) {
   return text;
 }
 
-engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path) {
+std::string sectionsPlot(const std::vector<DrawnSection>& sections) {
   HeightRange range;
   for (const DrawnSection& drawn : sections) {
     range.add(drawn.section);
@@ -120,11 +120,16 @@ engine::Status drawSections(const std::vector<DrawnSection>& sections, const std
     if (sections[s].other.size() == 0) continue;
     script +=
         fmt::format("$other{} << EOD\n{}EOD\n", s, plotRows(sections[s].other, length.size, height.size));
-    curves +=
-        fmt::format(", $other{} using 1:2 with lines lw 1.5 dt 2 lc rgb '{}' title {}", s,
-                    kPlotColours[(s + 1) % std::size(kPlotColours)], quoted(sections[s].name + ", other"));
+    curves += fmt::format(
+        ", $other{} using 1:2 with lines lw 1.5 dt 2 lc rgb '{}' title {}", s,
+        kPlotColours[(s + 1) % std::size(kPlotColours)],
+        quoted(sections[s].other_name.empty() ? sections[s].name + ", other" : sections[s].other_name));
   }
-  script += curves + "\n";
+  return script + curves + "\n";
+}
+
+engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path) {
+  const std::string script = sectionsPlot(sections);
   if (withDot(std::filesystem::path(path).extension().string()) == ".png") return drawnAsPng(script, path);
   const auto svg = drawnByGnuplot(script);
   if (!svg) return tl::unexpected(svg.error());

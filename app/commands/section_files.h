@@ -19,6 +19,7 @@ struct DrawnSection {
   std::string name;  ///< "section 0"
   engine::Section section;
   engine::Section other;         ///< no places: there is none
+  std::string other_name;        ///< empty: "NAME, other"
   std::vector<DrawnMark> marks;  ///< at which a thin line stands, with its name
 };
 
@@ -33,5 +34,8 @@ struct DrawnSection {
 /// Draws heights over lengths, a colour for each section and broken lines for the other, to an .svg or a .png. Errors:
 /// as drawnByGnuplot.
 [[nodiscard]] engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path);
+
+/// That drawing as a script for gnuplot (plots/gnuplot.h): of at most the first 7.
+[[nodiscard]] std::string sectionsPlot(const std::vector<DrawnSection>& sections);
 
 }  // namespace fettle::app

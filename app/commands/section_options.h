@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_options.h"
@@ -45,5 +47,9 @@ void addFigureOptions(Command command, SectionArguments& options);
 
 /// Numbers with commas between them, exactly so many; none when the text is something else.
 [[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
+
+/// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
+[[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
+                                                                 const std::string& option);
 
 }  // namespace fettle::app

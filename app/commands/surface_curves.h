@@ -33,9 +33,6 @@ void addCurveOptions(Command command, CurveFiles& files);
 /// Adds what the curves need to what is measured. The heights at the ratios of the material ratio curve come last.
 void addCurves(const CurveFiles& files, engine::ArealOptions& options);
 
-/// The material ratios of the curve, 0 .. 1.
-[[nodiscard]] std::vector<double> curveRatios();
-
 /// Writes them, each file whole or not at all. `measured` was measured with addCurves(). Errors (kInput): a curve that the
 /// samples do not determine, with the reason; those of drawing and writing.
 [[nodiscard]] engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameters& measured,

@@ -58,7 +58,7 @@ std::vector<std::string> extensionsFor(OutputKind kind) {
   if (kind == OutputKind::kPicture) return {".png"};
   if (kind == OutputKind::kLines)
     return {std::begin(engine::kLineExtensions), std::end(engine::kLineExtensions)};
-  if (kind == OutputKind::kPage) return {".html", ".htm"};
+  if (kind == OutputKind::kPage) return {".html", ".htm", ".pdf"};
   if (kind == OutputKind::kPlot) return {".svg", ".png"};
   if (kind == OutputKind::kDrawing) return {".dxf"};
   return kind == OutputKind::kField ? extensionsOf(&engine::FormatInfo::writes) : std::vector<std::string>();

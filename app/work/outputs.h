@@ -18,7 +18,7 @@ enum class OutputKind {
   kMarks,    ///< .png, .tif, .tiff
   kPicture,  ///< .png
   kLines,    ///< engine::kLineExtensions
-  kPage,     ///< .html, .htm
+  kPage,     ///< .html, .htm, .pdf
   kPlot,     ///< .svg, .png
   kDrawing,  ///< .dxf
   kText,     ///< any but that of a format of scans; .csv and .txt are both

@@ -630,7 +630,7 @@ SHOWN = {
         ((160, 200), True)
         """,
     ),
-    "page": ("bytes: the page, HTML in UTF-8.", ""),
+    "page": ("bytes: the page, HTML in UTF-8 or a PDF, by `type`.", ""),
 }
 for _name in TABLES:
     if _name not in OWN:

@@ -1,10 +1,14 @@
-// fettle report: the page as a browser reads it.
+// fettle report: the page as a browser and a reader of PDF read it.
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,9 +27,8 @@ std::size_t countIn(const std::string& text, const std::string& piece) {
   return count;
 }
 
-TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
-  const TempFolder folder;
-  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), page = folder.file("r.html");
+// A scan, and a session of it with two filters.
+void makeSession(const std::string& scan, const std::string& work) {
   ASSERT_EQ(fettle({"synth", scan, "--part", "steps", "--size", "128x96"}).status, 0);
   engine::JobControl job;
   const auto imported = engine::importField(scan, {}, job);
@@ -45,7 +48,19 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
     info.kind = engine::StepKind::kFilter;
     ASSERT_TRUE(made.history.push(info, filtered->field));
   }
+  made.notes["scene"] = "# stiff\n[contact]\nstiffness = 0.5\n";
   ASSERT_TRUE(engine::saveSession(made, work, job));
+}
+
+// Text of a PDF as `pdftotext` of poppler-utils finds it.
+std::string textOf(const std::string& pdf) {
+  return runProcess({"pdftotext", "-layout", pdf, "-"}).out;
+}
+
+TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), page = folder.file("r.html");
+  makeSession(scan, work);
   const auto report = fettleJson({"report", work, page, "--title", "Part <7> & \"co\""});
   EXPECT_EQ(report["steps"], 2);
   EXPECT_EQ(report["pictures"], 3);
@@ -56,6 +71,11 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
   const std::string text = bytesOf(page);
   EXPECT_EQ(countIn(text, "src=\"data:image/png;base64,iVBORw0KGgo"), 3U);
   EXPECT_EQ(countIn(text, "src="), 3U);
+  EXPECT_EQ(report["curves"], 3);
+  EXPECT_EQ(countIn(text, "<svg"), 3U);
+  EXPECT_EQ(countIn(text, ">Before, along x<"), 1U) << "before and after in one plot";
+  EXPECT_EQ(countIn(text, ">After, along x<"), 1U);
+  EXPECT_NE(text.find("[contact]; stiffness = 0.5<"), std::string::npos);
   EXPECT_NE(text.find("<h1>Part &lt;7&gt; &amp; &quot;co&quot;</h1>"), std::string::npos);
   EXPECT_NE(text.find("Median 3 x 3"), std::string::npos);
   EXPECT_NE(text.find("Box 5 x 5"), std::string::npos);
@@ -66,6 +86,123 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
   EXPECT_EQ(text.find(folder.path()), std::string::npos) << "no path of this machine";
   ASSERT_EQ(fettle({"report", work, folder.file("again.html"), "--title", "Part <7> & \"co\""}).status, 0);
   EXPECT_EQ(bytesOf(folder.file("again.html")), text);
+}
+
+// One content: what the HTML page says in its tables, captions and plots is text in the PDF.
+TEST(ReportPage, AsPdfHasTheSameTextAndNoDateOfNow) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), pdf = folder.file("r.pdf");
+  makeSession(scan, work);
+  const std::vector<std::string> more = {"--title",         "Part <7> & \"co\" \u00e4\u03a9",
+                                         "--section",       "1,2:20,14:22,3",
+                                         "--section",       "2,2:30,2",
+                                         "--cutoff",        "6",
+                                         "--section-width", "0.5"};
+  const auto with = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const auto report = fettleJson(with({"report", work, pdf}));
+  EXPECT_EQ(report["sections"], 2);
+  const std::string text = textOf(pdf);
+  for (const std::string& piece :
+       {std::string("Part <7> & \"co\" \u00e4\u03a9"), std::string("Median 3 x 3"), std::string("Box 5 x 5"),
+        "#" + report["hash"].get<std::string>(), "#" + report["original_hash"].get<std::string>(),
+        std::string("Surface texture"), std::string("root mean square"), std::string("autocorrelation"),
+        std::string("spatial frequency"), std::string("After, along y"), std::string("Section 2"),
+        std::string("RSm"), std::string("stiffness = 0.5"), std::string("L-filter"), std::string("1 of ")})
+    EXPECT_NE(text.find(piece), std::string::npos) << piece << "\n" << text;
+  EXPECT_EQ(text.find(folder.path()), std::string::npos) << "no path of this machine";
+  const std::string bytes = bytesOf(pdf);
+  EXPECT_TRUE(bytes.starts_with("%PDF-"));
+  for (const char* date : {"CreationDate", "ModDate", "/ID"})
+    EXPECT_EQ(bytes.find(date), std::string::npos) << date;
+  // A second later or more: the seconds of a date would differ.
+  const auto made = std::filesystem::last_write_time(pdf);
+  while (std::filesystem::file_time_type::clock::now() < made + std::chrono::milliseconds(1100))
+    std::this_thread::yield();
+  ASSERT_EQ(fettle(with({"report", work, folder.file("again.pdf")})).status, 0);
+  EXPECT_EQ(bytesOf(folder.file("again.pdf")), bytes);
+  // To standard output.
+  const Outcome streamed = fettle(with({"report", work, "-", "--type", "pdf"}));
+  EXPECT_EQ(streamed.status, 0);
+  EXPECT_EQ(streamed.out, bytes);
+  expectRefused(fettle({"report", work, pdf, "--type", "html"}), "--type");
+  expectRefused(fettle({"report", work, pdf, "--cutoff", "2.5"}), "--section");
+  expectRefused(fettle({"report", work, pdf, "--section", "1,2"}), "--section");
+}
+
+// Long names, malformed UTF-8 and a table of several sheets.
+TEST(ReportPage, AsPdfTakesAnyText) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), pdf = folder.file("r.pdf");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "32x24"}).status, 0);
+  const std::string word(400, 'w');
+  ASSERT_EQ(fettle({"report", scan, pdf, "--title", word + " end"}).status, 0);
+  EXPECT_NE(textOf(pdf).find("end"), std::string::npos);
+  ASSERT_EQ(fettle({"report", scan, pdf, "--title", "a\xff\x01z", "--quiet"}).status, 0);
+  EXPECT_NE(textOf(pdf).find("a\xef\xbf\xbd z"), std::string::npos);
+  ASSERT_EQ(fettle({"report", scan, pdf, "--title", ""}).status, 0);
+}
+
+TEST(ReportPage, OfDamagedOrEmptySessionsIsRefused) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), pdf = folder.file("r.pdf");
+  makeSession(scan, work);
+  const std::string bytes = bytesOf(work), bad = folder.file("bad.fettle");
+  const std::string halved = bytes.substr(0, bytes.size() / 2);
+  for (const std::string& content : {std::string(), halved, std::string(4096, 'x')}) {
+    std::ofstream(bad, std::ios::binary) << content;
+    const Outcome outcome = fettle({"report", bad, pdf});
+    expectRefused(outcome, "bad.fettle");
+    EXPECT_FALSE(std::filesystem::exists(pdf));
+  }
+  // A session without a step has both states in one.
+  engine::JobControl job;
+  const auto imported = engine::importField(scan, {}, job);
+  ASSERT_TRUE(imported);
+  engine::Session none;
+  none.original = imported->field;
+  none.history = engine::History(imported->field);
+  ASSERT_TRUE(engine::saveSession(none, bad, job));
+  const auto report = fettleJson({"report", bad, pdf});
+  EXPECT_EQ(report["steps"], 0);
+  EXPECT_FALSE(report.contains("original_hash"));
+  EXPECT_EQ(textOf(pdf).find("Steps"), std::string::npos);
+}
+
+// A disk that takes 20 kB, which is less than the pictures need.
+TEST(ReportPage, OfAFullDiskLeavesNothing) {
+  const TempFolder folder, out;
+  const std::string scan = folder.file("s.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "64x64"}).status, 0);
+  for (const char* name : {"r.pdf", "r.html"}) {
+    ProcessOptions full;
+    full.file_limit = 20'000;
+    const Outcome outcome = fettle({"report", scan, out.file(name)}, full);
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_TRUE(std::filesystem::is_empty(out.path())) << outcome.err;
+    std::ofstream(out.file(name)) << "what was there";
+    EXPECT_EQ(fettle({"report", scan, out.file(name)}, full).status, 1);
+    EXPECT_EQ(bytesOf(out.file(name)), "what was there");
+    std::filesystem::remove(out.file(name));
+  }
+}
+
+// Curves are no reason to refuse: where gnuplot is not on the path the page says so.
+TEST(ReportPage, WithoutGnuplotSaysThatCurvesAreMissing) {
+  const TempFolder folder, nothing;
+  const std::string scan = folder.file("s.tif"), page = folder.file("r.html");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "32x24"}).status, 0);
+  const char* const path = std::getenv("PATH");
+  const std::string kept = path == nullptr ? "" : path;
+  setenv("PATH", nothing.path().c_str(), 1);
+  const auto report = fettleJson({"report", scan, page});
+  const Outcome section = fettle({"report", scan, page, "--section", "0,0:3,3"});
+  setenv("PATH", kept.c_str(), 1);
+  EXPECT_EQ(report["curves"], 0);
+  EXPECT_NE(bytesOf(page).find("install gnuplot-nox"), std::string::npos);
+  expectFailed(section, "gnuplot");
 }
 
 TEST(ReportPage, OfAScanAloneHasOneStateAndNoNumberThatIsNone) {

@@ -194,7 +194,7 @@ TEST(SectionCommand, NeverWritesTextOverAScan) {
   expectRefused(section("--plot", keep), ".svg");
   expectRefused(fettle({"measure", scan, "--csv", keep}), "keep.tif");
   expectRefused(fettle({"report", scan, keep}), ".html");
-  expectRefused(fettle({"report", scan, folder.file("r.pdf")}), ".html");
+  expectRefused(fettle({"report", scan, folder.file("r.svg")}), ".pdf");
   EXPECT_EQ(fettleJson({"measure", keep})["sq"], hash);
 }
 

@@ -104,6 +104,9 @@ class Pages(unittest.TestCase):
         pictures = [re.findall(r"base64,([^\"]*)", text) for text in (page, written)]
         self.assertEqual(len(pictures[0]), 3)
         self.assertEqual(pictures[0], pictures[1])
+        pdf = clean.page(title="part", type="pdf")
+        self.assertTrue(pdf.startswith(b"%PDF-"))
+        self.assertEqual(pdf, clean.page(title="part", type="pdf"))
 
 
 if __name__ == "__main__":

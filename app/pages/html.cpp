@@ -1,4 +1,4 @@
-#include "app/commands/html.h"
+#include "app/pages/html.h"
 
 #include <cstdint>
 
