@@ -176,13 +176,13 @@ int report(const engine::Error& error) {
   return status;
 }
 
-KeptMessages::KeptMessages() {
-  assert(thread_messages == nullptr);
+KeptMessages::KeptMessages() : before_(thread_messages) {
   thread_messages = this;
 }
 
 KeptMessages::~KeptMessages() {
-  thread_messages = nullptr;
+  assert(thread_messages == this);
+  thread_messages = before_;
 }
 
 void warn(const std::string& text) {

@@ -85,7 +85,8 @@ void setVoice(const Voice& voice);
 [[nodiscard]] const Voice& voice() noexcept;
 
 /// For its lifetime, what this thread would write to stderr is kept here instead, and no progress line is shown: for a
-/// program that calls commands (python/). Threading: the thread that made it, which has one of them at a time.
+/// program that calls commands (python/), and for trials that would say the same again and again. Of several the last one made counts,
+/// which is destroyed first. Threading: the thread that made it.
 class KeptMessages {
  public:
   KeptMessages();
@@ -93,6 +94,9 @@ class KeptMessages {
   KeptMessages& operator=(KeptMessages&&) = delete;
 
   std::vector<std::string> warnings;  ///< of warn(), in their order
+
+ private:
+  KeptMessages* before_;
 };
 
 /// Prints "fettle: error: what, where, remedy" on stderr and returns the exit status that belongs to it:

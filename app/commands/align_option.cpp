@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/estimate_text.h"
-#include "app/commands/read_units.h"
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
+#include "app/work/estimate_text.h"
+#include "app/work/read_units.h"
 #include "app/work/streams.h"
 #include "engine/nominal/nominal_align.h"
 

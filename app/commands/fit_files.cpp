@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
-#include "app/commands/estimate_text.h"
-#include "app/commands/read_units.h"
+#include "app/work/estimate_text.h"
+#include "app/work/read_units.h"
 #include "engine/field/builder.h"
 
 namespace fettle::app {

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/areal_table.h"
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
+#include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
@@ -17,6 +17,7 @@
 #include "app/commands/surface_curves.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/areal_table.h"
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
@@ -35,10 +36,17 @@ struct MeasureArguments {
   std::vector<double> at_ratios;
   std::string csv;
   CurveFiles curves;
+  int noise_trials = kUsualTrials;
   ScanOptions reading;
 };
 
 const std::vector<double> kUsualRatios = {10.0, 80.0};  // [%]
+
+std::vector<Word> groupWords() {
+  std::vector<Word> words;
+  for (const ArealGroup& group : arealGroups()) words.emplace_back(group.word, group.text);
+  return words;
+}
 
 // Heights are signed here: Smr at a height below the mean.
 engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& typed,
@@ -80,7 +88,10 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = countedOf(imported->field, imported->original, scan, options.form, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto limited = scaleLimited(*marked, scan, *imported, options.form, options.scale, job);
+  const auto limitedOf = [&](const engine::Version& field) {
+    return scaleLimited(field, scan, *imported, options.form, options.scale, job);
+  };
+  const auto limited = limitedOf(*marked);
   if (!limited) return tl::unexpected(limited.error());
   const engine::Grid& grid = imported->field.grid();
   const auto areal = arealOptionsOf(options, grid);
@@ -96,13 +107,27 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
   addScale(report, options.scale);
   addAreal(report, *measured, options.groups, grid);
-  if (!areal->functional) return report;
-  report["smr"] = Report::array();
-  for (std::size_t i = 0; i < areal->at_heights.size(); ++i)
-    report["smr"].push_back({{"height", areal->at_heights[i]}, {"ratio", measured->ratios[i]}});
-  report["smc"] = Report::array();
-  for (std::size_t i = 0; i < areal->at_ratios.size(); ++i)
-    report["smc"].push_back({{"ratio", areal->at_ratios[i]}, {"height", measured->heights[i]}});
+  if (areal->functional) {
+    report["smr"] = Report::array();
+    for (std::size_t i = 0; i < areal->at_heights.size(); ++i)
+      report["smr"].push_back({{"height", areal->at_heights[i]}, {"ratio", measured->ratios[i]}});
+    report["smc"] = Report::array();
+    for (std::size_t i = 0; i < areal->at_ratios.size(); ++i)
+      report["smc"].push_back({{"ratio", areal->at_ratios[i]}, {"height", measured->heights[i]}});
+  }
+  // Trials measure what is stated, not the curves.
+  engine::ArealParameters stated = *measured;
+  stated.heights.resize(areal->at_ratios.size());
+  const auto noise = arealNoise(
+      *marked, stated,
+      [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
+        const auto of = limitedOf(noisy);
+        if (!of) return tl::unexpected(of.error());
+        return engine::measureAreal(of->field, of->form, *areal, job);
+      },
+      options.noise_trials, job);
+  if (!noise) return tl::unexpected(noise.error());
+  if (*noise) addNoise(report, **noise, grid);
   return report;
 }
 
@@ -198,7 +223,7 @@ void addMeasure(Command root, Chosen& chosen) {
                {.name = "--only",
                 .to = &options->groups,
                 .text = "Only these groups, and that of heights: the others need more time and memory",
-                .words = arealGroups(),
+                .words = groupWords(),
                 .shown = "GROUP[,GROUP...]",
                 .otherwise = "all groups",
                 .between = ','},
@@ -219,6 +244,7 @@ void addMeasure(Command root, Chosen& chosen) {
                 .to = &options->csv,
                 .text = "Write a row per scan and parameter, in the scan's units",
                 .kind = ValueKind::kOutput}});
+  addNoiseOption(command, options->noise_trials);
   addCurveOptions(command, options->curves);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
@@ -230,7 +256,12 @@ void addMeasure(Command root, Chosen& chosen) {
       "the surface is the bilinear patch. The autocorrelation reaches to half of the surface. Std is the "
       "direction "
       "of the lay, and says little where Str is near 1. What the samples do not determine is not stated, "
-      "with the reason.");
+      "with the reason.\n"
+      "Noise scatters parameters and raises most of them. Both are found by measuring the scan again with "
+      "more "
+      "noise like its own: beside each parameter stands what it is without noise, and the standard error of "
+      "that. Noise that neighbours share in both directions, as in filtered scans, is not seen and not "
+      "counted.");
   command.examples({{"fettle measure scan.tif", "All parameters about the least-squares plane"},
                     {"fettle measure scan.tif other.tif --only spatial --csv texture.csv",
                      "Heights and spatial parameters of several scans, as a table"},

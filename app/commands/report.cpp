@@ -14,9 +14,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "app/commands/areal_table.h"
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
+#include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/report_sections.h"
@@ -27,6 +27,7 @@
 #include "app/commands/surface_plots.h"
 #include "app/pages/report_page.h"
 #include "app/terminal.h"
+#include "app/work/areal_table.h"
 #include "app/work/form_change.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
@@ -50,6 +51,7 @@ struct ReportArguments {
   std::string type;   // empty: by the name of `out`, else html
   FormArguments form;
   ScaleArguments scale;
+  int noise_trials = kUsualTrials;
   ReportSections sections;
   ScanOptions reading;
 };
@@ -72,6 +74,27 @@ ReportPage::Table textureTable(const std::vector<ArealLine>& lines, const std::v
   for (const ArealLine& line : lines) {
     std::vector<std::string> row = {line.name, line.text};
     row.insert(row.end(), line.values.begin(), line.values.end());
+    row.push_back(line.unit);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// The same without noise, with standard errors.
+ReportPage::Table noiseTable(const std::vector<ArealLine>& lines, std::vector<std::string> heads,
+                             int trials) {
+  ReportPage::Table table{
+      "Surface texture without noise",
+      fmt::format(
+          "+- the standard error that the noise of the scan puts on it, by {} trials with more of it. Noise "
+          "that neighbours share in both directions, as in filtered scans, is not counted.",
+          trials),
+      std::move(heads),
+      {}};
+  table.heads.emplace_back("Unit");
+  for (const ArealLine& line : lines) {
+    std::vector<std::string> row = {line.name};
+    for (const std::string& without : line.without) row.push_back(without.empty() ? "-" : without);
     row.push_back(line.unit);
     table.rows.push_back(std::move(row));
   }
@@ -244,8 +267,10 @@ class ScanReport {
     for (const ShownState& state : states_) {
       const auto counted = countedOf(state.field, imported_.original, options_.scan, options_.form, job_);
       if (!counted) return tl::unexpected(counted.error());
-      const auto limited =
-          scaleLimited(*counted, options_.scan, imported_, options_.form, options_.scale, job_);
+      const auto limitedOf = [&](const engine::Version& field) {
+        return scaleLimited(field, options_.scan, imported_, options_.form, options_.scale, job_);
+      };
+      const auto limited = limitedOf(*counted);
       if (!limited) return tl::unexpected(limited.error());
       engine::ArealOptions areal;
       areal.region = formChoiceOf(options_.form).region;
@@ -255,6 +280,23 @@ class ScanReport {
       if (!parameters) return tl::unexpected(parameters.error());
       addForm(reports.emplace_back(), options_.form, limited->fit, state.field.grid());
       addAreal(reports.back(), *parameters, {}, state.field.grid());
+      engine::ArealParameters stated = *parameters;
+      stated.heights.clear();
+      areal.at_ratios.clear();
+      areal.analysis = false;
+      const auto noise = arealNoise(
+          *counted, stated,
+          [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
+            const auto of = limitedOf(noisy);
+            if (!of) return tl::unexpected(of.error());
+            return engine::measureAreal(of->field, of->form, areal, job_);
+          },
+          options_.noise_trials, job_);
+      if (!noise) return tl::unexpected(noise.error());
+      if (*noise) {
+        app::addNoise(reports.back(), **noise, state.field.grid());
+        trials_ = (*noise)->trials;
+      }
       measured_.push_back(*std::move(parameters));
       report_[reports.size() == states_.size() ? "sq" : "sq_before"] = reports.back()["sq"];
       if (limited->fit.fit) tilt += fmt::format(" {}: {}.", state.name, formFigures(limited->fit.form));
@@ -262,11 +304,13 @@ class ScanReport {
         tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                             reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());
     }
+    const std::vector<ArealLine> lines = arealLines(reports);
     page_.parts.emplace_back(textureTable(
-        arealLines(reports), heads({}),
+        lines, heads({}),
         fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
                     options_.form.robust ? " (robust)" : "",
                     options_.form.region == "all" ? "all" : "the " + options_.form.region, tilt)));
+    if (trials_ > 0) page_.parts.emplace_back(noiseTable(lines, heads({"Parameter"}), trials_));
     return {};
   }
 
@@ -338,6 +382,7 @@ class ScanReport {
          {std::tuple("S-filter", &options_.scale.s_filter, &options_.scale.s_kind),
           {"L-filter", &options_.scale.l_filter, &options_.scale.l_kind}})
       add(name, cut_off->empty() ? "none" : fmt::format("{} mm, {}", *cut_off, *kind));
+    add("Noise trials", fmt::format("{}", trials_));
     if (const std::string reading = scanOptionsText(options_.reading); !reading.empty())
       add("Read with", reading.substr(1));
     if (const auto status = loadWork(); !status) return status;
@@ -450,6 +495,7 @@ class ScanReport {
   std::vector<ShownState> states_;
   std::optional<engine::Deviation> change_;
   std::vector<engine::ArealParameters> measured_;  // of each state
+  int trials_ = 0;                                 // with noise, for errors
   std::optional<engine::Session> session_;
   ReportPage::Table heights_;
   ReportPage page_;
@@ -489,6 +535,7 @@ void addReport(Command root, Chosen& chosen) {
   addSectionOptions(command, options->sections);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
+  addNoiseOption(command, options->noise_trials);
   addScanOptions(command, options->reading);
   command.notes(
       "One file without links to others: pictures from the side and from above, noise, surface texture about "

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/plots/gnuplot.h"
-#include "app/commands/read_units.h"
 #include "app/commands/section_files.h"
 #include "app/commands/section_options.h"
+#include "app/work/read_units.h"
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 

@@ -30,6 +30,7 @@
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 #include "engine/measure/section_figures.h"
+#include "engine/uncertainty/roughness_noise.h"
 
 namespace fettle::app {
 
@@ -103,6 +104,8 @@ void addMarks(const std::vector<double>& along, const char* name, std::vector<Dr
 
 // What was asked for, of one section. `marks`: places that a picture shows.
 class Figures {
+  static constexpr int kRoughnessPairs = 32;  // of trials with noise
+
  public:
   Figures(const SectionArguments& options, double noise_mm) : options_(options), noise_mm_(noise_mm) {}
 
@@ -233,11 +236,25 @@ class Figures {
   engine::Result<Report> roughness(const Section& section) const {
     const auto figures = engine::roughnessOf(section, within(section), *options_.cutoff);
     if (!figures) return tl::unexpected(figures.error());
-    return Report{{"cutoff_mm", *options_.cutoff}, {"evaluated", stretchOf(figures->evaluated)},
-                  {"lengths", figures->lengths},   {"ra_mm", figures->ra},
-                  {"rq_mm", figures->rq},          {"rz_mm", figures->rz},
-                  {"rsk", number(figures->rsk)},   {"rku", number(figures->rku)},
-                  {"rsm_mm", number(figures->rsm)}};
+    const auto noise = engine::roughnessNoise(section, within(section), *options_.cutoff, *figures, noise_mm_,
+                                              {.pairs = kRoughnessPairs});
+    if (!noise) return tl::unexpected(noise.error());
+    Report report{{"cutoff_mm", *options_.cutoff},
+                  {"evaluated", stretchOf(figures->evaluated)},
+                  {"lengths", figures->lengths}};
+    const auto add = [&report](const std::string& key, const char* unit, double value,
+                               const engine::NoiseEffect& effect) {
+      report[key + unit] = number(value);
+      report[key + "_without" + unit] = number(effect.without);
+      report[key + "_error" + unit] = number(effect.error);
+    };
+    add("ra", "_mm", figures->ra, noise->ra);
+    add("rq", "_mm", figures->rq, noise->rq);
+    add("rz", "_mm", figures->rz, noise->rz);
+    add("rsk", "", figures->rsk, noise->rsk);
+    add("rku", "", figures->rku, noise->rku);
+    add("rsm", "_mm", figures->rsm, noise->rsm);
+    return report;
   }
 
   const SectionArguments& options_;

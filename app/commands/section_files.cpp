@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "app/commands/plots/gnuplot.h"
-#include "app/commands/read_units.h"
 #include "app/work/outputs.h"
+#include "app/work/read_units.h"
 #include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/estimate_text.h"
-#include "app/commands/read_units.h"
+#include "app/work/estimate_text.h"
+#include "app/work/read_units.h"
 
 namespace fettle::app {
 
@@ -85,11 +85,32 @@ void printFigures(const Report& of, const std::string& before, const TextUnits& 
   if (of.contains("roughness")) {
     const Report& r = of["roughness"];
     const ReadAs as = readLengthAs(r["ra_mm"].get<double>(), 1.0, "mm");
-    row("roughness",
-        fmt::format("Ra {} Rq {} Rz {} RSm {}, Rsk {} Rku {}, over {} cut-offs of {}",
-                    shownLength(r["ra_mm"], as), shownLength(r["rq_mm"], as), shownLength(r["rz_mm"], as),
-                    shownLength(r["rsm_mm"], along), shownNumber(r["rsk"]), shownNumber(r["rku"]),
-                    r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along)));
+    row("roughness", fmt::format("over {} cut-offs of {}; without noise +- standard error",
+                                 r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along)));
+    struct Kind {
+      const char* name;
+      const char* key;
+      const char* unit;
+      const ReadAs* as;
+    };
+    const ReadAs plain{"", 1.0};
+    for (const Kind& kind : {Kind{"Ra", "ra", "_mm", &as},
+                             {"Rq", "rq", "_mm", &as},
+                             {"Rz", "rz", "_mm", &as},
+                             {"RSm", "rsm", "_mm", &along},
+                             {"Rsk", "rsk", "", &plain},
+                             {"Rku", "rku", "", &plain}}) {
+      const Report &value = r[fmt::format("{}{}", kind.key, kind.unit)],
+                   &without = r[fmt::format("{}_without{}", kind.key, kind.unit)],
+                   &error = r[fmt::format("{}_error{}", kind.key, kind.unit)];
+      std::string text = shownLength(value, *kind.as);
+      if (!without.is_null()) {
+        const double by = error.get<double>() / kind.as->size;
+        text += fmt::format(", without noise {} +- {:.2g}",
+                            shownTo(without.get<double>() / kind.as->size, by), by);
+      }
+      row("", fmt::format("{:<4} {}", kind.name, text));
+    }
   }
 }
 

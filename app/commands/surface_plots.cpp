@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/plots/gnuplot.h"
-#include "app/commands/read_units.h"
+#include "app/work/read_units.h"
 #include "engine/measure/profile_spectrum.h"
 
 namespace fettle::app {

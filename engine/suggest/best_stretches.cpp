@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kDinkelbachSteps = 20;  // five or six are usual
 
-Stretch stretchOf(const GainPath& path, std::size_t first, std::size_t last, const HandPace& pace) {
-  Stretch found{first, last, path.gains[first], 0.0, 0.0};
+WorthStretch stretchOf(const GainPath& path, std::size_t first, std::size_t last, const HandPace& pace) {
+  WorthStretch found{first, last, path.gains[first], 0.0, 0.0};
   for (std::size_t i = first + 1; i <= last; ++i) {
     found.gain += path.gains[i];
     found.length += glm::distance(path.points[i - 1], path.points[i]);
@@ -21,8 +21,8 @@ Stretch stretchOf(const GainPath& path, std::size_t first, std::size_t last, con
 }
 
 // Of points [begin, end) the stretch of the largest gain less `price` for each second of drawing.
-Stretch bestAtPrice(const GainPath& path, std::size_t begin, std::size_t end, double price,
-                    const HandPace& pace) {
+WorthStretch bestAtPrice(const GainPath& path, std::size_t begin, std::size_t end, double price,
+                         const HandPace& pace) {
   std::size_t from = begin, first = begin, last = begin;
   double sum = path.gains[begin], most = sum;
   for (std::size_t i = begin + 1; i < end; ++i) {
@@ -42,11 +42,11 @@ Stretch bestAtPrice(const GainPath& path, std::size_t begin, std::size_t end, do
   return stretchOf(path, first, last, pace);
 }
 
-std::optional<Stretch> bestOf(const GainPath& path, std::size_t begin, std::size_t end,
-                              const HandPace& pace) {
-  Stretch best = bestAtPrice(path, begin, end, 0.0, pace);
+std::optional<WorthStretch> bestOf(const GainPath& path, std::size_t begin, std::size_t end,
+                                   const HandPace& pace) {
+  WorthStretch best = bestAtPrice(path, begin, end, 0.0, pace);
   for (int step = 0; step < kDinkelbachSteps && best.gain > 0.0; ++step) {
-    const Stretch next = bestAtPrice(path, begin, end, best.gain / best.seconds, pace);
+    const WorthStretch next = bestAtPrice(path, begin, end, best.gain / best.seconds, pace);
     if (!(next.gain / next.seconds > best.gain / best.seconds)) break;
     best = next;
   }
@@ -55,8 +55,8 @@ std::optional<Stretch> bestOf(const GainPath& path, std::size_t begin, std::size
 }
 
 // What is too short for a stroke is continued at both ends, as far as the points reach.
-Stretch atLeast(double shortest, Stretch stretch, const GainPath& path, std::size_t begin, std::size_t end,
-                const HandPace& pace) {
+WorthStretch atLeast(double shortest, WorthStretch stretch, const GainPath& path, std::size_t begin,
+                     std::size_t end, const HandPace& pace) {
   std::size_t first = stretch.first, last = stretch.last;
   double length = stretch.length;
   while (length < shortest && (first > begin || last + 1 < end)) {
@@ -68,19 +68,19 @@ Stretch atLeast(double shortest, Stretch stretch, const GainPath& path, std::siz
 
 }  // namespace
 
-std::vector<Stretch> bestStretches(const GainPath& path, const HandPace& pace, double shortest) {
+std::vector<WorthStretch> bestStretches(const GainPath& path, const HandPace& pace, double shortest) {
   struct Part {
     std::size_t begin, end;
   };
   std::vector<Part> parts;
   if (!path.points.empty()) parts.push_back({0, path.points.size()});
-  std::vector<Stretch> found;
+  std::vector<WorthStretch> found;
   while (!parts.empty()) {
     const Part part = parts.back();
     parts.pop_back();
     const auto core = bestOf(path, part.begin, part.end, pace);
     if (!core) continue;
-    const Stretch best = atLeast(shortest, *core, path, part.begin, part.end, pace);
+    const WorthStretch best = atLeast(shortest, *core, path, part.begin, part.end, pace);
     if (best.length >= shortest && best.gain > 0.0) found.push_back(best);
     if (best.last + 1 < part.end) parts.push_back({best.last + 1, part.end});
     if (best.first > part.begin) parts.push_back({part.begin, best.first});

@@ -28,7 +28,7 @@ struct GainPath {
 };
 
 /// Points first .. last of a path.
-struct Stretch {
+struct WorthStretch {
   std::size_t first = 0, last = 0;
   double gain = 0.0;     ///< sum of the points' gains, > 0
   double length = 0.0;   ///< [samples]
@@ -39,6 +39,7 @@ struct Stretch {
 /// either side of it, and so on. Each is at least `shortest` [samples] long, and none overlaps another. Most gain per
 /// second by W. Dinkelbach, On nonlinear fractional programming (1967): the largest gain less a price for the
 /// seconds, at the price that makes it zero. In the order in which they are found. O(n) for each stretch and step.
-[[nodiscard]] std::vector<Stretch> bestStretches(const GainPath& path, const HandPace& pace, double shortest);
+[[nodiscard]] std::vector<WorthStretch> bestStretches(const GainPath& path, const HandPace& pace,
+                                                      double shortest);
 
 }  // namespace fettle::engine

@@ -317,7 +317,7 @@ Result<WorthPlaces> findWorthPlaces(const Version& field, const WorthRequest& re
     GainPath path;
     for (const LineSpot& spot : own) path.points.push_back(spot.at);
     path.gains = gainsOf(own);
-    for (const Stretch& stretch : bestStretches(path, request.pace, kShortestStroke)) {
+    for (const WorthStretch& stretch : bestStretches(path, request.pace, kShortestStroke)) {
       if (stretch.gain < kLeastShare * result.left) continue;
       const auto at = [&](std::size_t i) { return path.points.begin() + static_cast<std::ptrdiff_t>(i); };
       result.places.push_back(

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -142,7 +143,52 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   for (const char* heading : {"\nHeight\n", "\nSpatial\n", "\nHybrid\n", "\nFunctional\n", "\nFeature\n"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << heading;
   EXPECT_NE(text.out.find("Str      not stated: along"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("figure is without noise, +- its standard error, by 32 trials"), std::string::npos);
   EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+}
+
+// Noise on a wave: the parameters without it are those of the wave, within what is stated; and they can be left out.
+TEST(Measure, StatesWhatNoiseDoesToEachParameter) {
+  const TempFolder folder;
+  const std::string clean = folder.file("clean.asc"), noisy = folder.file("noisy.asc");
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.0002);
+  for (const bool noise : {false, true}) {
+    std::ofstream out(noise ? noisy : clean);
+    out.precision(9);
+    out << "ncols 90\nnrows 80\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+    for (int r = 79; r >= 0; --r) {
+      for (int c = 0; c < 90; ++c)
+        out << 0.002 * std::cos(2.0 * kPi * c / 18.0) + 0.001 * std::cos(2.0 * kPi * r / 20.0) +
+                   (noise ? normal(random) : 0.0)
+            << ' ';
+      out << '\n';
+    }
+  }
+  const auto truth = fettleJson({"measure", clean, "--unit", "mm", "--noise-trials", "0"});
+  EXPECT_FALSE(truth.contains("noise"));
+  const auto found = fettleJson({"measure", noisy, "--unit", "mm"});
+  EXPECT_EQ(found["noise"]["trials"], 32);
+  EXPECT_NEAR(found["noise"]["sigma"], 0.0002, 2e-5);
+  int stated = 0, outside = 0;
+  for (const auto& each : found["noise"]["figures"]) {
+    const std::string key = each["parameter"];
+    if (each["without"].is_null() || truth[key].is_null() || key == "str" || key == "std") continue;
+    ++stated;
+    const double off = each["without"].get<double>() - truth[key].get<double>();
+    if (std::abs(off) > 3.0 * each["error"].get<double>()) ++outside;
+    if (key == "sq" || key == "sdq") {
+      EXPECT_LT(std::abs(off), 0.5 * (found[key].get<double>() - truth[key].get<double>())) << key;
+    }
+  }
+  EXPECT_GE(stated, 18);
+  EXPECT_LE(outside, 2);
+  EXPECT_TRUE(found["smc"][0]["error"].is_number());
+  EXPECT_EQ(fettleJson({"measure", noisy, "--unit", "mm"}), found) << "the same trials again";
+  const auto few = fettleJson({"measure", noisy, "--unit", "mm", "--noise-trials", "6", "--only", "height"});
+  EXPECT_EQ(few["noise"]["trials"], 6);
+  EXPECT_EQ(few["noise"]["figures"].size(), 7U);
+  expectRefused(fettle({"measure", noisy, "--unit", "mm", "--noise-trials", "-1"}), "--noise-trials");
 }
 
 TEST(Measure, MaterialRatiosAreThoseAskedFor) {
@@ -208,9 +254,9 @@ TEST(Measure, CsvHasARowPerScanAndParameter) {
   std::string line, all;
   int rows = 0;
   while (std::getline(in, line)) ++rows, all += line + "\n";
-  EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark\n"));
+  EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark,without_noise,error\n"));
   EXPECT_EQ(rows, 1 + 2 * (24 + 2));
-  EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat\n"), std::string::npos)
+  EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat,,\n"), std::string::npos)
       << all;
   EXPECT_NE(all.find(",height,Sq,0.0014"), std::string::npos) << all;
   EXPECT_EQ(all.find("nan"), std::string::npos) << all;

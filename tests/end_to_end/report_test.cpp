@@ -110,7 +110,8 @@ TEST(ReportPage, AsPdfHasTheSameTextAndNoDateOfNow) {
         "#" + report["hash"].get<std::string>(), "#" + report["original_hash"].get<std::string>(),
         std::string("Surface texture"), std::string("root mean square"), std::string("autocorrelation"),
         std::string("spatial frequency"), std::string("After, along y"), std::string("Section 2"),
-        std::string("RSm"), std::string("stiffness = 0.5"), std::string("L-filter"), std::string("1 of ")})
+        std::string("RSm"), std::string("Surface texture without noise"), std::string("Noise trials"),
+        std::string("stiffness = 0.5"), std::string("L-filter"), std::string("1 of ")})
     EXPECT_NE(text.find(piece), std::string::npos) << piece << "\n" << text;
   EXPECT_EQ(text.find(folder.path()), std::string::npos) << "no path of this machine";
   const std::string bytes = bytesOf(pdf);

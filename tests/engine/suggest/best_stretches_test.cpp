@@ -17,7 +17,7 @@ GainPath pathOf(std::vector<double> gains) {
   return path;
 }
 
-double rateOf(const Stretch& s) {
+double rateOf(const WorthStretch& s) {
   return s.gain / s.seconds;
 }
 
@@ -86,7 +86,7 @@ TEST(BestStretches, the_first_is_the_best_of_all_and_none_overlap) {
     ASSERT_FALSE(found.empty());
     EXPECT_NEAR(rateOf(found[0]), bestRate(path, pace), 1e-9 * bestRate(path, pace));
     std::vector<bool> taken(gains.size(), false);
-    for (const Stretch& stretch : found) {
+    for (const WorthStretch& stretch : found) {
       EXPECT_GT(stretch.gain, 0.0);
       for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
         EXPECT_FALSE(taken[i]) << i;

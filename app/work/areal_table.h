@@ -1,26 +1,42 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
-#include "app/reference/command_table.h"
 #include "app/report.h"
 #include "engine/field/grid.h"
 #include "engine/measure/areal.h"
+#include "engine/uncertainty/noise_trial.h"
 
 namespace fettle::app {
 
 // The parameters of `fettle measure` as one table: their groups, keys, names and units, from which the report, the text
 // and the CSV are made.
 
-/// "height", "spatial", "hybrid", "functional", "feature", each with what it has.
-[[nodiscard]] std::vector<Word> arealGroups();
+/// A group of parameters: "height", "spatial", "hybrid", "functional", "feature".
+struct ArealGroup {
+  const char* word;
+  const char* heading;
+  const char* text;  ///< the parameters that it has
+};
+[[nodiscard]] std::span<const ArealGroup> arealGroups() noexcept;
 
 /// Adds the parameters of these groups and of height (empty: of all) to a report: a key each, null for one that is not stated, and
 /// `not_stated` with the reasons. Heights in the height unit of the grid; lengths, densities and curvatures in its
 /// lateral unit; ratios as shares of 1.
 void addAreal(Report& report, const engine::ArealParameters& measured, const std::vector<std::string>& groups,
               const engine::Grid& grid);
+
+/// What the noise of a scan does to its parameters.
+struct ArealNoise {
+  double sigma = 0.0;  ///< of a sample [height_unit]
+  int trials = 0;
+  std::vector<engine::NoiseEffect> effects;  ///< of engine::arealFigures(), then of each Smr and each Smc
+};
+/// Adds it to a report of addAreal(), after its `smr` and `smc`: `noise` with `sigma`, `trials` and, of each parameter that the report has,
+/// `without` and `error`; both also to each of `smr` and `smc`.
+void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid);
 
 /// One line each under the heading of its group, in units that read at ease where the scan's are metric, else in the
 /// scan's. `report` has what addAreal adds.
@@ -29,14 +45,15 @@ void printAreal(const Report& report);
 /// A parameter of several reports side by side.
 struct ArealLine {
   std::string group, name, unit, text;
-  std::vector<std::string> values;  ///< one for each report: a figure, or the reason why none is stated
+  std::vector<std::string> values;   ///< one for each report: a figure, or the reason why none is stated
+  std::vector<std::string> without;  ///< without noise, "12.3 +- 0.2"; empty where it is not stated
 };
 /// The parameters that the reports of addAreal have, in the units in which those of the first read at ease.
 [[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports);
 
-/// Rows "scan,group,parameter,value,unit,remark" of a report of addAreal, in the scan's units, ratios in per cent;
+/// Rows "scan,group,parameter,value,unit,remark,without_noise,error" of a report of addAreal, in the scan's units, ratios in per cent;
 /// without the heading kArealHeading.
 [[nodiscard]] std::string arealRows(const std::string& scan, const Report& report);
-inline constexpr const char* kArealHeading = "scan,group,parameter,value,unit,remark\n";
+inline constexpr const char* kArealHeading = "scan,group,parameter,value,unit,remark,without_noise,error\n";
 
 }  // namespace fettle::app

@@ -1,4 +1,4 @@
-#include "app/commands/read_units.h"
+#include "app/work/read_units.h"
 
 #include <cmath>
 

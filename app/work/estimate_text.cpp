@@ -1,4 +1,4 @@
-#include "app/commands/estimate_text.h"
+#include "app/work/estimate_text.h"
 
 #include <algorithm>
 #include <cmath>

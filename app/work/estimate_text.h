@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "app/commands/read_units.h"
 #include "app/report.h"
+#include "app/work/read_units.h"
 
 namespace fettle::app {
 

@@ -1,4 +1,4 @@
-#include "app/commands/areal_table.h"
+#include "app/work/areal_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/read_units.h"
+#include "app/work/estimate_text.h"
+#include "app/work/read_units.h"
+#include "engine/uncertainty/areal_figures.h"
 
 namespace fettle::app {
 
@@ -32,58 +34,34 @@ struct ArealRow {
   const char* name;
   Quantity quantity;
   const char* text;
-  double (*of)(const engine::ArealParameters&);
 };
-using Areal = engine::ArealParameters;
 constexpr ArealRow kArealRows[] = {
-    {"height", "sq", "Sq", Quantity::kHeight, "root mean square height", [](const Areal& p) { return p.sq; }},
-    {"height", "ssk", "Ssk", Quantity::kPlain, "skewness", [](const Areal& p) { return p.ssk; }},
-    {"height", "sku", "Sku", Quantity::kPlain, "kurtosis", [](const Areal& p) { return p.sku; }},
-    {"height", "sp", "Sp", Quantity::kHeight, "maximum peak height", [](const Areal& p) { return p.sp; }},
-    {"height", "sv", "Sv", Quantity::kHeight, "maximum pit depth", [](const Areal& p) { return p.sv; }},
-    {"height", "sz", "Sz", Quantity::kHeight, "maximum height", [](const Areal& p) { return p.sz; }},
-    {"height", "sa", "Sa", Quantity::kHeight, "arithmetical mean height",
-     [](const Areal& p) { return p.sa; }},
-    {"spatial", "sal", "Sal", Quantity::kLength, "autocorrelation length (to 0.2)",
-     [](const Areal& p) { return p.spatial.sal; }},
-    {"spatial", "str", "Str", Quantity::kPlain, "texture aspect ratio (to 0.2)",
-     [](const Areal& p) { return p.spatial.str; }},
-    {"spatial", "std", "Std", Quantity::kDegrees, "texture direction: of the lay, from x to y",
-     [](const Areal& p) { return p.spatial.lay; }},
-    {"hybrid", "sdq", "Sdq", Quantity::kPlain, "root mean square gradient",
-     [](const Areal& p) { return p.sdq; }},
-    {"hybrid", "sdr", "Sdr", Quantity::kRatio, "developed interfacial area ratio",
-     [](const Areal& p) { return p.sdr; }},
-    {"functional", "sk", "Sk", Quantity::kHeight, "core height", [](const Areal& p) { return p.ratio.sk; }},
-    {"functional", "spk", "Spk", Quantity::kHeight, "reduced peak height",
-     [](const Areal& p) { return p.ratio.spk; }},
-    {"functional", "svk", "Svk", Quantity::kHeight, "reduced dale height",
-     [](const Areal& p) { return p.ratio.svk; }},
-    {"functional", "smrk1", "Smrk1", Quantity::kRatio, "material ratio of the peaks (Smr1)",
-     [](const Areal& p) { return p.ratio.smrk1; }},
-    {"functional", "smrk2", "Smrk2", Quantity::kRatio, "material ratio above the dales (Smr2)",
-     [](const Areal& p) { return p.ratio.smrk2; }},
-    {"functional", "vmp", "Vmp", Quantity::kVolume, "material volume of the peaks (10 %)",
-     [](const Areal& p) { return p.ratio.vmp; }},
-    {"functional", "vmc", "Vmc", Quantity::kVolume, "material volume of the core (10 to 80 %)",
-     [](const Areal& p) { return p.ratio.vmc; }},
-    {"functional", "vvc", "Vvc", Quantity::kVolume, "void volume of the core (10 to 80 %)",
-     [](const Areal& p) { return p.ratio.vvc; }},
-    {"functional", "vvv", "Vvv", Quantity::kVolume, "void volume of the dales (80 %)",
-     [](const Areal& p) { return p.ratio.vvv; }},
-    {"functional", "sxp", "Sxp", Quantity::kHeight, "peak extreme height (2.5 to 50 %)",
-     [](const Areal& p) { return p.ratio.sxp; }},
-    {"feature", "spd", "Spd", Quantity::kPerArea, "density of peaks (hills of 5 % of Sz and more)",
-     [](const Areal& p) { return p.feature.spd; }},
-    {"feature", "spc", "Spc", Quantity::kPerLength, "arithmetic mean peak curvature",
-     [](const Areal& p) { return p.feature.spc; }},
+    {"height", "sq", "Sq", Quantity::kHeight, "root mean square height"},
+    {"height", "ssk", "Ssk", Quantity::kPlain, "skewness"},
+    {"height", "sku", "Sku", Quantity::kPlain, "kurtosis"},
+    {"height", "sp", "Sp", Quantity::kHeight, "maximum peak height"},
+    {"height", "sv", "Sv", Quantity::kHeight, "maximum pit depth"},
+    {"height", "sz", "Sz", Quantity::kHeight, "maximum height"},
+    {"height", "sa", "Sa", Quantity::kHeight, "arithmetical mean height"},
+    {"spatial", "sal", "Sal", Quantity::kLength, "autocorrelation length (to 0.2)"},
+    {"spatial", "str", "Str", Quantity::kPlain, "texture aspect ratio (to 0.2)"},
+    {"spatial", "std", "Std", Quantity::kDegrees, "texture direction: of the lay, from x to y"},
+    {"hybrid", "sdq", "Sdq", Quantity::kPlain, "root mean square gradient"},
+    {"hybrid", "sdr", "Sdr", Quantity::kRatio, "developed interfacial area ratio"},
+    {"functional", "sk", "Sk", Quantity::kHeight, "core height"},
+    {"functional", "spk", "Spk", Quantity::kHeight, "reduced peak height"},
+    {"functional", "svk", "Svk", Quantity::kHeight, "reduced dale height"},
+    {"functional", "smrk1", "Smrk1", Quantity::kRatio, "material ratio of the peaks (Smr1)"},
+    {"functional", "smrk2", "Smrk2", Quantity::kRatio, "material ratio above the dales (Smr2)"},
+    {"functional", "vmp", "Vmp", Quantity::kVolume, "material volume of the peaks (10 %)"},
+    {"functional", "vmc", "Vmc", Quantity::kVolume, "material volume of the core (10 to 80 %)"},
+    {"functional", "vvc", "Vvc", Quantity::kVolume, "void volume of the core (10 to 80 %)"},
+    {"functional", "vvv", "Vvv", Quantity::kVolume, "void volume of the dales (80 %)"},
+    {"functional", "sxp", "Sxp", Quantity::kHeight, "peak extreme height (2.5 to 50 %)"},
+    {"feature", "spd", "Spd", Quantity::kPerArea, "density of peaks (hills of 5 % of Sz and more)"},
+    {"feature", "spc", "Spc", Quantity::kPerLength, "arithmetic mean peak curvature"},
 };
 
-struct ArealGroup {
-  const char* word;
-  const char* heading;
-  const char* text;
-};
 constexpr ArealGroup kArealGroups[] = {
     {"height", "Height", "Sq Ssk Sku Sp Sv Sz Sa"},
     {"spatial", "Spatial", "Sal Str Std"},
@@ -150,9 +128,27 @@ std::string reasonOf(const Report& report, std::string_view key) {
   return "";
 }
 
-void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text) {
-  fmt::print("{:<8} {:>12} {:<10} {}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
-             shown.unit, text);
+// "12.3 +- 0.2": a figure without noise, of an object with `without` and `error`; empty where these are not stated.
+std::string withoutNoise(const Report& effect, double factor) {
+  if (effect.is_null() || effect["without"].is_null()) return "";
+  const double without = effect["without"].get<double>() * factor,
+               error = effect["error"].get<double>() * factor;
+  return fmt::format("{} +- {:.2g}", shownTo(without, error), error);
+}
+
+void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text,
+              const Report& effect, bool noise) {
+  const std::string without = withoutNoise(effect, shown.factor);
+  fmt::print("{:<8} {:>12} {:<10} {}{}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
+             shown.unit, noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text);
+}
+
+// What the noise does to a parameter; null where that is not known.
+Report effectOn(const Report& report, std::string_view key) {
+  if (!report.contains("noise")) return {};
+  for (const Report& each : report["noise"]["figures"])
+    if (each["parameter"].get<std::string>() == key) return each;
+  return {};
 }
 
 // A field of a CSV, quoted where it must be: RFC 4180.
@@ -168,11 +164,8 @@ std::string csvField(const std::string& text) {
 
 }  // namespace
 
-std::vector<Word> arealGroups() {
-  std::vector<Word> words;
-  words.reserve(std::size(kArealGroups));
-  for (const ArealGroup& group : kArealGroups) words.emplace_back(group.word, group.text);
-  return words;
+std::span<const ArealGroup> arealGroups() noexcept {
+  return kArealGroups;
 }
 
 void addAreal(Report& report, const engine::ArealParameters& measured, const std::vector<std::string>& groups,
@@ -186,7 +179,8 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
   report["mean"] = measured.mean;
   for (const ArealRow& row : kArealRows) {
     if (!wanted(row.group, groups)) continue;
-    const double value = inScanUnits(row.of(measured), row.quantity, grid.lateral_unit.mm);
+    const double value =
+        inScanUnits(engine::arealFigure(row.key).of(measured), row.quantity, grid.lateral_unit.mm);
     report[row.key] = std::isfinite(value) ? Report(value) : Report();
   }
   if (wanted("hybrid", groups)) report["cells"] = measured.cells;
@@ -197,10 +191,39 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
       report["not_stated"].push_back({{"parameter", each.parameter}, {"reason", each.reason}});
 }
 
+void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid) {
+  const auto number = [](double value) { return std::isfinite(value) ? Report(value) : Report(); };
+  report["noise"] = {{"sigma", number(noise.sigma)}, {"trials", noise.trials}, {"figures", Report::array()}};
+  const auto figures = engine::arealFigures();
+  for (const ArealRow& row : kArealRows) {
+    if (!report.contains(row.key)) continue;
+    for (std::size_t i = 0; i < figures.size(); ++i)
+      if (figures[i].key == row.key)
+        report["noise"]["figures"].push_back(
+            {{"parameter", row.key},
+             {"without", number(inScanUnits(noise.effects[i].without, row.quantity, grid.lateral_unit.mm))},
+             {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid.lateral_unit.mm))}});
+  }
+  // The ratios and heights that were asked for come after all parameters.
+  std::size_t next = figures.size();
+  for (const char* const list : {"smr", "smc"})
+    if (report.contains(list))
+      for (Report& each : report[list]) {
+        each["without"] = number(noise.effects[next].without);
+        each["error"] = number(noise.effects[next].error);
+        ++next;
+      }
+}
+
 void printAreal(const Report& report) {
   // Of the root mean square height: one unit for all rows.
   const ReadAs height = readLengthAs(report["sq"].get<double>(), report["unit_mm"], report["unit"]);
   const ReadAs length = readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
+  const bool noise = report.contains("noise");
+  if (noise)
+    fmt::print("noise {:.4g} {}; the second figure is without noise, +- its standard error, by {} trials\n",
+               report["noise"]["sigma"].get<double>() / height.size, height.name,
+               report["noise"]["trials"].get<int>());
   for (const ArealGroup& group : kArealGroups) {
     bool headed = false;
     for (const ArealRow& row : kArealRows) {
@@ -211,7 +234,8 @@ void printAreal(const Report& report) {
       if (value.is_null())
         fmt::print("{:<8} not stated: {}\n", row.name, reasonOf(report, row.key));
       else
-        printRow(row.name, value, shownAs(row.quantity, height, length), row.text);
+        printRow(row.name, value, shownAs(row.quantity, height, length), row.text, effectOn(report, row.key),
+                 noise);
     }
     if (std::string_view(group.word) != "functional" || !report.contains("smr")) continue;
     const Shown ratio = shownAs(Quantity::kRatio, height, length);
@@ -219,11 +243,13 @@ void printAreal(const Report& report) {
     for (const Report& each : report["smr"])
       printRow("Smr(c)", each["ratio"], ratio,
                fmt::format("material ratio at {:.5g} {} about the mean",
-                           each["height"].get<double>() * level.factor, level.unit));
+                           each["height"].get<double>() * level.factor, level.unit),
+               noise ? each : Report(), noise);
     for (const Report& each : report["smc"])
       printRow("Smc(mr)", each["height"], level,
                fmt::format("height about the mean of a material ratio of {:.5g} %",
-                           each["ratio"].get<double>() * 100.0));
+                           each["ratio"].get<double>() * 100.0),
+               noise ? each : Report(), noise);
   }
 }
 
@@ -236,11 +262,13 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
     for (const ArealRow& row : kArealRows) {
       if (std::string_view(row.group) != group.word || !first.contains(row.key)) continue;
       const Shown shown = shownAs(row.quantity, height, length);
-      ArealLine line{group.heading, row.name, shown.unit, row.text, {}};
-      for (const Report& report : reports)
+      ArealLine line{group.heading, row.name, shown.unit, row.text, {}, {}};
+      for (const Report& report : reports) {
         line.values.push_back(report[row.key].is_null()
                                   ? reasonOf(report, row.key)
                                   : fmt::format("{:.5g}", report[row.key].get<double>() * shown.factor));
+        line.without.push_back(withoutNoise(effectOn(report, row.key), shown.factor));
+      }
       lines.push_back(std::move(line));
     }
   return lines;
@@ -251,25 +279,28 @@ std::string arealRows(const std::string& scan, const Report& report) {
   std::string text;
   auto out = std::back_inserter(text);
   const auto add = [&](const char* group, const std::string& name, const Report& value, Quantity quantity,
-                       const std::string& remark) {
+                       const std::string& remark, const Report& effect) {
     const Shown shown = shownAs(quantity, height, length);
-    fmt::format_to(out, "{},{},{},{},{},{}\n", csvField(scan), group, csvField(name),
-                   value.is_null() ? "" : fmt::format("{:.9g}", value.get<double>() * shown.factor),
-                   shown.unit, csvField(remark));
+    const auto number = [&shown](const Report& of) {
+      return of.is_null() ? "" : fmt::format("{:.9g}", of.get<double>() * shown.factor);
+    };
+    fmt::format_to(out, "{},{},{},{},{},{},{},{}\n", csvField(scan), group, csvField(name), number(value),
+                   shown.unit, csvField(remark), effect.is_null() ? "" : number(effect["without"]),
+                   effect.is_null() ? "" : number(effect["error"]));
   };
   for (const ArealRow& row : kArealRows)
     if (report.contains(row.key)) {
       const Report& value = report[row.key];
       add(row.group, row.name, value, row.quantity,
-          value.is_null() ? "not stated: " + reasonOf(report, row.key) : "");
+          value.is_null() ? "not stated: " + reasonOf(report, row.key) : "", effectOn(report, row.key));
     }
   if (!report.contains("smr")) return text;
   for (const Report& each : report["smr"])
     add("functional", fmt::format("Smr({:.9g})", each["height"].get<double>()), each["ratio"],
-        Quantity::kRatio, "");
+        Quantity::kRatio, "", report.contains("noise") ? each : Report());
   for (const Report& each : report["smc"])
     add("functional", fmt::format("Smc({:.9g} %)", each["ratio"].get<double>() * 100.0), each["height"],
-        Quantity::kHeight, "");
+        Quantity::kHeight, "", report.contains("noise") ? each : Report());
   return text;
 }
 

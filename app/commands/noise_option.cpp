@@ -1,0 +1,65 @@
+#include "app/commands/noise_option.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/terminal.h"
+#include "engine/inspect/noise_model.h"
+#include "engine/uncertainty/areal_figures.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr int kMostTrials = 32, kFewestTrials = 4;
+constexpr std::int64_t kTrialSamples = std::int64_t{16} << 20;
+
+// How many are made of so many samples where the user does not say.
+int usualTrials(std::int64_t samples) {
+  const auto fit = static_cast<int>(
+      std::min<std::int64_t>(kMostTrials, kTrialSamples / std::max<std::int64_t>(samples, 1)));
+  return fit < kFewestTrials ? 0 : fit - fit % 2;
+}
+
+}  // namespace
+
+void addNoiseOption(Command command, int& trials) {
+  command.add(
+      {{.name = "--noise-trials",
+        .to = &trials,
+        .text = "Measure so often with the scan's own noise added, for each parameter without noise and its "
+                "standard error; 0: leave these out",
+        .range = Range{0.0, 1000.0},
+        .otherwise = "as many as measure 16 million samples, 32 at most, at least 4 or none"}});
+}
+
+engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& field,
+                                                     const engine::ArealParameters& measured,
+                                                     const ArealOf& measure, int trials,
+                                                     engine::JobControl& job) {
+  const std::int64_t samples = static_cast<std::int64_t>(field.grid().width) * field.grid().height;
+  const int wanted = trials == kUsualTrials ? usualTrials(samples) : trials;
+  if (wanted == 0) {
+    if (trials == kUsualTrials)
+      note(fmt::format(
+          "the effect of noise is left out for {} samples; --noise-trials 4 measures it in five times "
+          "the time",
+          samples));
+    return std::optional<ArealNoise>();
+  }
+  const auto noise = engine::measureNoise(field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  if (std::isnan(noise->sigma)) return std::optional<ArealNoise>();
+  // What the command has said of the scan is not said again of each trial.
+  const KeptMessages said;
+  const int pairs = std::max(wanted / 2, 2);
+  auto effects = engine::arealEffects(field, *noise, measured, measure, {.pairs = pairs}, job);
+  if (!effects) return tl::unexpected(effects.error());
+  return ArealNoise{noise->sigma, 2 * pairs, *std::move(effects)};
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "app/commands/command.h"
+#include "app/work/areal_table.h"
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "engine/measure/areal.h"
+
+namespace fettle::app {
+
+/// --noise-trials. Without it as many as measure 16 million samples, 32 at most; none where that is less than 4.
+void addNoiseOption(Command command, int& trials);
+/// Its value where it is not given.
+inline constexpr int kUsualTrials = -1;
+
+/// Measures the parameters of a field as the command did, with all that it does before.
+using ArealOf = std::function<engine::Result<engine::ArealParameters>(const engine::Version& field)>;
+
+/// What the noise of `field`, of which `measured` was measured by `measure`, does to the parameters; none where no trials are made, which a
+/// note on stderr says unless that was asked for, or where the field has no noise that can be measured. The field that the noise is measured of and added to is the
+/// scan's, before filters and form. Errors: those of measureNoise and noiseEffects.
+[[nodiscard]] engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& field,
+                                                                   const engine::ArealParameters& measured,
+                                                                   const ArealOf& measure, int trials,
+                                                                   engine::JobControl& job);
+
+}  // namespace fettle::app

@@ -1,0 +1,157 @@
+#include "app/work/measure_tool.h"
+
+#include <utility>
+
+#include "engine/inspect/noise_model.h"
+#include "engine/marks/change_marks.h"
+#include "engine/marks/polygon.h"
+#include "engine/measure/areal.h"
+#include "engine/measure/form.h"
+#include "engine/uncertainty/areal_figures.h"
+
+namespace fettle::app {
+namespace {
+
+constexpr int kNoisePairs = 8;
+
+engine::Region regionOf(MeasureTool::Where where) {
+  switch (where) {
+    case MeasureTool::Where::kAll:
+      return engine::Region::kAll;
+    case MeasureTool::Where::kUnmarked:
+      return engine::Region::kUnmarked;
+    case MeasureTool::Where::kVisible:  // the visible ones are marked for it
+    case MeasureTool::Where::kMarked:
+      break;
+  }
+  return engine::Region::kMarked;
+}
+
+// The field with its visible samples as the only marked ones.
+engine::Result<engine::Version> markedWhereSeen(const engine::Version& field, const engine::SampleRect& seen,
+                                                engine::JobControl& job) {
+  const auto plain = engine::clearMarks(field, job);
+  if (!plain) return plain;
+  const double left = seen.column - 0.5, low = seen.row - 0.5;
+  const double right = left + seen.columns, high = low + seen.rows;
+  const glm::dvec2 corners[] = {{left, low}, {right, low}, {right, high}, {left, high}};
+  const engine::Polygon polygon(corners);
+  return engine::changeMarks(
+      *plain, polygon.tiles(field.grid()),
+      [&](std::int32_t column, std::int32_t row, const engine::Tile& tile, engine::MarkRows& rows) {
+        engine::applyChange(tile, polygon.inside(column, row), engine::MarkChange::kMark, rows);
+      },
+      job);
+}
+
+// A field with the marks of another of its size.
+engine::Result<engine::Version> withMarksOf(const engine::Version& field, const engine::Version& other,
+                                            engine::JobControl& job) {
+  return engine::changeMarks(
+      field, engine::allTiles(field.grid()),
+      [reader = other.reader()](std::int32_t column, std::int32_t row, const engine::Tile&,
+                                engine::MarkRows& rows) { rows = reader.tile(column, row).marks; },
+      job);
+}
+
+engine::Result<engine::ArealParameters> parametersOf(const engine::Version& field,
+                                                     const MeasureTool::Options& options,
+                                                     engine::JobControl& job) {
+  const engine::Region region = regionOf(options.where);
+  const auto fit =
+      engine::fitForm(field, {.degree = options.degree, .region = region, .robust = options.robust}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  engine::ArealOptions areal;
+  areal.region = region;
+  return engine::measureAreal(field, fit->form, areal, job);
+}
+
+// The report of one state, as `fettle measure` makes it.
+engine::Result<Report> measuredState(const engine::Version& field, const MeasureTool::Options& options,
+                                     engine::JobControl& job) {
+  const auto measured = parametersOf(field, options, job);
+  if (!measured) return tl::unexpected(measured.error());
+  Report report;
+  addAreal(report, *measured, {}, field.grid());
+  if (!options.noise) return report;
+  const auto noise = engine::measureNoise(field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  if (!(noise->sigma >= 0.0)) return report;
+  auto effects = engine::arealEffects(
+      field, *noise, *measured,
+      [&](const engine::Version& noisy) { return parametersOf(noisy, options, job); }, {.pairs = kNoisePairs},
+      job);
+  if (!effects) return tl::unexpected(effects.error());
+  addNoise(report, {noise->sigma, 2 * kNoisePairs, *std::move(effects)}, field.grid());
+  return report;
+}
+
+}  // namespace
+
+void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen) {
+  working_.start([field = client.newest(), scan = client.original(), seen,
+                  what = options](engine::JobControl& job) -> engine::Result<Work> {
+    Work work{field, {}};
+    work.figures.options = what;
+    work.figures.before = engine::measureChange(scan, field).tiles > 0;
+    engine::Version after = field, before = scan;
+    if (what.where == Where::kVisible) {
+      if (seen.columns <= 0 || seen.rows <= 0)
+        return engine::inputError("nothing of the field is visible", "", "move the view to it");
+      for (engine::Version* state : {&after, &before}) {
+        auto marked = markedWhereSeen(*state, seen, job);
+        if (!marked) return tl::unexpected(marked.error());
+        *state = *std::move(marked);
+      }
+    } else if (what.where != Where::kAll && work.figures.before) {
+      // The marks of the field count for the scan as well.
+      auto marked = withMarksOf(before, after, job);
+      if (!marked) return tl::unexpected(marked.error());
+      before = *std::move(marked);
+    }
+    std::vector<Report> reports;
+    if (work.figures.before) {
+      auto report = measuredState(before, what, job);
+      if (!report) return tl::unexpected(report.error());
+      reports.push_back(*std::move(report));
+    }
+    auto report = measuredState(after, what, job);
+    if (!report) {
+      engine::Error error = report.error();
+      if (error.kind == engine::ErrorKind::kInput)
+        error.remedy =
+            what.where == Where::kAll ? "every sample is a hole" : "mark samples, or measure all of them";
+      return tl::unexpected(error);
+    }
+    work.figures.samples = (*report)["samples"].get<std::int64_t>();
+    reports.push_back(*std::move(report));
+    work.figures.lines = arealLines(reports);
+    return work;
+  });
+}
+
+bool MeasureTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
+  const bool dropped = working_.cancelling();
+  bool changed = false;
+  if (auto done = working_.take()) {
+    changed = true;
+    if (!dropped && *done) {
+      measured_ = std::move((*done)->field);
+      figures_ = std::move((*done)->figures);
+    } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
+      notices.push_back({done->error().what, done->error().remedy});
+    }
+  }
+  if (!figures_) return changed;
+  const bool outdated = !(client.newest() == measured_);
+  return std::exchange(outdated_, outdated) != outdated || changed;
+}
+
+void MeasureTool::clear() {
+  working_.cancel();
+  figures_.reset();
+  measured_ = {};
+  outdated_ = false;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/work/areal_table.h"
+#include "app/work/background.h"
+#include "app/work/loop_client.h"
+#include "engine/field/sample_rect.h"
+
+namespace fettle::app {
+
+/// Surface texture parameters of the field that is worked on, beside those of the scan it began with, measured in the background while
+/// the hand goes on. Threading: main.
+class MeasureTool {
+ public:
+  /// The samples that count.
+  enum class Where : std::uint8_t { kAll, kVisible, kMarked, kUnmarked };
+  /// Edited by the panel.
+  struct Options {
+    Where where = Where::kAll;
+    int degree = 1;  ///< of the form that is taken out
+    bool robust = false;
+    bool noise = false;  ///< figures without noise, by 16 trials
+  };
+  Options options;
+
+  struct Figures {
+    Options options;
+    std::int64_t samples = 0;
+    std::vector<ArealLine>
+        lines;            ///< a value for the scan, unless nothing differs from it, and one for the field
+    bool before = false;  ///< whether lines have the scan's
+  };
+
+  /// Measures `options` on the newest field; `seen`: the rectangle that is visible. One that is empty is refused by a notice of poll().
+  void measure(const LoopClient& client, const engine::SampleRect& seen);
+  void cancel() noexcept { working_.cancel(); }
+  /// Takes over results. True when something visible changed.
+  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
+
+  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  /// The last figures; empty before, and of another document.
+  [[nodiscard]] const std::optional<Figures>& figures() const noexcept { return figures_; }
+  /// Whether the field has changed since.
+  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  /// Forgets the figures, of a document that is closed.
+  void clear();
+
+ private:
+  struct Work {
+    engine::Version field;
+    Figures figures;
+  };
+  std::optional<Figures> figures_;
+  engine::Version measured_;  // that figures_ are of
+  bool outdated_ = false;
+  Background<Work> working_;
+};
+
+}  // namespace fettle::app

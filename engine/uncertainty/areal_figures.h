@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/measure/areal.h"
+#include "engine/uncertainty/noise_trial.h"
+
+namespace fettle::engine {
+
+/// A parameter of measureAreal() as a number, and how noise raises it.
+struct ArealFigure {
+  std::string_view key;  ///< "sq"; that of ArealParameters::NotStated too
+  double (*of)(const ArealParameters&);
+  NoiseGrowth growth;
+};
+/// That of a key that there is.
+[[nodiscard]] const ArealFigure& arealFigure(std::string_view key) noexcept;
+/// All of them.
+[[nodiscard]] std::span<const ArealFigure> arealFigures() noexcept;
+/// Their values, followed by the ratios and the heights that were asked for; and how noise raises each of these.
+[[nodiscard]] std::vector<double> valuesOf(const ArealParameters& measured);
+[[nodiscard]] std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured);
+
+/// noiseEffects() of the parameters of a field, with addRankDoubt(). `measure` measures them of a field as `measured` was.
+[[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(
+    const Version& field, const NoiseModel& noise, const ArealParameters& measured,
+    const std::function<Result<ArealParameters>(const Version&)>& measure, const NoiseTrialOptions& options,
+    JobControl& job);
+
+}  // namespace fettle::engine

@@ -1,0 +1,150 @@
+#include "engine/uncertainty/noise_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <new>
+
+#include "engine/field/tile.h"
+#include "engine/measure/lowered.h"
+#include "engine/suggest/noise_source.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// What is known of each way to grow, in the order of the words. Shares and factors by simulation of known surfaces:
+// docs/decisions/parameter-errors.md.
+struct GrowthRule {
+  bool by_square;
+  double doubt;    // share of the raise that is not sure
+  double scatter;  // that counts, over the scatter of the trials
+  double most;     // raise over the figure, beyond which it is not decided
+};
+constexpr double kMostError =
+    0.5;  // over the figure, beyond which one with a limit of the raise is not decided either
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr GrowthRule kRules[] = {
+    {true, 0.2, 1.0, kAny},    // kSquare
+    {false, 0.2, 1.0, kAny},   // kPlain
+    {false, 0.2, 1.0, kAny},   // kAxis
+    {true, 0.5, 1.25, kAny},   // kRank
+    {false, 0.5, 1.25, kAny},  // kShare
+    {true, 0.7, 1.25, kAny},   // kExtreme
+    {true, 3.0, 1.25, 0.2},    // kPlaces
+};
+const GrowthRule& ruleOf(NoiseGrowth growth) noexcept {
+  return kRules[static_cast<std::size_t>(growth)];
+}
+
+// The value of an axis nearest to another.
+double nearestAxis(double degrees, double to) noexcept {
+  return degrees + 180.0 * std::round((to - degrees) / 180.0);
+}
+
+double mean(std::span<const double> values) noexcept {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::uint64_t seed, double sign,
+                          JobControl& job) try {
+  const Grid& grid = field.grid();
+  const std::vector<double> drawn = NoiseSource(noise.parts).make(grid.width, grid.height, seed);
+  const double over = noise.sigma > 0.0 ? 1.0 / noise.sigma : 0.0;
+  return lowered(
+      field, "adding noise",
+      [&](const SampleRect& rect, double* out) {
+        for (std::int32_t r = 0; r < rect.rows; ++r)
+          for (std::int32_t c = 0; c < rect.columns; ++c) {
+            const std::int32_t column = rect.column + c, row = rect.row + r;
+            const double share = noise.map.empty() ? 1.0 : noise.sigmaAt(grid, column, row) * over;
+            out[r * kTileSide + c] =
+                -sign * share *
+                drawn[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
+                      static_cast<std::size_t>(column)];
+          }
+      },
+      job);
+} catch (const std::bad_alloc&) {
+  return failure("memory is exhausted", "measuring errors", "leave the errors out");
+}
+
+NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth) {
+  if (std::isnan(found)) return {kNone, kNone};
+  const GrowthRule& rule = ruleOf(growth);
+  const auto grown = [&](double value) {
+    if (growth == NoiseGrowth::kAxis) return nearestAxis(value, found);
+    return rule.by_square ? value * value : value;
+  };
+  std::vector<double> halves, means;
+  for (const TrialPair& pair : pairs) {
+    const double more = grown(pair.more), less = grown(pair.less);
+    if (std::isnan(more) || std::isnan(less)) continue;
+    halves.push_back(0.5 * (more - less));
+    means.push_back(0.5 * (more + less));
+  }
+  if (halves.size() < 2 || 4 * halves.size() < 3 * pairs.size()) return {kNone, kNone};
+  const auto n = static_cast<double>(halves.size());
+  const double middle = mean(means), raise = middle - grown(found);
+  double scatter = 0.0, spread = 0.0;
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    scatter += halves[k] * halves[k] / n;
+    spread += (means[k] - middle) * (means[k] - middle) / (n - 1.0);
+  }
+  const double doubt = rule.doubt * raise, by_trials = rule.scatter * rule.scatter;
+  const double error = std::sqrt(by_trials * (scatter + spread * (1.0 + 1.0 / n)) + doubt * doubt);
+  double without = grown(found) - raise;
+  if (!rule.by_square) {
+    if (growth == NoiseGrowth::kAxis) without -= 180.0 * std::floor(without / 180.0);
+    return {without, error};
+  }
+  // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
+  without = std::sqrt(std::max(without, 0.0));
+  if (found - without > rule.most * found) return {kNone, kNone};
+  const double square = without * without;
+  // Rounding of the squares is no error: no trial changed the figure.
+  if (error <= 1e-12 * square) return {without, 0.0};
+  const double by = square > error ? without - std::sqrt(square - error)
+                                   : std::max(without, std::sqrt(square + error) - without);
+  if (by > kMostError * without && rule.most < kAny) return {kNone, kNone};
+  return {without, by};
+}
+
+Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,
+                                              std::span<const double> found,
+                                              std::span<const NoiseGrowth> growth, const FiguresOf& measure,
+                                              const NoiseTrialOptions& options, JobControl& job) {
+  std::vector<std::vector<TrialPair>> pairs(found.size());
+  for (int k = 0; k < options.pairs; ++k) {
+    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
+    std::vector<double> sides[2];
+    for (int side = 0; side < 2; ++side) {
+      const auto noisy = withNoise(field, noise, seed, side == 0 ? 1.0 : -1.0, job);
+      if (!noisy) return tl::unexpected(noisy.error());
+      auto figures = measure(*noisy);
+      if (!figures) return tl::unexpected(figures.error());
+      sides[side] = *std::move(figures);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) pairs[i].push_back({sides[0][i], sides[1][i]});
+  }
+  std::vector<NoiseEffect> effects;
+  effects.reserve(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    effects.push_back(noiseEffectOf(found[i], pairs[i], growth[i]));
+  return effects;
+}
+
+void addRankDoubt(std::span<NoiseEffect> effects, std::span<const NoiseGrowth> growth, double share) {
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    if (growth[i] == NoiseGrowth::kRank || growth[i] == NoiseGrowth::kShare)
+      effects[i].error = std::hypot(effects[i].error, 2.0 * share * share * effects[i].without);
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/inspect/noise_model.h"
+
+namespace fettle::engine {
+
+// What the noise of a scan does to figures that are measured in it, by measuring the scan again with more noise like its
+// own: simulation and extrapolation (J. Cook, L. Stefanski, Simulation-extrapolation estimation in parametric measurement error
+// models, 1994; its error: L. Stefanski, J. Cook, Simulation-extrapolation: the measurement error jackknife, 1995).
+
+/// How a figure follows the variance of the noise, which is what is extrapolated from twice the noise to none.
+enum class NoiseGrowth : std::uint8_t {
+  kSquare,   ///< its square rises with it: sizes of what is random, as heights and slopes
+  kPlain,    ///< the figure itself: ratios, lengths
+  kAxis,     ///< an angle of half a turn [degrees], 0 .. 180
+  kRank,     ///< by square, of ranks of heights: heights and volumes of the material ratio curve
+  kShare,    ///< the figure itself, of ranks of heights: material ratios
+  kExtreme,  ///< by square, the greatest of many samples
+  kPlaces,   ///< by square, of single places that are chosen by their heights: peaks
+};
+
+struct NoiseEffect {
+  /// The figure without noise, estimated; NaN where the trials do not decide it.
+  double without = 0.0;
+  /// Its standard error by the noise of the scan; 0 where no trial changed it, NaN as `without`.
+  double error = 0.0;
+};
+
+struct NoiseTrialOptions {
+  int pairs = 8;  ///< trials with a noise and with its opposite, at least 2
+  std::uint64_t seed = 1;
+};
+
+/// Measures the figures of a field; as many each time, NaN for one that it does not determine.
+using FiguresOf = std::function<Result<std::vector<double>>(const Version& field)>;
+
+/// The field with noise of the model added at every sample, `sign` (1 or -1) times, as large at each place as the model's map
+/// says: the same bits for the same seed. Holes, marks, edge lines stay. Memory: 16 bytes per sample beside the field.
+/// Errors: kFailed without memory; kCancelled. Thread: any; a long job.
+[[nodiscard]] Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::uint64_t seed,
+                                        double sign, JobControl& job);
+
+/// The effect of the noise on each figure: `found` is what `measure` gave of `field`, `growth` as many.
+///
+/// Each trial adds noise of the model to the field, which then has twice its variance; a noise and its opposite give the part that noise
+/// scatters (half their difference) and the part by which it raises the figure (their mean less that found), free of
+/// the former. The figure without noise is what is found less that raise. Its standard error is the root of the sum of squares of both
+/// scatters, of what a few trials leave open, and of a share of the raise, since neither the size of the noise nor the extrapolation is exact
+/// (doubtOf in the source). What depends on ranks of heights scatters less around a surface that has noise than without: 1.25 times
+/// the scatter counts. Where noise explains all of a figure by square it is 0 without noise, with the error that leaves.
+/// docs/decisions/parameter-errors.md has the shares of simulated scans in which it covers.
+///
+/// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise raises by a fifth of it and more. Time: 2 pairs + 1 times that of
+/// measuring; noise that the model does not see (in filtered scans what neighbours share along both directions) is left
+/// out. Bit-identical for any number of threads if `measure` is. Errors: those of `measure` and withNoise.
+[[nodiscard]] Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,
+                                                            std::span<const double> found,
+                                                            std::span<const NoiseGrowth> growth,
+                                                            const FiguresOf& measure,
+                                                            const NoiseTrialOptions& options,
+                                                            JobControl& job);
+
+/// What the trials say of one figure: `found`, and each pair's two values. As noiseEffects.
+struct TrialPair {
+  double more = 0.0, less = 0.0;
+};
+[[nodiscard]] NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth);
+
+/// Adds to the error of kRank and kShare figures what extrapolation leaves of them on surfaces with steps, twice the square of `share` of each:
+/// the noise's standard deviation over the surface's.
+void addRankDoubt(std::span<NoiseEffect> effects, std::span<const NoiseGrowth> growth, double share);
+
+}  // namespace fettle::engine

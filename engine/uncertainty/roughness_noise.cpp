@@ -1,0 +1,102 @@
+#include "engine/uncertainty/roughness_noise.h"
+
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include "engine/scanner/counter_random.h"
+
+namespace fettle::engine {
+
+namespace {
+
+struct RoughnessFigure {
+  double Roughness::*figure;
+  NoiseEffect RoughnessNoise::*effect;
+  NoiseGrowth growth;
+};
+constexpr RoughnessFigure kRoughnessFigures[] = {
+    {&Roughness::ra, &RoughnessNoise::ra, NoiseGrowth::kSquare},
+    {&Roughness::rq, &RoughnessNoise::rq, NoiseGrowth::kSquare},
+    {&Roughness::rz, &RoughnessNoise::rz, NoiseGrowth::kExtreme},
+    {&Roughness::rsk, &RoughnessNoise::rsk, NoiseGrowth::kPlain},
+    {&Roughness::rku, &RoughnessNoise::rku, NoiseGrowth::kPlain},
+    {&Roughness::rsm, &RoughnessNoise::rsm, NoiseGrowth::kExtreme},
+};
+
+// The lower factor of the covariance: row i holds those of places i - band + 1 .. i. A place whose variance is in those
+// before it, as of two places at one sample, gets none of its own.
+std::vector<double> factorOf(const Section& section) {
+  const auto band = static_cast<std::size_t>(section.band);
+  const std::size_t n = section.size();
+  std::vector<double> factor(n * band);
+  const auto at = [&](std::size_t i, std::size_t j) -> double& {
+    return factor[i * band + (j + band - 1 - i)];
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t first = i + 1 >= band ? i + 1 - band : 0;
+    const double variance = section.covariance[i * band];
+    for (std::size_t j = first; j <= i; ++j) {
+      double sum = section.covariance[j * band + (i - j)];
+      for (std::size_t k = first; k < j; ++k) sum -= at(i, k) * at(j, k);
+      if (j == i)
+        at(i, i) = sum > 1e-9 * variance ? std::sqrt(sum) : 0.0;
+      else
+        at(i, j) = at(j, j) > 0.0 ? sum / at(j, j) : 0.0;
+    }
+  }
+  return factor;
+}
+
+std::vector<double> drawn(const Section& section, const std::vector<double>& factor, double noise_mm,
+                          std::uint64_t seed) {
+  const CounterRandom random(seed, 3);
+  const auto band = static_cast<std::size_t>(section.band);
+  std::vector<double> own(section.size()), noise(section.size());
+  for (std::size_t i = 0; i < own.size(); ++i) own[i] = random.normal(static_cast<std::int32_t>(i), 0);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    for (std::size_t j = i + 1 >= band ? i + 1 - band : 0; j <= i; ++j)
+      noise[i] += noise_mm * factor[i * band + (j + band - 1 - i)] * own[j];
+  return noise;
+}
+
+}  // namespace
+
+std::vector<double> sectionNoise(const Section& section, double noise_mm, std::uint64_t seed) {
+  return drawn(section, factorOf(section), noise_mm, seed);
+}
+
+Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within, double cutoff_mm,
+                                      const Roughness& found, double noise_mm,
+                                      const NoiseTrialOptions& options) {
+  RoughnessNoise result;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  for (const RoughnessFigure& each : kRoughnessFigures) result.*each.effect = {kNone, kNone};
+  if (!(noise_mm > 0.0)) return result;
+  const std::vector<double> factor = factorOf(section);
+  std::vector<TrialPair> pairs[std::size(kRoughnessFigures)];
+  Section noisy = section;
+  for (int k = 0; k < options.pairs; ++k) {
+    const std::vector<double> noise =
+        drawn(section, factor, noise_mm, options.seed + static_cast<std::uint64_t>(k));
+    Roughness sides[2];
+    for (int side = 0; side < 2; ++side) {
+      for (std::size_t i = 0; i < noise.size(); ++i)
+        noisy.height[i] = section.height[i] + (side == 0 ? noise[i] : -noise[i]);
+      const auto rough = roughnessOf(noisy, within, cutoff_mm);
+      if (!rough) return tl::unexpected(rough.error());
+      sides[side] = *rough;
+    }
+    for (std::size_t f = 0; f < std::size(kRoughnessFigures); ++f)
+      pairs[f].push_back({sides[0].*kRoughnessFigures[f].figure, sides[1].*kRoughnessFigures[f].figure});
+  }
+  for (std::size_t f = 0; f < std::size(kRoughnessFigures); ++f) {
+    const RoughnessFigure& each = kRoughnessFigures[f];
+    result.*each.effect = noiseEffectOf(found.*each.figure, pairs[f], each.growth);
+  }
+  return result;
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "engine/field/builder.h"
+#include "engine/inspect/noise_model.h"
+#include "engine/measure/areal.h"
+#include "engine/measure/form.h"
+#include "engine/uncertainty/areal_figures.h"
+#include "engine/uncertainty/noise_trial.h"
+
+namespace fettle::engine {
+namespace {
+
+using std::numbers::pi;
+constexpr int kSide = 128;
+
+Version fieldOf(const std::vector<double>& heights) {
+  Grid grid;
+  grid.width = kSide;
+  grid.height = kSide;
+  std::vector<float> z(heights.begin(), heights.end());
+  return makeField(grid, z, {});
+}
+
+// White noise through a Gaussian of `a` samples along a line at `degrees` and `b` across it, of mean square 1.
+std::vector<double> randomTexture(double a, double b, double degrees, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const int reach = static_cast<int>(std::ceil(3.0 * std::max(a, b)));
+  const int wide = kSide + 2 * reach;
+  std::vector<double> noise(static_cast<std::size_t>(wide) * wide);
+  for (double& z : noise) z = normal(random);
+  const double cosine = std::cos(degrees * pi / 180.0), sine = std::sin(degrees * pi / 180.0);
+  std::vector<double> kernel;
+  double squares = 0.0;
+  for (int r = -reach; r <= reach; ++r)
+    for (int c = -reach; c <= reach; ++c) {
+      const double u = (c * cosine + r * sine) / a, v = (r * cosine - c * sine) / b;
+      kernel.push_back(std::exp(-0.5 * (u * u + v * v)));
+      squares += kernel.back() * kernel.back();
+    }
+  std::vector<double> heights;
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      double sum = 0.0;
+      std::size_t k = 0;
+      for (int r = 0; r <= 2 * reach; ++r)
+        for (int c = 0; c <= 2 * reach; ++c)
+          sum += kernel[k++] *
+                 noise[static_cast<std::size_t>(row + r) * wide + static_cast<std::size_t>(column + c)];
+      heights.push_back(sum / std::sqrt(squares));
+    }
+  return heights;
+}
+
+std::vector<double> made(const std::function<double(int, int)>& z) {
+  std::vector<double> heights;
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) heights.push_back(z(c, r));
+  return heights;
+}
+
+// Surfaces of a root mean square height of about 1.
+struct KnownSurface {
+  const char* name;
+  std::function<std::vector<double>()> heights;
+};
+const KnownSurface kSurfaces[] = {
+    {"random", [] { return randomTexture(4.0, 4.0, 0.0, 11); }},
+    {"lay at 30 degrees", [] { return randomTexture(9.0, 2.5, 30.0, 12); }},
+    {"steps",
+     [] {
+       return made([](int c, int r) {
+         return (c / 20 % 2 == 0 ? 1.0 : -1.0) + (r > 70 && r < 100 && c > 45 && c < 75 ? 1.5 : 0.0) +
+                0.3 * std::sin(c * 0.11) * std::cos(r * 0.07);
+       });
+     }},
+    {"waves",
+     [] {
+       return made([](int c, int r) {
+         return std::sin(2.0 * pi * c / 23.0) + 0.8 * std::sin(2.0 * pi * r / 31.0 + 1.0);
+       });
+     }},
+};
+
+Result<ArealParameters> measuredOf(const Version& field) {
+  JobControl job;
+  const auto fit = fitForm(field, {}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  return measureAreal(field, fit->form, {}, job);
+}
+
+const std::vector<NoiseGrowth>& growths() {
+  static const std::vector<NoiseGrowth> all = growthsOf(ArealParameters{});
+  return all;
+}
+
+struct Coverage {
+  int stated = 0, within[3] = {};
+  double truth = 0.0, raise = 0.0, left = 0.0, error = 0.0;  // sums
+};
+
+std::vector<Coverage> coverageOf(const std::vector<double>& truth, double sigma, int seeds, int pairs) {
+  const std::vector<double> known = valuesOf(*measuredOf(fieldOf(truth)));
+  std::vector<Coverage> all(known.size());
+  for (int s = 0; s < seeds; ++s) {
+    std::mt19937_64 random(1000 + static_cast<std::uint64_t>(s));
+    std::normal_distribution<double> normal(0.0, sigma);
+    std::vector<double> noisy = truth;
+    for (double& z : noisy) z += normal(random);
+    const Version field = fieldOf(noisy);
+    JobControl job;
+    const auto model = measureNoise(field, job);
+    EXPECT_TRUE(model);
+    const ArealParameters measured = *measuredOf(field);
+    const std::vector<double> found = valuesOf(measured);
+    const auto effects =
+        arealEffects(field, *model, measured, measuredOf,
+                     {.pairs = pairs, .seed = 77 + 1000 * static_cast<std::uint64_t>(s)}, job);
+    EXPECT_TRUE(effects);
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      const NoiseEffect& e = (*effects)[i];
+      if (std::isnan(e.error) || std::isnan(known[i])) continue;
+      double off = e.without - known[i];
+      if (growths()[i] == NoiseGrowth::kAxis) off -= 180.0 * std::round(off / 180.0);
+      Coverage& c = all[i];
+      ++c.stated;
+      for (int k = 0; k < 3; ++k) c.within[k] += std::abs(off) <= (k + 1) * e.error ? 1 : 0;
+      c.truth += known[i];
+      c.raise += found[i] - known[i];
+      c.left += off;
+      c.error += e.error;
+    }
+  }
+  return all;
+}
+
+int seedsOf(int few) {
+  const char* const typed = std::getenv("FETTLE_NOISE_SEEDS");
+  return typed == nullptr ? few : std::atoi(typed);
+}
+
+// What no error covers (docs/decisions/parameter-errors.md): Str of waves that just reach a correlation of 0.2 in one direction jumps
+// between two directions, Std of waves along y has an error of 1e-3 degrees, below its search; peaks and Smrk1 of a
+// surface with steps as high as ten times the noise.
+bool excepted(const std::string& surface, double sigma, std::string_view key) {
+  if (surface == "waves") return key == "str" || key == "std";
+  return surface == "steps" && sigma > 0.05 && (key == "smrk1" || key == "spc" || key == "spk");
+}
+
+// Each surface with noise of a fiftieth and a tenth of its height, which is measured as well as it may be (measureNoise). A
+// standard error covers 0.68, 0.95, 0.997; of 8 pairs (Student) 0.65, 0.92, 0.98. All figures and surfaces together are as many draws as
+// seeds times 180; each alone is only checked by hundreds of seeds. With 0.3 it is printed: what is of ranks or peaks is
+// then another surface's.
+TEST(ArealNoise, ErrorsCoverTheTruthOfKnownSurfaces) {
+  const int seeds = seedsOf(3);
+  Coverage whole;
+  for (const KnownSurface& surface : kSurfaces) {
+    const std::vector<double> truth = surface.heights();
+    for (const double sigma : {0.02, 0.1, 0.3}) {
+      if (sigma > 0.2 && seeds < 10) continue;
+      const auto all = coverageOf(truth, sigma, seeds, 8);
+      fmt::print("{}, noise {}\n", surface.name, sigma);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const Coverage& c = all[i];
+        if (c.stated == 0) continue;
+        const std::string_view key = arealFigures()[i].key;
+        const double n = c.stated;
+        fmt::print(
+            "  {:6} n {:3} truth {:9.4g} raised {:9.3g} left {:9.3g} error {:9.3g}  {:5.2f} {:5.2f} "
+            "{:5.2f}\n",
+            key, c.stated, c.truth / n, c.raise / n, c.left / n, c.error / n, c.within[0] / n,
+            c.within[1] / n, c.within[2] / n);
+        if (sigma > 0.2 || excepted(surface.name, sigma, key)) continue;
+        whole.stated += c.stated;
+        for (int k = 0; k < 3; ++k) whole.within[k] += c.within[k];
+        if (seeds < 100) continue;
+        // Below the shares of Student by what a surface's own extrapolation leaves.
+        EXPECT_GE(c.within[0], 0.40 * n) << surface.name << " " << sigma << " " << key;
+        EXPECT_GE(c.within[1], 0.75 * n) << surface.name << " " << sigma << " " << key;
+        EXPECT_GE(c.within[2], 0.85 * n) << surface.name << " " << sigma << " " << key;
+      }
+    }
+  }
+  fmt::print("together {}: {:.3f} {:.3f} {:.3f}\n", whole.stated, whole.within[0] / double(whole.stated),
+             whole.within[1] / double(whole.stated), whole.within[2] / double(whole.stated));
+  EXPECT_GT(whole.stated, 150 * seeds);
+  // Figures of one scan go together, so that the draws are no more than some ten per scan: of 240, 4 standard deviations.
+  EXPECT_GE(whole.within[0], 0.55 * whole.stated);
+  EXPECT_GE(whole.within[1], 0.86 * whole.stated);
+  EXPECT_GE(whole.within[2], 0.94 * whole.stated);
+}
+
+}  // namespace
+}  // namespace fettle::engine

@@ -1,0 +1,154 @@
+#include "engine/uncertainty/noise_trial.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "engine/field/builder.h"
+#include "engine/uncertainty/areal_figures.h"
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+Version plateOf(std::int32_t width, std::int32_t height, double hole_share = 0.0) {
+  Grid grid;
+  grid.width = width;
+  grid.height = height;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform;
+  std::vector<float> z;
+  for (int i = 0; i < width * height; ++i)
+    z.push_back(uniform(random) < hole_share ? std::numeric_limits<float>::quiet_NaN()
+                                             : static_cast<float>(5e6 + 1e-3 * i));
+  return makeField(grid, z, {});
+}
+
+NoiseModel whiteOf(double sigma) {
+  NoiseModel model;
+  model.sigma = sigma;
+  model.parts.uncorrelated = sigma * sigma;
+  return model;
+}
+
+std::vector<float> heightsOf(const Version& field) {
+  const Grid& grid = field.grid();
+  std::vector<float> z(static_cast<std::size_t>(grid.samples()));
+  field.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
+  return z;
+}
+
+TEST(NoiseTrial, NoiseAndItsOppositeAreAddedAndHolesStay) {
+  const Version field = plateOf(100, 80, 0.1);
+  JobControl job;
+  const auto more = withNoise(field, whiteOf(20.0), 3, 1.0, job),
+             less = withNoise(field, whiteOf(20.0), 3, -1.0, job);
+  ASSERT_TRUE(more && less);
+  const std::vector<float> z = heightsOf(field), a = heightsOf(*more), b = heightsOf(*less);
+  double squares = 0.0;
+  int n = 0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    EXPECT_EQ(std::isnan(a[i]), std::isnan(z[i]));
+    if (std::isnan(z[i])) continue;
+    // Heights of 5e6 are stored to 0.5: half of that each.
+    EXPECT_NEAR(static_cast<double>(a[i]) - z[i], -(static_cast<double>(b[i]) - z[i]), 1.0);
+    squares += std::pow(static_cast<double>(a[i]) - z[i], 2);
+    ++n;
+  }
+  // The root of a mean of 7,200 squares is within 4 / sqrt(2 n) of 20.
+  EXPECT_NEAR(std::sqrt(squares / n), 20.0, 20.0 * 4.0 / std::sqrt(2.0 * n));
+  // As large as the map says at each place.
+  NoiseModel louder = whiteOf(20.0);
+  louder.map.assign(NoiseModel::kMapSide * NoiseModel::kMapSide, 40.0);
+  const auto twice = withNoise(field, louder, 3, 1.0, job);
+  ASSERT_TRUE(twice);
+  const std::vector<float> t = heightsOf(*twice);
+  for (std::size_t i = 0; i < z.size(); ++i)
+    if (!std::isnan(z[i])) {
+      EXPECT_NEAR(t[i] - z[i], 2.0 * (static_cast<double>(a[i]) - z[i]), 1.5);
+    }
+}
+
+TEST(NoiseTrial, IsTheSameForAnyNumberOfThreads) {
+  const Version field = plateOf(150, 90);
+  const auto noisy = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] {
+      JobControl job;
+      return heightsOf(*withNoise(field, whiteOf(3.0), 9, 1.0, job));
+    });
+  };
+  EXPECT_EQ(noisy(1), noisy(4));
+}
+
+// Closed forms: figures that follow the noise exactly as their growth says.
+TEST(NoiseTrial, UndoesTheRaiseOfWhatGrowsAsStated) {
+  // A square: sqrt(S^2 + v) with v = 1 found and v = 2 in trials.
+  std::vector<TrialPair> pairs;
+  for (const double d : {0.05, -0.02, 0.01, -0.04})
+    pairs.push_back({std::sqrt(9.0 + 2.0 + d), std::sqrt(9.0 + 2.0 - d)});
+  const NoiseEffect square = noiseEffectOf(std::sqrt(10.0), pairs, NoiseGrowth::kSquare);
+  EXPECT_NEAR(square.without, 3.0, 1e-12);
+  // Halves of the squares' differences: their root mean square, and 0.2 of the raise of 1.
+  EXPECT_NEAR(square.error, std::hypot(std::sqrt((25.0 + 4.0 + 1.0 + 16.0) / 4.0) * 1e-2, 0.2) / 6.0, 3e-4);
+  pairs = {{5.5, 4.5}, {4.0, 6.0}, {5.0, 5.0}};
+  const NoiseEffect plain = noiseEffectOf(4.0, pairs, NoiseGrowth::kPlain);
+  EXPECT_NEAR(plain.without, 3.0, 1e-12);
+  EXPECT_NEAR(plain.error, std::sqrt((0.25 + 1.0) / 3.0 + 0.04), 1e-12);
+  // Half a turn is 0 again.
+  const std::vector<TrialPair> axes = {{179.0, 1.0}, {1.0, 179.0}};
+  const NoiseEffect axis = noiseEffectOf(0.5, axes, NoiseGrowth::kAxis);
+  EXPECT_NEAR(axis.without, 1.0, 1e-9);
+  EXPECT_LT(axis.error, 2.0);
+}
+
+TEST(NoiseTrial, SaysNothingOfWhatItCannotDecide) {
+  const std::vector<TrialPair> same(4, {2.0, 2.0});
+  EXPECT_EQ(noiseEffectOf(2.0, same, NoiseGrowth::kPlaces).error, 0.0);
+  EXPECT_TRUE(std::isnan(noiseEffectOf(kNone, same, NoiseGrowth::kSquare).error));
+  const std::vector<TrialPair> half = {{2.0, 2.0}, {kNone, 2.0}, {2.0, 2.0}, {2.0, kNone}};
+  EXPECT_TRUE(std::isnan(noiseEffectOf(2.0, half, NoiseGrowth::kPlain).without));
+  // All of it is noise: 0, and an error that reaches to what it may be.
+  const std::vector<TrialPair> all(4, {2.0, 2.0});
+  const NoiseEffect none = noiseEffectOf(1.2, all, NoiseGrowth::kSquare);
+  EXPECT_EQ(none.without, 0.0);
+  EXPECT_GT(none.error, 0.0);
+  EXPECT_LT(none.error, 1.2);
+  // Peaks that noise raises by more than a fifth.
+  EXPECT_TRUE(std::isnan(noiseEffectOf(1.6, all, NoiseGrowth::kPlaces).error));
+}
+
+// Hard cases have a figure or none, never half of one.
+TEST(NoiseTrial, OfOneRowAFlatPlateAndSpikesIsFiniteOrNone) {
+  JobControl job;
+  for (const Version& field : {plateOf(40, 1), plateOf(1, 1), plateOf(30, 30, 0.9)}) {
+    const auto measure = [](const Version& of) -> Result<ArealParameters> {
+      JobControl own;
+      const auto fit = fitForm(of, {}, own);
+      if (!fit) return tl::unexpected(fit.error());
+      return measureAreal(of, fit->form, {}, own);
+    };
+    const auto measured = measure(field);
+    ASSERT_TRUE(measured);
+    const auto effects = arealEffects(field, whiteOf(0.5), *measured, measure, {.pairs = 2}, job);
+    ASSERT_TRUE(effects) << effects.error().line();
+    EXPECT_EQ(effects->size(), arealFigures().size());
+    for (const NoiseEffect& effect : *effects) {
+      EXPECT_EQ(std::isnan(effect.without), std::isnan(effect.error));
+      if (!std::isnan(effect.error)) {
+        EXPECT_TRUE(std::isfinite(effect.error) && effect.error >= 0.0);
+      }
+    }
+  }
+  JobControl cancelled;
+  cancelled.cancel();
+  EXPECT_FALSE(withNoise(plateOf(40, 40), whiteOf(1.0), 1, 1.0, cancelled));
+}
+
+}  // namespace
+}  // namespace fettle::engine

@@ -1,0 +1,139 @@
+#include "engine/uncertainty/roughness_noise.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "engine/field/builder.h"
+#include "engine/measure/section.h"
+
+namespace fettle::engine {
+namespace {
+
+using std::numbers::pi;
+constexpr int kColumns = 300, kRows = 40;
+
+// Ground along x: waves of 9, 23 and 61 samples, mean square about 1.
+Version groundField(double sigma, unsigned seed) {
+  Grid grid;
+  grid.width = kColumns;
+  grid.height = kRows;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, sigma);
+  std::vector<float> z;
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kColumns; ++c)
+      z.push_back(
+          static_cast<float>(0.5 * std::sin(2.0 * pi * c / 9.0) + std::sin(2.0 * pi * c / 23.0 + 1.0) +
+                             0.8 * std::sin(2.0 * pi * c / 61.0) + (sigma > 0.0 ? normal(random) : 0.0)));
+  return makeField(grid, z, {});
+}
+
+Section sectionOf(const Version& field, double to_y, double width) {
+  JobControl job;
+  SectionOptions options;
+  options.width_mm = width;
+  const std::vector<glm::dvec2> line = {{2.0, 12.0}, {290.0, to_y}};
+  const auto section = sectionAlong(field, line, options, job);
+  EXPECT_TRUE(section) << section.error().line();
+  return *section;
+}
+
+// The noise that is drawn has the covariance of the section, at every lag of its band, and none beyond.
+TEST(SectionNoise, HasTheCovarianceOfTheSection) {
+  const Section section = sectionOf(groundField(0.0, 1), 30.0, 3.0);
+  ASSERT_GT(section.band, 2);
+  const std::size_t n = section.size(), band = static_cast<std::size_t>(section.band);
+  constexpr int kDraws = 400;
+  std::vector<double> sums(band + 2), wanted(band + 2);
+  for (int k = 0; k < kDraws; ++k) {
+    const std::vector<double> noise = sectionNoise(section, 0.3, static_cast<std::uint64_t>(k));
+    ASSERT_EQ(noise.size(), n);
+    for (std::size_t i = 0; i + band + 2 < n; ++i)
+      for (std::size_t lag = 0; lag < band + 2; ++lag) sums[lag] += noise[i] * noise[i + lag] / kDraws;
+  }
+  for (std::size_t i = 0; i + band + 2 < n; ++i)
+    for (std::size_t lag = 0; lag < band; ++lag) wanted[lag] += 0.09 * section.covariance[i * band + lag];
+  // A mean over 400 x 280 products of unit variance, neighbours of which are alike: 0.3 % times a few, of the variance.
+  for (std::size_t lag = 0; lag < band + 2; ++lag)
+    EXPECT_NEAR(sums[lag], wanted[lag], 0.02 * wanted[0]) << lag;
+}
+
+struct Shares {
+  int n = 0, within[3] = {};
+};
+
+// Of simulated scans: how often the roughness of the surface lies within 1, 2 and 3 errors.
+TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
+  const char* const typed = std::getenv("FETTLE_NOISE_SEEDS");
+  const int seeds = typed == nullptr ? 40 : std::atoi(typed);
+  struct Figure {
+    const char* name;
+    double Roughness::*value;
+    NoiseEffect RoughnessNoise::*effect;
+  };
+  constexpr Figure kFigures[] = {
+      {"Ra", &Roughness::ra, &RoughnessNoise::ra},    {"Rq", &Roughness::rq, &RoughnessNoise::rq},
+      {"Rz", &Roughness::rz, &RoughnessNoise::rz},    {"Rsk", &Roughness::rsk, &RoughnessNoise::rsk},
+      {"Rku", &Roughness::rku, &RoughnessNoise::rku}, {"RSm", &Roughness::rsm, &RoughnessNoise::rsm}};
+  for (const auto& [sigma, to_y, width] :
+       {std::tuple(0.02, 12.0, 0.0), {0.1, 12.0, 0.0}, {0.1, 30.0, 0.0}, {0.1, 30.0, 3.0}}) {
+    const Section clean = sectionOf(groundField(0.0, 1), to_y, width);
+    const Stretch all{0.0, clean.lengthMm()};
+    constexpr double kCutoff = 40.0;
+    const auto truth = roughnessOf(clean, all, kCutoff);
+    ASSERT_TRUE(truth);
+    std::vector<Shares> shares(std::size(kFigures));
+    for (int s = 0; s < seeds; ++s) {
+      const Section noisy = sectionOf(groundField(sigma, 100U + static_cast<unsigned>(s)), to_y, width);
+      const auto found = roughnessOf(noisy, all, kCutoff);
+      ASSERT_TRUE(found);
+      const auto noise = roughnessNoise(noisy, all, kCutoff, *found, sigma,
+                                        {.pairs = 16, .seed = 5000 + 100 * static_cast<std::uint64_t>(s)});
+      ASSERT_TRUE(noise);
+      for (std::size_t f = 0; f < std::size(kFigures); ++f) {
+        const NoiseEffect& effect = *noise.*kFigures[f].effect;
+        if (std::isnan(effect.error)) continue;
+        ++shares[f].n;
+        for (int k = 0; k < 3; ++k)
+          shares[f].within[k] +=
+              std::abs(effect.without - *truth.*kFigures[f].value) <= (k + 1) * effect.error ? 1 : 0;
+      }
+    }
+    for (std::size_t f = 0; f < std::size(kFigures); ++f) {
+      const Shares& of = shares[f];
+      const std::string name =
+          fmt::format("{}, noise {}, to {}, width {}: {} {} {} of {}", kFigures[f].name, sigma, to_y, width,
+                      of.within[0], of.within[1], of.within[2], of.n);
+      fmt::print("{}\n", name);
+      EXPECT_EQ(of.n, seeds) << name;
+      // Of 40 draws with a chance of 0.68, 0.95: 3.5 standard deviations below, and 1 in 1,000.
+      EXPECT_GE(of.within[0], 0.42 * of.n) << name;
+      EXPECT_GE(of.within[1], 0.80 * of.n) << name;
+      EXPECT_GE(of.within[2], 0.90 * of.n) << name;
+    }
+  }
+}
+
+TEST(RoughnessNoise, WithoutNoiseHasNoEffect) {
+  const Section section = sectionOf(groundField(0.1, 3), 12.0, 0.0);
+  const Stretch all{0.0, section.lengthMm()};
+  const auto found = roughnessOf(section, all, 40.0);
+  ASSERT_TRUE(found);
+  for (const double none : {0.0, std::nan("")}) {
+    const auto noise = roughnessNoise(section, all, 40.0, *found, none, {});
+    ASSERT_TRUE(noise);
+    EXPECT_TRUE(std::isnan(noise->ra.error));
+  }
+}
+
+}  // namespace
+}  // namespace fettle::engine
