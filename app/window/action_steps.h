@@ -124,6 +124,8 @@ inline void navigate(Parts& p) {
     p.form.cancel();
   else if (p.form.previewed())
     p.form.dropPreview();
+  else if (p.measure.busy())
+    p.measure.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
   else
@@ -310,6 +312,16 @@ inline void formPreview(Parts& p) {
     p.form.dropPreview();
   else
     p.form.preview(clientOf(p));
+  p.picture.requestRedraw();
+}
+// An end of the section at the cursor; where that is not on the surface, none.
+template <void (SectionTool::*set)(const glm::dvec2&)>
+void sectionEnd(Parts& p) {
+  if (!p.picture.inside(p.cursor.x, p.cursor.y)) return;
+  const auto at = p.picture.fieldAt(p.cursor, clientOf(p).field(), p.view);
+  if (!at) return;
+  (p.section.*set)(*at);
+  p.settings.panels["Section"] = true;
   p.picture.requestRedraw();
 }
 inline void formOut(Parts& p) {

@@ -135,6 +135,10 @@ constexpr ActionRow kRows[] = {
               formBack, nullptr, hasForm},
     ActionRow{Action::kFormHeights, "Filter", "Make what is seen without the form the heights", letter('L'),
               kAlt, kNoKey, kThird, kField, formHeights, nullptr, hasForm},
+    ActionRow{Action::kSectionFrom, "Filter", "Section from the cursor", letter('Q'), kPlain, kNoKey, kThird,
+              kField, sectionEnd<&SectionTool::setFrom>},
+    ActionRow{Action::kSectionTo, "Filter", "Section to the cursor", letter('Q'), kShift, kNoKey, kThird,
+              kField, sectionEnd<&SectionTool::setTo>},
 
     ActionRow{Action::kDeviation, "View", "Colours show the change since the scan", letter('D'), kPlain,
               kNoKey, kFirst, kField, deviation, isOn<&Display::deviation>},

@@ -69,6 +69,8 @@ enum class Action : std::uint8_t {
   kFormOut,
   kFormBack,
   kFormHeights,
+  kSectionFrom,
+  kSectionTo,
   kDeviation,
   kContours,
   kNextMap,

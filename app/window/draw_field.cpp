@@ -86,6 +86,7 @@ void drawField(Parts& parts, bool sharp_motion) {
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
     StylusOverlay::append(client, state, picture.mmPerPixel(), input.overlays);
+  parts.section_overlay.append(client.field(), parts.section, picture.mmPerPixel(), input.overlays);
   parts.place_overlay.append(client.field(), parts.marking.places, picture.mmPerPixel(), input.overlays);
   if (parts.settings.display.marks)
     parts.line_overlay.append(client.field(), parts.marking.lines.chosen(client), picture.mmPerPixel(),

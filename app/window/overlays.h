@@ -5,6 +5,7 @@
 
 #include "app/work/loop_client.h"
 #include "app/work/place_tool.h"
+#include "app/work/section_tool.h"
 #include "render/live/live_picture.h"
 
 namespace fettle::app {
@@ -19,6 +20,20 @@ class PlaceOverlay {
   /// Adds them to the overlays of the next frame, with pieces of about three pixels or longer. They are computed again
   /// where the places, the field or that length differ from the last frame's.
   void append(const engine::Version& field, const PlaceTool& places, double mm_per_pixel,
+              render::Overlays& overlays);
+
+ private:
+  engine::Version of_;
+  std::uint64_t revision_ = 0;
+  double mm_per_pixel_ = 0.0;
+  std::vector<render::OverlayLine> pieces_;
+};
+
+/// The line of the section in the picture, with discs at its ends. Threading: main.
+class SectionOverlay {
+ public:
+  /// Adds it to the overlays of the next frame, with pieces of about three pixels or longer.
+  void append(const engine::Version& field, const SectionTool& section, double mm_per_pixel,
               render::Overlays& overlays);
 
  private:

@@ -58,6 +58,8 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   feedback.questions.dropOfField();
   filters.finish(*document.client());
   form.clear();
+  measure.clear();
+  section.reset();
   marking.reset();
   change.cancel();
   costs.reset();

@@ -21,7 +21,9 @@
 #include "app/work/choice_costs.h"
 #include "app/work/filter_preview.h"
 #include "app/work/form_tool.h"
+#include "app/work/measure_tool.h"
 #include "app/work/recent_files.h"
+#include "app/work/section_tool.h"
 #include "render/plan/number_text.h"
 
 namespace fettle::app {
@@ -49,6 +51,7 @@ struct Parts {
   StylusOverlay stylus_overlay;
   LineOverlay line_overlay;
   PlaceOverlay place_overlay;
+  SectionOverlay section_overlay;
 
   glm::dvec2 cursor{0.0};  ///< pixels of the window's frame
   Stylus stylus;
@@ -59,6 +62,8 @@ struct Parts {
   LineDrag line_drag;
   FilterPreview filters;
   FormTool form;
+  MeasureTool measure;
+  SectionTool section;
   ChangeFigures change;
   ChoiceCosts costs;
   render::FieldUnits units;  ///< in which the open document's quantities are shown

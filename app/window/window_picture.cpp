@@ -137,8 +137,7 @@ std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const 
   return plane ? plane->fieldAt(pixel) : std::nullopt;
 }
 
-std::vector<engine::TileRange> WindowPicture::seenPart(const engine::Grid& grid,
-                                                       const render::View& view) const {
+std::vector<Seen> WindowPicture::seenPlaces() const {
   const render::Rectangle& area = window_.pictureArea();
   std::vector<Seen> seen;
   for (int y = 0; y <= kPicks; ++y)
@@ -146,6 +145,23 @@ std::vector<engine::TileRange> WindowPicture::seenPart(const engine::Grid& grid,
       if (const auto picked =
               pick(area.x + area.width * x / double(kPicks), area.y + area.height * y / double(kPicks)))
         seen.push_back({picked->column, picked->row});
+  return seen;
+}
+
+engine::SampleRect WindowPicture::seenRect() const {
+  const std::vector<Seen> seen = seenPlaces();
+  if (seen.empty()) return {};
+  Seen low = seen.front(), high = seen.front();
+  for (const Seen& place : seen) {
+    low = {std::min(low.column, place.column), std::min(low.row, place.row)};
+    high = {std::max(high.column, place.column), std::max(high.row, place.row)};
+  }
+  return {low.column, low.row, high.column - low.column + 1, high.row - low.row + 1};
+}
+
+std::vector<engine::TileRange> WindowPicture::seenPart(const engine::Grid& grid,
+                                                       const render::View& view) const {
+  const std::vector<Seen> seen = seenPlaces();
   if (seen.empty()) return {};
   const auto along = [](double share, int side) {
     return static_cast<std::int32_t>(std::clamp(share, 0.0, 1.0) * (side - 1));

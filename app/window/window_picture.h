@@ -11,6 +11,7 @@
 #include "app/window/camera_motion.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
+#include "app/work/visible_part.h"
 #include "engine/field/sample_rect.h"
 #include "haptic/loop/timing.h"
 #include "render/live/live_picture.h"
@@ -90,12 +91,16 @@ class WindowPicture {
   /// The visible part of the field, with which processing should begin.
   [[nodiscard]] std::vector<engine::TileRange> seenPart(const engine::Grid& grid,
                                                         const render::View& view) const;
+  /// The samples that are visible, by some hundred places of the picture; empty where none is.
+  [[nodiscard]] engine::SampleRect seenRect() const;
   /// Position of the first plot in the window's frame.
   [[nodiscard]] render::Rectangle plot(const render::View& view, const Display& display) const;
   /// Whether two versions share one plot, with a line between them.
   [[nodiscard]] bool hasSplitLine(const Display& display) const;
 
  private:
+  [[nodiscard]] std::vector<Seen> seenPlaces() const;
+
   render::Window& window_;
   std::unique_ptr<render::LivePicture> live_;
   render::Shown shown_;

@@ -126,6 +126,19 @@ void addFilters(const Parts& p, Report& r) {
   const auto& preview = p.form.previewed();
   r["form_preview"] = preview ? Report(std::string(engine::infoOf(preview->options.kind).word)) : Report();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
+  r["measuring"] = p.measure.busy();
+  Report parameters = Report::object();
+  if (const auto& figures = p.measure.figures())
+    for (const ArealLine& line : figures->lines) parameters[line.name] = line.values;
+  r["parameters"] = parameters;
+  r["parameters_of"] = p.measure.figures() ? p.measure.figures()->samples : 0;
+  r["parameters_outdated"] = p.measure.outdated();
+  const auto& profiles = p.section.profiles();
+  r["taking_section"] = p.section.busy();
+  r["section_mm"] = profiles ? Report(rounded(profiles->now.lengthMm())) : Report();
+  r["section_before"] = profiles && profiles->before.size() > 0;
+  const auto between = p.section.between();
+  r["section_dz_mm"] = between ? Report(between->dz_mm.value) : Report();
   r["applying"] = filters.applying();
   r["filters_applied"] = filters.applied();
 }
@@ -162,7 +175,7 @@ bool fieldIsSettled(const Parts& p) {
   const LoopClient& client = *p.document.client();
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
   if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
-      p.marking.busy() || p.picture.empty())
+      p.measure.busy() || p.section.busy() || p.marking.busy() || p.picture.empty())
     return false;
   const render::Shown& shown = p.picture.shown();
   return shown.accepted.value_or(shown.versions.front()) == client.field() &&

@@ -33,8 +33,8 @@ std::string settingsPath(const char* file) {
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
-         p.filters.computing() || p.filters.applying() || p.form.busy() ||
-         (p.document.isOpen() && p.picture.refining());
+         p.filters.computing() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
+         p.section.busy() || (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace
@@ -160,6 +160,8 @@ void Workstation::takeResults() {
   bool changed = p.filters.poll(client, notices);
   // An adoption ends first: its result belongs to the form under which it was computed.
   if (!p.filters.applying()) changed |= p.form.poll(client, notices);
+  changed |= p.measure.poll(client, notices);
+  changed |= p.section.poll(client, notices);
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   // Under a hand that presses, and behind a question, the view stays where it is.
   const bool busy_hand =
@@ -373,6 +375,7 @@ void Workstation::followForm() {
   form_ = form;
   p.marking.edges.drop();
   p.marking.places.drop();
+  p.measure.clear();
   noteHeights();
   p.picture.requestRedraw();
 }

@@ -29,6 +29,10 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
 /// The form that lies over the field, and the one that is to.
 void formPanel(const PanelContext& context, FormTool& form);
+/// Surface texture parameters; `picture`: what is visible.
+void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture);
+/// The section along a line, and its cursors.
+void sectionPanel(const PanelContext& context, SectionTool& section);
 void historyPanel(const PanelContext& context, MarkEdit& edit);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+// Where lengths and heights of a section lie in the plot.
+struct PlotFrame {
+  ImVec2 low{}, size{};  // lower left corner, width and height [pixels]
+  double length_mm = 1.0, low_mm = 0.0, high_mm = 1.0;
+
+  [[nodiscard]] ImVec2 at(double along_mm, double height_mm) const {
+    return ImVec2(low.x + static_cast<float>(along_mm / length_mm) * size.x,
+                  low.y - static_cast<float>((height_mm - low_mm) / (high_mm - low_mm)) * size.y);
+  }
+};
+
+// Runs of places with a height, as lines.
+void drawProfile(const PlotFrame& frame, const engine::Section& section, ImU32 colour, float width) {
+  std::vector<ImVec2> run;
+  const auto draw = [&] {
+    if (run.size() > 1)
+      ImGui::GetWindowDrawList()->AddPolyline(run.data(), static_cast<int>(run.size()), colour, 0, width);
+    run.clear();
+  };
+  // No more places than pixels can show: the lowest and highest of each column.
+  const auto columns = static_cast<std::size_t>(std::max(1.0F, frame.size.x));
+  const std::size_t each = std::max<std::size_t>(1, section.size() / columns);
+  for (std::size_t i = 0; i < section.size(); i += each) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t k = i; k < std::min(section.size(), i + each); ++k) {
+      if (std::isnan(section.height[k])) continue;
+      low = std::min(low, section.height[k]);
+      high = std::max(high, section.height[k]);
+    }
+    if (!(low <= high)) {
+      draw();
+      continue;
+    }
+    run.push_back(frame.at(section.along(i), low));
+    if (high > low) run.push_back(frame.at(section.along(i), high));
+  }
+  draw();
+}
+
+void addSpan(const engine::Section& section, double& low, double& high) {
+  for (const double z : section.height)
+    if (!std::isnan(z)) {
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+}
+
+// `length`, `height`: in which its ranges are written, below it.
+void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const render::ShownUnit& length,
+                 const render::ShownUnit& height) {
+  const float font = ImGui::GetFontSize();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 size(std::max(40.0F, ImGui::GetContentRegionAvail().x), 9.0F * font);
+  ImGui::InvisibleButton("##profile", size);
+  PlotFrame frame{{corner.x, corner.y + size.y - 2.0F}, {size.x, size.y - 4.0F}, profiles.now.lengthMm()};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  addSpan(profiles.now, low, high);
+  addSpan(profiles.before, low, high);
+  // A level section has a height of its own, not none.
+  if (!(high > low)) high = low + std::max(1e-9, 1e-6 * std::abs(low));
+  frame.low_mm = low;
+  frame.high_mm = high;
+  if (ImGui::IsItemActive())
+    tool.moveCursor((ImGui::GetIO().MousePos.x - corner.x) / size.x * profiles.now.lengthMm());
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(corner, ImVec2(corner.x + size.x, corner.y + size.y), true);
+  list.AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y), IM_COL32(255, 255, 255, 255));
+  // As the plots of fettle section: the scan beneath, lighter and wider.
+  drawProfile(frame, profiles.before, IM_COL32(166, 207, 232, 255), 0.25F * font);
+  drawProfile(frame, profiles.now,
+              profiles.before.size() > 0 ? IM_COL32(213, 94, 0, 255) : IM_COL32(0, 114, 178, 255),
+              0.1F * font);
+  for (const double at : {tool.cursors().first, tool.cursors().second}) {
+    const float x = frame.at(at, low).x;
+    list.AddLine(ImVec2(x, corner.y), ImVec2(x, corner.y + size.y), IM_COL32(60, 60, 60, 200), 0.1F * font);
+  }
+  list.PopClipRect();
+  figure("shown", fmt::format("{}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
+                              frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
+}
+
+std::string withError(const engine::Estimate& estimate, const render::ShownUnit& unit) {
+  const std::string value = lengthText(estimate.value, unit, 5);
+  return std::isfinite(estimate.error) ? fmt::format("{} +- {}", value, lengthText(estimate.error, unit, 2))
+                                       : value;
+}
+
+void cursorFigures(const SectionTool& tool, const render::ShownUnit& length,
+                   const render::ShownUnit& height) {
+  const auto now = tool.between();
+  if (!now) {
+    ImGui::TextUnformatted("a cursor is where there is no height");
+    return;
+  }
+  figure("dx", lengthText(now->dx_mm, length, 5));
+  figure("dz", withError(now->dz_mm, height));
+  if (const auto before = tool.betweenBefore()) figure("dz of the scan", withError(before->dz_mm, height));
+  if (!std::isnan(now->slope_deg)) figure("slope", fmt::format("{:.4g} degrees", now->slope_deg));
+}
+
+}  // namespace
+
+void sectionPanel(const PanelContext& context, SectionTool& tool) {
+  const engine::Grid& grid = context.client.field().grid();
+  const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
+  const render::ShownUnit height = ofMillimetres(context.units.height, grid.height_unit.mm);
+  if (!tool.line()) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted("a line over the surface: point at its ends and press Q and Shift+Q");
+    ImGui::PopTextWrapPos();
+    if (ImGui::Button("Along the middle row")) {
+      const double y = 0.5 * (grid.height - 1) * grid.spacingYMm();
+      tool.setLine({{0.0, y}, {(grid.width - 1) * grid.spacingXMm(), y}});
+    }
+    return;
+  }
+  SectionTool::Line line = *tool.line();
+  constexpr double kFar = 1e12;
+  bool typed = false;
+  beginFields();
+  for (const auto& [name, id, value] : {std::tuple("from x", "##section from x", &line.from.x),
+                                        {"from y", "##section from y", &line.from.y},
+                                        {"to x", "##section to x", &line.to.x},
+                                        {"to y", "##section to y", &line.to.y}})
+    typed |= field(name, [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
+  double width = tool.widthMm();
+  if (field("mean across", [&] { return typeLength("##section width", width, 0.0, kFar, length); }))
+    tool.setWidth(width);
+  endFields();
+  if (typed) tool.setLine(line);
+  if (ImGui::Button("Remove##section")) {
+    tool.clear();
+    return;
+  }
+  if (!tool.profiles()) {
+    ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
+    return;
+  }
+  profilePlot(tool, *tool.profiles(), length, height);
+  cursorFigures(tool, length, height);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,172 @@
+// Surface texture parameters and the section in the window: of what was chosen, before and after, cancelled, outdated.
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/measure/areal.h"
+#include "engine/measure/form.h"
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+// Only this panel is open.
+void openPanel(const TempFolder& folder, const char* name) {
+  State panels;
+  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+    panels[other] = false;
+  panels[name] = true;
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};
+}
+
+// Skewness of a whole field about its plane, as `fettle measure` prints it.
+std::string skewnessOf(const engine::Version& field) {
+  engine::JobControl job;
+  const auto fit = engine::fitForm(field, {}, job);
+  EXPECT_TRUE(fit);
+  engine::ArealOptions height;
+  height.hybrid = height.functional = height.spatial = height.feature = false;
+  const auto measured = engine::measureAreal(field, fit->form, height, job);
+  EXPECT_TRUE(measured);
+  return fmt::format("{:.5g}", measured->ssk);
+}
+
+TEST_F(WindowTest, parameters_are_measured_of_what_is_chosen_before_and_after) {
+  openPanel(folder, "Measure");
+  const std::string stroked = folder.file("stroked.tif");
+  const auto program = start({scan});
+  User user(display, *program, "measure");
+  const State first = opened(*program);
+  EXPECT_TRUE(first["parameters"].empty());
+  const State all = user.click("Measure now");
+  EXPECT_EQ(all["parameters"]["Ssk"], State::array({skewnessOf(load(scan))}))
+      << "of a scan without a change one value";
+  const int known = all["parameters_of"];
+  EXPECT_GT(known, 100'000) << "all but holes";
+  EXPECT_EQ(all["parameters_outdated"], false);
+  EXPECT_TRUE(user.reads("ISO 25178-2"));
+  user.at({20, 790});
+  (void)user.look("all");
+  // Of what is visible: nearer, there is less.
+  (void)user.key("7");
+  user.at({300, 400});
+  (void)user.wheel(6);
+  (void)user.click("all samples");
+  (void)user.click("what is visible");
+  const State part = user.click("Measure now");
+  EXPECT_LT(part["parameters_of"].get<int>(), known / 2);
+  EXPECT_GT(part["parameters_of"].get<int>(), 100);
+  EXPECT_NE(part["parameters"]["Ssk"], all["parameters"]["Ssk"]);
+  // Marked samples, of which there are none.
+  (void)user.click("what is visible");
+  (void)user.click("marked samples");
+  const State none = user.click("Measure now");
+  EXPECT_EQ(none["notices"].size(), 1U);
+  EXPECT_EQ(none["parameters"], part["parameters"]) << "what was measured stays";
+  // After a stroke what was measured is old; measured again it stands beside the scan's.
+  (void)user.press("s");
+  (void)program->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
+  const State touched = user.stroke({240, 332}, {340, 332}, 6);
+  EXPECT_EQ(touched["parameters_outdated"], true);
+  (void)user.key("Escape");
+  saveAs(user, stroked);
+  (void)user.click("marked samples");
+  (void)user.click("all samples");
+  const State both = user.click("Measure now");
+  EXPECT_EQ(both["parameters"]["Ssk"], State::array({skewnessOf(load(scan)), skewnessOf(load(stroked))}));
+  EXPECT_EQ(both["parameters_outdated"], false);
+  EXPECT_TRUE(user.reads("scan"));
+  user.at({20, 790});
+  (void)user.look("before and after");
+  EXPECT_EQ(both["steps"], 1) << "measuring changes nothing";
+  EXPECT_EQ(user.key("ctrl+z")["parameters_outdated"], true);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// Seventeen measurements of 1.4 million samples take seconds; a key ends them.
+TEST_F(WindowTest, measuring_is_cancelled_and_the_hand_goes_on_meanwhile) {
+  openPanel(folder, "Measure");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "1200x1200"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({scan});
+  User user(display, *program, "measure cancelled");
+  (void)opened(*program);
+  (void)user.click("without noise, with errors");
+  user.tap("Measure now");
+  (void)program->until("measuring", [](const State& s) { return s["measuring"] == true; });
+  (void)user.press("Escape");
+  const State ended = program->until("cancelled", [](const State& s) { return s["measuring"] == false; });
+  EXPECT_TRUE(ended["parameters"].empty());
+  EXPECT_EQ(ended["notices"], State::array());
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
+  openPanel(folder, "Section");
+  const auto program = start({scan});
+  User user(display, *program, "section");
+  EXPECT_TRUE(opened(*program)["section_mm"].is_null());
+  (void)user.key("7");
+  user.at({220, 332});
+  const Screen before = user.look("without");
+  (void)user.key("q");
+  user.at({560, 332});
+  (void)user.key("shift+q");
+  const State taken = program->until("a section", [](const State& s) {
+    return s["section_mm"].is_number() && s["taking_section"] == false;
+  });
+  EXPECT_GT(taken["section_mm"].get<double>(), 0.0);
+  EXPECT_EQ(taken["section_before"], false);
+  EXPECT_TRUE(taken["section_dz_mm"].is_number());
+  user.at({20, 790});
+  (void)user.changed("with its line", before);
+  EXPECT_TRUE(user.reads("dx"));
+  // A stroke along it: the scan stands beside, and goes with the stroke.
+  (void)user.press("s");
+  (void)program->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
+  (void)user.stroke({300, 332}, {480, 332}, 8);
+  (void)user.key("Escape");
+  (void)program->until(
+      "both", [](const State& s) { return s["section_before"] == true && s["taking_section"] == false; });
+  EXPECT_TRUE(user.reads("dz of the scan"));
+  user.at({20, 790});
+  (void)user.look("before and after");
+  (void)user.key("ctrl+z");
+  (void)program->until("the scan alone", [](const State& s) {
+    return s["section_before"] == false && s["taking_section"] == false;
+  });
+  // Typed: half as long.
+  const double length = taken["section_mm"];
+  (void)user.click("Remove");
+  (void)program->until("none", [](const State& s) { return s["section_mm"].is_null(); });
+  const State whole = [&] {
+    (void)user.click("Along the middle row");
+    return program->until("along a row", [](const State& s) {
+      return s["section_mm"].is_number() && s["taking_section"] == false;
+    });
+  }();
+  EXPECT_GT(whole["section_mm"].get<double>(), length);
+  // Behind the border there is no height, and nothing to show.
+  (void)user.enter("from y", "5000");
+  (void)user.enter("to y", "5000");
+  (void)program->until("outside", [](const State& s) {
+    return s["section_mm"].is_null() && s["taking_section"] == false && !s["notices"].empty();
+  });
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+}  // namespace
+}  // namespace fettle::tests
