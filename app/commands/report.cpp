@@ -385,7 +385,7 @@ class ScanReport {
     add("Noise trials", fmt::format("{}", trials_));
     if (const std::string reading = scanOptionsText(options_.reading); !reading.empty())
       add("Read with", reading.substr(1));
-    if (const auto status = loadWork(); !status) return status;
+    if (auto status = loadWork(); !status) return status;
     if (session_) {
       if (!session_->scan.path.empty()) add("Scan of the session", nameOf(session_->scan.path));
       if (!session_->scan.format.empty()) add("Format of that scan", session_->scan.format);

@@ -7,6 +7,8 @@
 
 #include "engine/base/error.h"
 
+// cairo's own name: who lays pages out needs no header of it.
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
 typedef struct _cairo cairo_t;
 
 namespace fettle::app {

@@ -30,7 +30,7 @@ engine::Region regionOf(MeasureTool::Where where) {
 // The field with its visible samples as the only marked ones.
 engine::Result<engine::Version> markedWhereSeen(const engine::Version& field, const engine::SampleRect& seen,
                                                 engine::JobControl& job) {
-  const auto plain = engine::clearMarks(field, job);
+  auto plain = engine::clearMarks(field, job);
   if (!plain) return plain;
   const double left = seen.column - 0.5, low = seen.row - 0.5;
   const double right = left + seen.columns, high = low + seen.rows;
