@@ -189,10 +189,7 @@ void printOneMeasured(const Report& report) {
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());
-  for (const auto& [title, key] : {std::pair("S-filter", "s_filter"), std::pair("L-filter", "l_filter")})
-    if (report.contains(key))
-      fmt::print("{} {:.6g} mm, {}\n", title, report[key].get<double>(),
-                 report.value(fmt::format("{}_kind", key), std::string("areal-gaussian")));
+  if (const std::string scale = scaleText(report, "\n"); !scale.empty()) fmt::print("{}\n", scale);
   printAreal(report);
 }
 

@@ -279,6 +279,7 @@ class ScanReport {
       auto parameters = engine::measureAreal(limited->field, limited->form, areal, job_);
       if (!parameters) return tl::unexpected(parameters.error());
       addForm(reports.emplace_back(), options_.form, limited->fit, state.field.grid());
+      addScale(reports.back(), options_.scale);
       addAreal(reports.back(), *parameters, {}, state.field.grid());
       engine::ArealParameters stated = *parameters;
       stated.heights.clear();
@@ -305,11 +306,14 @@ class ScanReport {
                             reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());
     }
     const std::vector<ArealLine> lines = arealLines(reports);
-    page_.parts.emplace_back(textureTable(
-        lines, heads({}),
-        fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
-                    options_.form.robust ? " (robust)" : "",
-                    options_.form.region == "all" ? "all" : "the " + options_.form.region, tilt)));
+    addScale(report_, options_.scale);
+    const std::string scale = scaleText(report_, "; ");
+    page_.parts.emplace_back(
+        textureTable(lines, heads({}),
+                     fmt::format("ISO 25178-2 about the form {}{}, over {} samples{}{}.{}", options_.form.form,
+                                 options_.form.robust ? " (robust)" : "",
+                                 options_.form.region == "all" ? "all" : "the " + options_.form.region,
+                                 scale.empty() ? "" : "; ", scale, tilt)));
     if (trials_ > 0) page_.parts.emplace_back(noiseTable(lines, heads({"Parameter"}), trials_));
     return {};
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
@@ -11,12 +12,12 @@
 
 namespace fettle::app {
 
-/// The scales that a surface is limited to: cut-offs (nesting indices) as typed, in millimetres or with a unit; empty:
-/// none.
+/// The scales that a surface is limited to: nesting indices as typed, in millimetres or with a unit; empty: none.
 struct ScaleArguments {
   std::string s_filter;
   std::string l_filter;
-  std::string s_kind = "areal-gaussian";  ///< words of the filters by cut-off
+  std::string s_kind =
+      "areal-gaussian";  ///< words of the filters that separate scales; balls where they roll a body
   std::string l_kind = "areal-gaussian";
 };
 
@@ -31,7 +32,8 @@ struct ScaleLimited {
 };
 
 /// S-filter, form (F-operation) and L-filter, in the order of ISO 25178-3: the S-F or S-L surface. Errors: as
-/// engine::gaussianFiltered, engine::applyFilter and formOf, naming the option; an L-filter not longer than the S-filter (kInput).
+/// engine::scaleFiltered and formOf, naming the option; an L-filter not longer than the S-filter, where both are
+/// wavelengths or both are radii (kInput).
 [[nodiscard]] engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const std::string& scan,
                                                         const engine::Imported& imported,
                                                         const FormArguments& form,
@@ -39,5 +41,7 @@ struct ScaleLimited {
 
 /// s_filter and l_filter [mm], and their kinds where these are not areal-gaussian, of those that are there.
 void addScale(Report& report, const ScaleArguments& scale);
+/// Those of a report in words, "S-filter 2.5 mm, areal-gaussian", with `between` between them; empty without.
+[[nodiscard]] std::string scaleText(const Report& report, std::string_view between);
 
 }  // namespace fettle::app

@@ -17,7 +17,7 @@
 namespace fettle::engine {
 
 /// Areal surface texture parameters of ISO 25178-2:2021 over the samples of a region, heights about their mean after
-/// the form is taken out. No S- or L-filter is applied: gaussianFiltered (gaussian_filter.h)
+/// the form is taken out. No S- or L-filter is applied: scaleFiltered (scale_filter.h)
 /// before. NaN where the samples do not
 /// determine a figure (skewness of a flat surface, slopes without a cell): `not_stated` has the reason then.
 struct ArealParameters {

@@ -1,4 +1,4 @@
-#include "engine/measure/gaussian_filter.h"
+#include "engine/measure/scale_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,16 +38,23 @@ struct Scan {
   [[nodiscard]] Version field() const { return makeField(grid, heights, marks); }
 };
 
+FilterSpec gaussianOf(double cut_off) {
+  FilterSpec spec;
+  spec.kind = FilterKind::kArealGaussian;
+  spec.nesting_mm = cut_off;
+  return spec;
+}
+
 Version filtered(const Version& field, double cut_off, Waves waves) {
   JobControl job;
-  auto result = gaussianFiltered(field, cut_off, waves, job);
+  auto result = scaleFiltered(field, gaussianOf(cut_off), waves, job);
   EXPECT_TRUE(result) << result.error().line();
   return result ? *result : field;
 }
 
 // A wave of the cut-off's length keeps half of its amplitude, in every direction and for spacing 1:4; other waves what
 // the standard states, exp(-pi (a L / wave)^2).
-TEST(GaussianFilter, TransmitsHalfAtTheCutOff) {
+TEST(ScaleFilter, TransmitsHalfAtTheCutOff) {
   constexpr double kCutOff = 8.0;
   for (const double degrees : {0.0, 90.0, 37.0})
     for (const double wave : {kCutOff, 2.0 * kCutOff, 0.5 * kCutOff}) {
@@ -69,7 +76,7 @@ TEST(GaussianFilter, TransmitsHalfAtTheCutOff) {
 }
 
 // Every sample by plain sums of weights over the samples that there are, at borders and holes.
-TEST(GaussianFilter, IsWhatPlainLoopsFind) {
+TEST(ScaleFilter, IsWhatPlainLoopsFind) {
   std::mt19937_64 random(6);
   std::normal_distribution<double> noise;
   constexpr double kCutOff = 3.0;
@@ -107,7 +114,7 @@ TEST(GaussianFilter, IsWhatPlainLoopsFind) {
     }
 }
 
-TEST(GaussianFilter, OfAConstantIsThatConstant) {
+TEST(ScaleFilter, OfAConstantIsThatConstant) {
   const Version field = Scan(60, 50, 1.0, 1.0, [](int, int) { return 0.1; }).field();
   const Version low = filtered(field, 7.0, Waves::kLong), high = filtered(field, 7.0, Waves::kShort);
   for (int r = 0; r < 50; ++r)
@@ -118,7 +125,7 @@ TEST(GaussianFilter, OfAConstantIsThatConstant) {
 }
 
 // Weights of one side alone would bend its ends.
-TEST(GaussianFilter, OfAPlaneIsThatPlane) {
+TEST(ScaleFilter, OfAPlaneIsThatPlane) {
   const auto plane = [](int c, int r) { return c == 20 && r > 10 ? std::nan("") : 0.5 * c - 2.0 * r; };
   const Version low = filtered(Scan(60, 50, 1.0, 1.0, plane).field(), 12.0, Waves::kLong);
   for (int r = 0; r < 50; ++r)
@@ -129,7 +136,7 @@ TEST(GaussianFilter, OfAPlaneIsThatPlane) {
 }
 
 // White noise keeps the sum of squared weights: (1 / (sqrt(2) a L))^2 of its variance.
-TEST(GaussianFilter, LeavesOfNoiseItsSquaredWeights) {
+TEST(ScaleFilter, LeavesOfNoiseItsSquaredWeights) {
   std::mt19937_64 random(12);
   std::normal_distribution<double> noise;
   constexpr double kCutOff = 6.0;
@@ -144,7 +151,7 @@ TEST(GaussianFilter, LeavesOfNoiseItsSquaredWeights) {
   EXPECT_NEAR(sum / samples * 2.0 * width * width, 1.0, 0.03);
 }
 
-TEST(GaussianFilter, OfHardFieldsIsFinite) {
+TEST(ScaleFilter, OfHardFieldsIsFinite) {
   const auto check = [](const Scan& scan, double cut_off) {
     const Version field = scan.field();
     for (const Waves waves : {Waves::kLong, Waves::kShort}) {
@@ -163,12 +170,13 @@ TEST(GaussianFilter, OfHardFieldsIsFinite) {
   JobControl job;
   const Version field = Scan(20, 20, 1.0, 4.0, [](int c, int) { return c; }).field();
   for (const double wrong : {0.0, -1.0, 7.9, std::numeric_limits<double>::infinity(), std::nan("")})
-    EXPECT_EQ(gaussianFiltered(field, wrong, Waves::kLong, job).error().kind, ErrorKind::kInput) << wrong;
+    EXPECT_EQ(scaleFiltered(field, gaussianOf(wrong), Waves::kLong, job).error().kind, ErrorKind::kInput)
+        << wrong;
   job.cancel();
-  EXPECT_EQ(gaussianFiltered(field, 8.0, Waves::kLong, job).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(scaleFiltered(field, gaussianOf(8.0), Waves::kLong, job).error().kind, ErrorKind::kCancelled);
 }
 
-TEST(GaussianFilter, IsBitIdenticalForAnyNumberOfThreads) {
+TEST(ScaleFilter, IsBitIdenticalForAnyNumberOfThreads) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
   const Version field = Scan(190, 140, 1.0, 2.0, [&](int, int) { return noise(random); }).field();
