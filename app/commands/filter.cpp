@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -44,7 +45,8 @@ struct FilterArguments {
   int window = 3;
   double sigma = 0.0;
   std::string range_sigma;
-  std::string cutoff;
+  std::string cutoff, radius;  // nesting indices
+  std::string element = "ball";
   std::string residual;
   int passes = 1;
   std::string keep;
@@ -64,6 +66,21 @@ struct FilterArguments {
   engine::ExportOptions writing;
 };
 
+// A length that filters of one nesting word take.
+struct NestingOption {
+  std::string_view word;
+  const char* shown;
+  const std::string& typed;
+  bool (*has)(const engine::Filter& filter);
+};
+
+std::array<NestingOption, 2> nestingOptions(const FilterArguments& options) {
+  return {{{"cutoff", "cut-off", options.cutoff,
+            [](const engine::Filter& filter) { return filter.nesting_word == "cutoff"; }},
+           {"radius", "radius", options.radius,
+            [](const engine::Filter& filter) { return filter.nesting_word == "radius"; }}}};
+}
+
 engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
   const engine::Filter& filter = *engine::filterNamed(options.filter);
@@ -74,15 +91,19 @@ engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   spec.kind = filter.kind;
   spec.window = options.window;
   spec.sigma = options.sigma;
-  if (filter.nesting_word == "cutoff" && !options.cutoff.empty()) {
+  for (const NestingOption& option : nestingOptions(options)) {
+    if (option.typed.empty()) continue;
+    if (filter.nesting_word != option.word)
+      return engine::inputError(fmt::format("{} has no {}", filter.word, option.shown),
+                                fmt::format("--{}", option.word),
+                                fmt::format("take --filter {}", engine::filterWords(option.has, " or ")));
     // In millimetres: the default unit of a grid.
-    const auto cutoff = parseHeight(options.cutoff, engine::Grid{}, "--cutoff");
-    if (!cutoff) return tl::unexpected(cutoff.error());
-    spec.nesting_mm = *cutoff;
-  } else if (!options.cutoff.empty()) {
-    return engine::inputError(fmt::format("{} has no cut-off", filter.word), "--cutoff",
-                              "take --filter areal-gaussian or robust-gaussian");
+    const auto length = parseHeight(option.typed, engine::Grid{}, fmt::format("--{}", option.word));
+    if (!length) return tl::unexpected(length.error());
+    spec.nesting_mm = *length;
   }
+  spec.element = static_cast<engine::Element>(std::ranges::find(engine::kElementWords, options.element) -
+                                              engine::kElementWords.begin());
   spec.passes = options.passes;
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
@@ -167,6 +188,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (filter.window.exists()) report["window"] = spec.window;
   if (filter.sigma.exists()) report["sigma"] = spec.sigma;
   if (filter.nesting.exists()) report[std::string(filter.nesting_word)] = spec.nesting_mm;
+  if (filter.has_element) report["element"] = options.element;
   if (filter.range_sigma.exists()) report["range_sigma"] = spec.range_sigma;
   if (const engine::EdgeLines& lines = field.lines(); lines != nullptr) {
     if (!filter.knows_lines)
@@ -330,9 +352,10 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
   const std::pair<bool, const char*> numbers[] = {
-      {options.window != 3, "--window"},     {options.sigma != 0.0, "--sigma"},
-      {options.passes != 1, "--passes"},     {!options.range_sigma.empty(), "--range-sigma"},
-      {!options.cutoff.empty(), "--cutoff"}, {!options.residual.empty(), "--residual"}};
+      {options.window != 3, "--window"},        {options.sigma != 0.0, "--sigma"},
+      {options.passes != 1, "--passes"},        {!options.range_sigma.empty(), "--range-sigma"},
+      {!options.cutoff.empty(), "--cutoff"},    {!options.radius.empty(), "--radius"},
+      {options.element != "ball", "--element"}, {!options.residual.empty(), "--residual"}};
   for (const auto& [given, option] : numbers)
     if (given) return refused(option, "the numbers of the filter are suggested with it");
   if (!options.max_change.empty())
@@ -509,9 +532,22 @@ void addFilter(Command root, Chosen& chosen) {
            fmt::format("{} standard deviations of noise_finest of fettle info", fmt::join(ranges, ", "))},
       {.name = "--cutoff",
        .to = &options->cutoff,
-       .text = "Wavelength of which half stays; shorter ones are removed (areal-gaussian, robust-gaussian)",
+       .text = fmt::format("Wavelength of which half stays; shorter ones are removed ({})",
+                           engine::filterWords(nestingOptions(*options)[0].has, ", ")),
        .kind = ValueKind::kLength,
        .shown = "MM"},
+      {.name = "--radius",
+       .to = &options->radius,
+       .text =
+           fmt::format("Of the ball or disk that is rolled along the surface; half of a square's side ({})",
+                       engine::filterWords(nestingOptions(*options)[1].has, ", ")),
+       .kind = ValueKind::kLength,
+       .shown = "MM"},
+      {.name = "--element",
+       .to = &options->element,
+       .text = fmt::format("What is rolled along it; disk and square are horizontal ({})",
+                           engine::filterWords(engine::hasElement, ", ")),
+       .words = {{"ball", ""}, {"disk", ""}, {"square", ""}}},
       {.name = "--passes",
        .to = &options->passes,
        .text = "Times that the filter is applied to its own result",
@@ -580,6 +616,8 @@ void addFilter(Command root, Chosen& chosen) {
         "A median that leaves marked samples as they are, and no sample farther than that from the scan"},
        {"fettle filter scan.tif waviness.tif --filter areal-gaussian --cutoff 0.8 --residual roughness.tif",
         "Waviness and roughness by a cut-off of 0.8 mm (ISO 16610-61)"},
+       {"fettle filter scan.tif clean.tif --filter closing --radius 0.5",
+        "What a ball of 0.5 mm touches from above: pits and grooves narrower than it are filled"},
        {"fettle filter scan.tif --suggest --tolerance 12um", "Which filter is good enough, and why"}});
 }
 

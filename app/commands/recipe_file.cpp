@@ -50,7 +50,7 @@ class StepReader {
         "");
     if (what == kFilterWord) {
       onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change",
-                      "cutoff", "radius"});
+                      "cutoff", "radius", "element"});
       return filter();
     }
     if (what == kEdgesWord || what == kLinesWord) {
@@ -199,6 +199,9 @@ class StepReader {
       else
         step.spec.nesting_mm = nesting->value * (nesting->unit ? nesting->unit->mm : 1.0);
     }
+    const std::vector<std::string> elements(engine::kElementWords.begin(), engine::kElementWords.end());
+    const std::string element = word("element", elements, elements.front());
+    step.spec.element = static_cast<engine::Element>(std::ranges::find(elements, element) - elements.begin());
     length("range_sigma", step.range_sigma, engine::FilterSpec::kLeastRange);
     length("max_change", step.max_change, 0.0);
     engine::FilterSpec ranged = step.spec;
@@ -325,6 +328,9 @@ std::string textOf(const RecipeFilter& step) {
     text += fmt::format("sigma = {}\n", step.spec.sigma);
   if (filter.nesting.exists())
     text += fmt::format("{} = \"{}mm\"\n", filter.nesting_word, step.spec.nesting_mm);
+  if (filter.has_element)
+    text +=
+        fmt::format("element = \"{}\"\n", engine::kElementWords[static_cast<std::size_t>(step.spec.element)]);
   if (step.range_sigma)
     text += fmt::format("range_sigma = {}\n", textOf(*step.range_sigma));
   else if (filter.range_sigma.exists())

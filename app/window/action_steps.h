@@ -252,6 +252,7 @@ inline void nextFilter(Parts& p) {
   spec.kind = engine::filters()[(static_cast<std::size_t>(spec.kind) + 1) % engine::filters().size()].kind;
   spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
   spec.nesting_mm = engine::usualNesting(engine::filterOf(spec.kind), clientOf(p).field().grid());
+  if (!engine::filterOf(spec.kind).has_element) spec.element = engine::FilterSpec{}.element;
 }
 template <FilterPreview::Keep keep>
 void preview(Parts& p) {

@@ -16,8 +16,8 @@ constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
   return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
-         a.nesting_mm == b.nesting_mm && a.passes == b.passes && a.scope == b.scope &&
-         a.max_change == b.max_change;
+         a.nesting_mm == b.nesting_mm && a.element == b.element && a.passes == b.passes &&
+         a.scope == b.scope && a.max_change == b.max_change;
 }
 
 // Filters the visible part and calls `done` after each piece. Limited to about a second, since this work is
@@ -46,6 +46,8 @@ std::string filterName(const engine::FilterSpec& spec) {
   const engine::Filter& filter = engine::filterOf(spec.kind);
   std::string text = filter.title;
   if (filter.window.exists()) text += fmt::format(" {} x {}", spec.window, spec.window);
+  if (filter.has_element)
+    text += fmt::format(", {}", engine::kElementWords[static_cast<std::size_t>(spec.element)]);
   if (filter.nesting.exists()) text += fmt::format(" {:.4g} mm", spec.nesting_mm);
   if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
   if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";

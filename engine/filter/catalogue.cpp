@@ -7,6 +7,7 @@
 #include "engine/filter/areal_gaussian.h"
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
+#include "engine/filter/opening.h"
 #include "engine/filter/planes.h"
 #include "engine/filter/tgv_device.h"
 #include "engine/filter/tgv_schedule.h"
@@ -136,6 +137,30 @@ constexpr std::array kFilters{
            .pass = robustGaussianPass,
            .reach = anywhere,
            .sampled = false},
+    Filter{.kind = FilterKind::kOpening,
+           .word = "opening",
+           .title = "Opening",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "radius",
+           .least_nesting = FilterSpec::kLeastRadius,
+           .has_element = true,
+           .pass = openingPass,
+           .reach = anywhere,
+           .reach_on = openingReach,
+           .sampled = false},
+    Filter{.kind = FilterKind::kClosing,
+           .word = "closing",
+           .title = "Closing",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "radius",
+           .least_nesting = FilterSpec::kLeastRadius,
+           .has_element = true,
+           .pass = closingPass,
+           .reach = anywhere,
+           .reach_on = openingReach,
+           .sampled = false},
 };
 
 constexpr bool inTheOrderOfTheEnum() {
@@ -190,6 +215,10 @@ std::int32_t pieceGridOf(const FilterSpec& spec, const Version& input) noexcept 
 
 bool separatesScales(const Filter& filter) noexcept {
   return filter.nesting.exists();
+}
+
+bool hasElement(const Filter& filter) noexcept {
+  return filter.has_element;
 }
 
 bool keepsEdges(const Filter& filter) noexcept {

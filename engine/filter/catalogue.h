@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -60,6 +61,8 @@ struct Filter {
   /// scales instead of removing noise: neither suggestion, demonstration nor, unless named, benchmarks try them.
   FilterParameter nesting{};
   std::string_view nesting_word{};
+  double least_nesting = FilterSpec::kLeastNesting;  ///< [the larger spacing of a field]
+  bool has_element = false;                          ///< FilterSpec::element
   /// Range sigma in standard deviations of the noise when none is given: with it the least error was left
   /// over the whole of simulated bracket, wedges, steps and die (384 x 384, noise 1 and 3), 0.41 of the scan's
   /// own for both that have one. Half as much leaves a tenth more, twice as much takes a tenth more off the
@@ -114,6 +117,12 @@ struct Filter {
 
 /// Whether a filter has a nesting index, for filterWords.
 [[nodiscard]] bool separatesScales(const Filter& filter) noexcept;
+
+/// Filter::has_element, for filterWords.
+[[nodiscard]] bool hasElement(const Filter& filter) noexcept;
+
+/// Words of the command line, of journals and of recipes, in the order of Element: never changed.
+inline constexpr std::array<std::string_view, 3> kElementWords{"ball", "disk", "square"};
 
 /// A nesting index to begin with: 25 of the larger spacings [mm]; 0 for a filter without.
 [[nodiscard]] double usualNesting(const Filter& filter, const Grid& grid) noexcept;

@@ -127,6 +127,9 @@ Status validate(const FilterSpec& spec) {
   if (!nesting.exists() && spec.nesting_mm != 0.0)
     return inputError(fmt::format("a {} filter has no nesting index", filter.word), "cutoff",
                       fmt::format("leave it out, or use {}", filterWords(separatesScales, " or ")));
+  if (!filter.has_element && spec.element != FilterSpec{}.element)
+    return inputError(fmt::format("a {} filter has no structuring element", filter.word), "element",
+                      fmt::format("leave it out, or use {}", filterWords(hasElement, " or ")));
   if (spec.passes < 1 || spec.passes > FilterSpec::kMaxPasses)
     return inputError(fmt::format("a filter cannot be applied {} times", spec.passes), "passes",
                       fmt::format("give a number from 1 to {}", FilterSpec::kMaxPasses));
@@ -142,10 +145,11 @@ Status validate(const FilterSpec& spec) {
 Status validate(const FilterSpec& spec, const Grid& grid) {
   if (Status valid = validate(spec); !valid) return valid;
   const Filter& filter = filterOf(spec.kind);
-  const double least = FilterSpec::kLeastNesting * std::max(grid.spacingXMm(), grid.spacingYMm());
+  const double least = filter.least_nesting * std::max(grid.spacingXMm(), grid.spacingYMm());
   if (filter.nesting.exists() && !(spec.nesting_mm >= least))
     return inputError(
-        fmt::format("a {} of {:.6g} mm is shorter than two samples", filter.nesting_word, spec.nesting_mm),
+        fmt::format("a {} of {:.6g} mm is shorter than {}", filter.nesting_word, spec.nesting_mm,
+                    filter.least_nesting == 1.0 ? "one spacing" : "two samples"),
         std::string(filter.nesting_word), fmt::format("take {:.6g} mm or more", least));
   return {};
 }

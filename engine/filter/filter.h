@@ -49,7 +49,14 @@ namespace fettle::engine {
 ///              the surface of the round before, 0 from c = 4.4478 medians of |r| on; until c changes by less than
 ///              1e-4 of itself, 50 rounds at most: ISO 16610-71:2014 with a regression of order 0. Grooves and peaks
 ///              of less than half of the samples do not draw it to them. The median is that of the whole field.
-/// Heights are taken with the version's sign, so filtering commutes with inverting.
+///   kOpening   how high a body rises that is rolled along the surface from below, Element: the erosion, the least height of
+///              the surface over the body's around each sample, and then the dilation of that. Its peaks and ridges
+///              that are narrower than the body are gone, and no sample rises. Radius R = nesting_mm, in millimetres along both
+///              axes. The middle of the body lies on a sample, not beyond a border nor in a hole, so that a surface tilted by
+///              an angle a sinks by up to R (1 - cos a) within R sin a of them (of a disk by the rise over R within R).
+///   kClosing   the same from above: pits and grooves that are narrower than the body are filled, and no sample sinks.
+/// Heights are taken with the version's sign, so filtering commutes with inverting; kOpening and kClosing take those of the scan, so that
+/// peaks are the same whichever way up it is.
 ///
 /// Accuracy, against the same formula without rounding:
 ///   kBox       the sum is exact, whatever the heights; then two roundings in double and one to float. Error
@@ -75,6 +82,8 @@ namespace fettle::engine {
 ///              comes back bit-identical.
 ///   kRobustGaussian  rounds that begin from 1e-6 of those distances and one rounding to float elsewhere: the tests hold
 ///              it to 1e-5 of the limit c, where no round's end is within rounding of its limit.
+///   kOpening, kClosing  a disk or square: exact. A ball: in double; error <= 0.5 ulp of the result + 2^-50 of the largest
+///              height and of the ball's depth at its rim; a sample that it touches comes back bit-identical.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
@@ -87,7 +96,16 @@ enum class FilterKind {
   kGeneralisedVariation,
   kPlanes,
   kArealGaussian,
-  kRobustGaussian
+  kRobustGaussian,
+  kOpening,
+  kClosing
+};
+
+/// The bodies of kOpening and kClosing, called structuring elements.
+enum class Element {
+  kBall,    ///< of radius R, in millimetres of height as well
+  kDisk,    ///< horizontal, of radius R: of all samples within R
+  kSquare,  ///< horizontal, of side 2 R along the axes: a segment of that length in a field of one row
 };
 
 /// What the marks mean to a filter.
@@ -103,6 +121,7 @@ struct FilterSpec {
   static constexpr double kLeastRange = 1e-30, kMostRange = 1e30;
   static constexpr double kLeastNesting =
       2.0;  ///< [spacings]: a wave of two samples is the shortest that there is
+  static constexpr double kLeastRadius = 1.0;  ///< [spacings]: a smaller body reaches no other sample
 
   FilterKind kind = FilterKind::kBox;
   int window = 3;  ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
@@ -113,10 +132,11 @@ struct FilterSpec {
   /// (Filter::range_sigma), 0 for the others. More smooths more and rounds lower steps. What a scan's own noise
   /// asks for: withMeasuredRange (noise_range.h).
   double range_sigma = 0.0;
-  /// Nesting index [mm] of the filters that separate scales (Filter::nesting), the cut-off of a Gaussian; 0 for the others.
-  /// At least kLeastNesting of the field's larger spacing.
+  /// Nesting index [mm] of the filters that separate scales (Filter::nesting), the cut-off of a Gaussian, the radius of a
+  /// body; 0 for the others. At least Filter::least_nesting of the field's larger spacing.
   double nesting_mm = 0.0;
-  int passes = 1;  ///< times the filter is applied to its own result, 1 .. kMaxPasses
+  Element element = Element::kBall;  ///< of the filters that have one (Filter::has_element), else kBall
+  int passes = 1;                    ///< times the filter is applied to its own result, 1 .. kMaxPasses
   FilterScope scope = FilterScope::kKeepMarks;
   /// After every pass each filtered sample is clamped to within this distance of the original sample
   /// [height_unit, finite, >= 0]; never exceeded, not even by a rounding. Nothing is clamped where the original

@@ -61,9 +61,12 @@ WorkIdentity identityOf(const Version& input, const Version& original, const Fil
   WorkIdentity id;
   id.parts = {
       {"revision", fmt::format("{}", kFilterRevision)},
-      {"filter", fmt::format("{} window {} sigma {} range_sigma {}{} passes {} {} max_change {}",
+      {"filter", fmt::format("{} window {} sigma {} range_sigma {}{}{} passes {} {} max_change {}",
                              name(spec.kind), spec.window, bitsOf(spec.sigma), bitsOf(spec.range_sigma),
                              spec.nesting_mm > 0.0 ? " nesting_mm " + bitsOf(spec.nesting_mm) : "",
+                             filterOf(spec.kind).has_element
+                                 ? fmt::format(" {}", kElementWords[static_cast<std::size_t>(spec.element)])
+                                 : "",
                              spec.passes, spec.scope == FilterScope::kKeepMarks ? "keep" : "only",
                              spec.max_change ? bitsOf(*spec.max_change) : "none")},
       {"compute", device.empty() ? "cpu" : device},

@@ -47,6 +47,8 @@ void put(json& out, const engine::FilterSpec& spec) {
   if (spec.sigma > 0.0) out["sigma"] = spec.sigma;
   if (spec.range_sigma > 0.0) out["range_sigma"] = spec.range_sigma;
   if (spec.nesting_mm > 0.0) out["nesting_mm"] = spec.nesting_mm;
+  if (engine::filterOf(spec.kind).has_element)
+    out["element"] = engine::kElementWords[static_cast<std::size_t>(spec.element)];
   out["passes"] = spec.passes;
   out["marks"] = kScopes[static_cast<std::size_t>(spec.scope)];
   if (spec.max_change) out["max_change"] = *spec.max_change;
@@ -62,6 +64,8 @@ engine::FilterSpec specOf(const json& in) {
   spec.sigma = in.value("sigma", 0.0);
   spec.range_sigma = in.value("range_sigma", 0.0);
   spec.nesting_mm = in.value("nesting_mm", 0.0);
+  if (in.contains("element"))
+    spec.element = static_cast<engine::Element>(wordOf(in.at("element"), engine::kElementWords));
   spec.passes = in.at("passes").get<int>();
   spec.scope = static_cast<engine::FilterScope>(wordOf(in.at("marks"), kScopes));
   if (in.contains("max_change")) spec.max_change = in.at("max_change").get<double>();

@@ -17,6 +17,7 @@ void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
       spec.kind = each.kind;
       spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
       spec.nesting_mm = engine::usualNesting(each, grid);
+      if (!each.has_element) spec.element = engine::FilterSpec{}.element;
       if (!each.window.exists()) spec.window = engine::FilterSpec{}.window;
     }
   ImGui::EndCombo();
@@ -36,9 +37,20 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     spec.window =
         std::clamp(2 * static_cast<int>(std::lround(0.5 * (window_mm / grid.spacingXMm() - 1.0))) + 1, 1,
                    engine::FilterSpec::kMaxWindow);
+  if (engine::filterOf(spec.kind).has_element) {
+    fieldName("element");
+    if (ImGui::BeginCombo("##element",
+                          engine::kElementWords[static_cast<std::size_t>(spec.element)].data())) {
+      for (std::size_t i = 0; i < engine::kElementWords.size(); ++i)
+        if (const auto each = static_cast<engine::Element>(i);
+            ImGui::Selectable(engine::kElementWords[i].data(), each == spec.element))
+          spec.element = each;
+      ImGui::EndCombo();
+    }
+  }
   if (const engine::Filter& filter = engine::filterOf(spec.kind); filter.nesting.exists())
     (void)field(filter.nesting_word.data(), [&] {
-      const double least = engine::FilterSpec::kLeastNesting * std::max(grid.spacingXMm(), grid.spacingYMm());
+      const double least = filter.least_nesting * std::max(grid.spacingXMm(), grid.spacingYMm());
       return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
                         ofMillimetres(units.length, grid.lateral_unit.mm));
     });

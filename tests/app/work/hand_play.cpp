@@ -70,6 +70,9 @@ std::string HandPlay::filter(bool under_a_stroke) {
   // Given here, or left to the noise of the field then.
   spec.range_sigma = engine::hasRange(spec.kind) && random_() % 2 == 0 ? 0.02 : 0.0;
   spec.nesting_mm = engine::usualNesting(engine::filterOf(spec.kind), client_.field().grid());
+  spec.element = engine::filterOf(spec.kind).has_element
+                     ? static_cast<engine::Element>(random_() % engine::kElementWords.size())
+                     : engine::Element::kBall;
   spec.window = 3 + 2 * static_cast<int>(random_() % 3);
   spec.passes = 1 + static_cast<int>(random_() % 2);
   spec.scope = random_() % 4 == 0 ? engine::FilterScope::kOnlyMarks : engine::FilterScope::kKeepMarks;

@@ -23,7 +23,9 @@ TEST(FilterRevision, IsRaisedWhenTheBitsOfAnyFilterChange) {
                                                          {"tgv", 0x4b5f30f22bf2dd30},
                                                          {"planes", 0x431bb46cc050bf4a},
                                                          {"areal-gaussian", 0x1a70be18ea45fe5b},
-                                                         {"robust-gaussian", 0x31e02a91bbb60c14}};
+                                                         {"robust-gaussian", 0x31e02a91bbb60c14},
+                                                         {"opening", 0xf42c1e8dbc0f2391},
+                                                         {"closing", 0x29f8879b37723d88}};
   const Version scan = scanWithEverything(330, 290);
   for (const Filter& filter : filters()) {
     JobControl job;

@@ -131,6 +131,10 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   edge_preserving.window = 21;
   edge_preserving.range_sigma = 0.1 + 0.7;
   edge_preserving.nesting_mm = 1.0 / 7.0;
+  engine::FilterSpec rolling;
+  rolling.kind = engine::FilterKind::kClosing;
+  rolling.nesting_mm = 0.7;
+  rolling.element = engine::Element::kSquare;
   const haptic::LoopPlace there{1234567890123, true}, before{7, false};
   const std::vector<haptic::journal::Entry> all = {
       haptic::journal::Begin{3, anyScene(random)},
@@ -153,6 +157,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::StepMade{9, "Form out: plane", engine::StepKind::kForm, there, false, false, {}, true},
       haptic::journal::StepMade{10, "Heights", engine::StepKind::kForm, there, false, false, {}, false, true},
       haptic::journal::FilterBegun{2, edge_preserving},
+      haptic::journal::FilterBegun{3, rolling},
   };
   for (const haptic::journal::Entry& entry : all) {
     const std::string text = haptic::journalText(entry);
@@ -166,7 +171,10 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   ASSERT_TRUE(back);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.sigma, spec.sigma);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.max_change, spec.max_change);
-  const auto other = haptic::journalEntry(haptic::journalText(all.back()));
+  const auto last = haptic::journalEntry(haptic::journalText(all.back()));
+  ASSERT_TRUE(last);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*last).spec.element, rolling.element);
+  const auto other = haptic::journalEntry(haptic::journalText(all[all.size() - 2]));
   ASSERT_TRUE(other);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
