@@ -9,6 +9,7 @@
 #include "engine/filter/median.h"
 #include "engine/filter/opening.h"
 #include "engine/filter/planes.h"
+#include "engine/filter/spline.h"
 #include "engine/filter/tgv_device.h"
 #include "engine/filter/tgv_schedule.h"
 #include "engine/filter/window_pass.h"
@@ -160,6 +161,24 @@ constexpr std::array kFilters{
            .pass = closingPass,
            .reach = anywhere,
            .reach_on = openingReach,
+           .sampled = false},
+    Filter{.kind = FilterKind::kSpline,
+           .word = "spline",
+           .title = "Spline",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "cutoff",
+           .pass = splinePass,
+           .reach = anywhere,
+           .sampled = false},
+    Filter{.kind = FilterKind::kRobustSpline,
+           .word = "robust-spline",
+           .title = "Robust spline",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "cutoff",
+           .pass = robustSplinePass,
+           .reach = anywhere,
            .sampled = false},
 };
 

@@ -55,6 +55,12 @@ namespace fettle::engine {
 ///              axes. The middle of the body lies on a sample, not beyond a border nor in a hole, so that a surface tilted by
 ///              an angle a sinks by up to R (1 - cos a) within R sin a of them (of a disk by the rise over R within R).
 ///   kClosing   the same from above: pits and grooves that are narrower than the body are filled, and no sample sinks.
+///   kSpline    of all surfaces s the one of least sum of (z - s)^2 over the samples and s (Ay x Ax - 1) s, A = 1 + a^4 Q of each
+///              axis, Q the square of second differences, a = 1 / (2 sin(pi spacing / L)), L = nesting_mm: the linear spline
+///              filter of ISO 16610-22 along rows and then along columns. A wave of length l along an axis keeps 1 / (1 +
+///              (sin(pi spacing / l) / sin(pi spacing / L))^4) of its amplitude, half at L; one askew the product
+///              of those of both axes, 0.64 at L and 45 degrees. No end effects: planes come back.
+///   kRobustSpline  the same with Tukey's weights, as of kRobustGaussian, on the squares.
 /// Heights are taken with the version's sign, so filtering commutes with inverting; kOpening and kClosing take those of the scan, so that
 /// peaks are the same whichever way up it is.
 ///
@@ -84,6 +90,10 @@ namespace fettle::engine {
 ///              it to 1e-5 of the limit c, where no round's end is within rounding of its limit.
 ///   kOpening, kClosing  a disk or square: exact. A ball: in double; error <= 0.5 ulp of the result + 2^-50 of the largest
 ///              height and of the ball's depth at its rim; a sample that it touches comes back bit-identical.
+///   kSpline    in double: error <= 0.5 ulp of the result + 2^-49 max(L / spacing, 8) of the largest distance from the plane of the
+///              heights, 1e-9 at most, and with holes 1e-7 of their standard deviation about that plane. Memory: 12 bytes per sample, 44 with
+///              holes.
+///   kRobustSpline  rounds that begin from the one before: within 1e-5 of the limit c, as kRobustGaussian. 48 bytes per sample.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
@@ -98,7 +108,9 @@ enum class FilterKind {
   kArealGaussian,
   kRobustGaussian,
   kOpening,
-  kClosing
+  kClosing,
+  kSpline,
+  kRobustSpline
 };
 
 /// The bodies of kOpening and kClosing, called structuring elements.

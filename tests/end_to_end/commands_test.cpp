@@ -145,6 +145,36 @@ TEST_F(Commands, FilterByCutOffWritesWavinessAndRoughness) {
   refused({"box", "--residual", "-"}, "--residual");
 }
 
+TEST_F(Commands, FilterRollsABallADiskOrASquare) {
+  const auto filter = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"filter", scan(), file("o.tif"), "--filter"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const auto ball = fettleJson(filter({"opening", "--radius", "2500um", "--residual", file("peaks.tif")}));
+  EXPECT_EQ(ball["radius"], 2.5);
+  EXPECT_EQ(ball["element"], "ball");
+  // An opening raises no sample: what it takes away is not negative, by as much as it reports.
+  const auto peaks = fettleJson({"info", file("peaks.tif")});
+  EXPECT_GE(peaks["min"].get<double>(), 0.0);
+  EXPECT_NEAR(peaks["max"].get<double>(), ball["max_change"].get<double>(),
+              1e-6 * peaks["max"].get<double>());
+  EXPECT_EQ(fettleJson(filter({"opening", "--radius", "2.5", "--threads", "1"}))["hash"], ball["hash"]);
+  // A body that holds another one takes more away.
+  const double disk = fettleJson(filter({"opening", "--radius", "2.5", "--element", "disk"}))["rms_change"],
+               square =
+                   fettleJson(filter({"opening", "--radius", "2.5", "--element", "square"}))["rms_change"];
+  EXPECT_LT(ball["rms_change"].get<double>(), disk);
+  EXPECT_LT(disk, square);
+  EXPECT_TRUE(fettleJson(filter({"closing", "--radius", "2.5", "--estimate"})).contains("seconds"));
+  expectRefused(fettle(filter({"opening"})), "radius");
+  expectRefused(fettle(filter({"opening", "--cutoff", "2"})), "--cutoff");
+  expectRefused(fettle(filter({"opening", "--radius", "1nm"})), "one spacing");
+  expectRefused(fettle(filter({"spline", "--radius", "2"})), "--radius");
+  expectRefused(fettle(filter({"box", "--element", "disk"})), "element");
+  expectRefused(fettle(filter({"opening", "--radius", "2", "--element", "cube"})), "cube");
+}
+
 TEST_F(Commands, FilterTakesARangeSigmaWithAUnitOrFromTheNoise) {
   const auto range = [&](const std::string& given) {
     std::vector<std::string> arguments{"filter", scan(), file("b.tif"), "--filter", "bilateral"};

@@ -225,6 +225,14 @@ TEST(Measure, FiltersLimitTheScales) {
   // Of a smooth wave the robust filters leave more than the linear ones, whose half is not theirs.
   EXPECT_NEAR(sq({"--l-filter", "5", "--l-filter-kind", "robust-gaussian"}) / all, 1.0, 0.1);
   EXPECT_NEAR(sq({"--s-filter", "0.2", "--s-filter-kind", "robust-gaussian"}) / all, 1.0, 0.05);
+  // A wave of the cut-off along an axis keeps half in a spline as well; balls much larger than its arcs take all of it
+  // away, and smaller ones nothing.
+  EXPECT_NEAR(sq({"--s-filter", "1.2", "--s-filter-kind", "spline"}) / all, 0.5, 0.06);
+  EXPECT_NEAR(sq({"--l-filter", "1.2", "--l-filter-kind", "spline"}) / all, 0.5, 0.06);
+  EXPECT_LT(sq({"--s-filter", "1e5", "--s-filter-kind", "closing"}) / all, 0.05);
+  EXPECT_LT(sq({"--l-filter", "0.12", "--l-filter-kind", "opening"}) / all, 0.05);
+  // A radius is no wavelength: neither has to be the longer.
+  EXPECT_GT(sq({"--s-filter", "5", "--s-filter-kind", "closing", "--l-filter", "2"}), 0.0);
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--l-filter-kind", "robust-gaussian"}),
                 "--l-filter");
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "0.1"}), "--s-filter");

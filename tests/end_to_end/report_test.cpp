@@ -68,6 +68,16 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
   EXPECT_NEAR(report["rms_change"], differ["rms"], 1e-12);
   EXPECT_NEAR(report["sq_before"], fettleJson({"measure", scan})["sq"], 1e-12);
   EXPECT_NEAR(report["sq"], fettleJson({"measure", work})["sq"], 1e-12);
+  // The same scales as of measure, and said so.
+  const std::vector<std::string> scales{"--s-filter", "2", "--l-filter", "8", "--l-filter-kind", "spline"};
+  std::vector<std::string> limited{"report", work, folder.file("limited.html")}, measured{"measure", work};
+  limited.insert(limited.end(), scales.begin(), scales.end());
+  measured.insert(measured.end(), scales.begin(), scales.end());
+  const auto scaled = fettleJson(limited);
+  EXPECT_NEAR(scaled["sq"], fettleJson(measured)["sq"], 1e-12);
+  EXPECT_EQ(scaled["l_filter_kind"], "spline");
+  EXPECT_NE(bytesOf(folder.file("limited.html")).find("S-filter 2 mm, areal-gaussian; L-filter 8 mm, spline"),
+            std::string::npos);
   const std::string text = bytesOf(page);
   EXPECT_EQ(countIn(text, "src=\"data:image/png;base64,iVBORw0KGgo"), 3U);
   EXPECT_EQ(countIn(text, "src="), 3U);

@@ -55,8 +55,12 @@ class Hashes(unittest.TestCase):
         self.assertGreaterEqual(len(FILTERS), 7)
         field = fettle.read(self.scan)
         for name in FILTERS:
-            # A cut-off belongs to the question, and has no default.
-            numbers = {"cutoff": "8mm"} if name.endswith("-gaussian") else {}
+            # A cut-off or radius belongs to the question, and has no default.
+            numbers = {}
+            if name in ("areal-gaussian", "robust-gaussian", "spline", "robust-spline"):
+                numbers = {"cutoff": "8mm"}
+            elif name in ("opening", "closing"):
+                numbers = {"radius": "3mm"}
             options = [text for key, value in numbers.items() for text in (f"--{key}", value)]
             done = run("filter", self.scan, self.path("out.tif"), "--filter", name, *options)
             self.same(" ".join(["filter", name, *options]), done["hash"], field.filter(name, **numbers).hash)
@@ -76,6 +80,7 @@ class Hashes(unittest.TestCase):
             (["--filter", "median", "--max-change", "7um"], {"max_change": "7um"}),
             (["--filter", "bilateral", "--range-sigma", "0.0213"], {"range_sigma": 0.0213}),
             (["--filter", "tgv", "--threads", "1"], {"threads": 1}),
+            (["--filter", "closing", "--radius", "2", "--element", "disk"], {"radius": "2", "element": "disk"}),
         ]:
             done = run("filter", self.scan, self.path("out.tif"), *arguments)
             shown = " ".join(os.path.basename(word) for word in arguments[1:])

@@ -25,7 +25,9 @@ TEST(FilterRevision, IsRaisedWhenTheBitsOfAnyFilterChange) {
                                                          {"areal-gaussian", 0x1a70be18ea45fe5b},
                                                          {"robust-gaussian", 0x31e02a91bbb60c14},
                                                          {"opening", 0xf42c1e8dbc0f2391},
-                                                         {"closing", 0x29f8879b37723d88}};
+                                                         {"closing", 0x29f8879b37723d88},
+                                                         {"spline", 0x9b97aa90ccba80c2},
+                                                         {"robust-spline", 0x6f42de72a65b8e8a}};
   const Version scan = scanWithEverything(330, 290);
   for (const Filter& filter : filters()) {
     JobControl job;
