@@ -99,11 +99,10 @@ engine::Result<Report> measure(const BenchEstimateArguments& options, engine::Jo
           continue;
         engine::FilterSpec spec;
         spec.kind = filter.kind;
-        if (!filter.sampled) continue;
         if (filter.window.exists()) spec.window = 9;
         spec.nesting_mm = engine::usualNesting(filter, scan->scan.grid());
         // What is slow has one pass, as it is used.
-        spec.passes = filter.grid > 1 ? 1 : options.passes;
+        spec.passes = filter.grid > 1 || !filter.sampled ? 1 : options.passes;
         spec.threads = threads;
         const auto ready = engine::withMeasuredRange(spec, scan->scan, job);
         if (!ready) return tl::unexpected(ready.error());

@@ -18,6 +18,7 @@
 #include "engine/field/piece.h"
 #include "engine/field/tile.h"
 #include "engine/field/tile_store.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/work_sample.h"
 #include "engine/formats/formats.h"
 
@@ -233,6 +234,24 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
   return pieces;
 }
 
+// A filter none of whose blocks is worked out alone, as one on pieces: its time is about in proportion to the samples, also
+// where it goes over them round by round, as rounds depend on how the heights scatter more than on how many there are.
+std::optional<PlannedOnPieces> asPieces(const PlannedWork& work, const PlannedStep& step) {
+  const auto* const filter = std::get_if<PlannedFilter>(&step);
+  if (filter == nullptr || engine::filterOf(filter->spec.kind).sampled) return std::nullopt;
+  PlannedOnPieces pieces;
+  pieces.work = [&work, filter](const engine::SampleRect& rect,
+                                engine::JobControl& job) -> engine::Result<engine::Version> {
+    const engine::Version input = pieceAt(work.field, rect);
+    auto filtered = filter->compute.apply(input, pieceAt(work.original, rect), filter->spec, job);
+    if (!filtered) return tl::unexpected(std::move(filtered.error()));
+    return std::move(filtered->field);
+  };
+  pieces.fields = 2;
+  pieces.share = filter->share;
+  return pieces;
+}
+
 std::string bytesText(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
   if (value < 1e6) return fmt::format("{:.0f} kB", value * 1e-3);
@@ -263,7 +282,9 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
   bool long_enough = false;
   double tiles_taken = 0.0, beside = 0.0, kept = 0.0;
   int states = 0;
-  for (const PlannedStep& step : work.steps) {
+  for (const PlannedStep& planned : work.steps) {
+    const std::optional<PlannedOnPieces> in_pieces = asPieces(work, planned);
+    const PlannedStep step = in_pieces ? PlannedStep(*in_pieces) : planned;
     if (const auto* on_pieces = std::get_if<PlannedOnPieces>(&step)) {
       const auto pieces = workPieces(work, *on_pieces, always, job);
       if (!pieces) return tl::unexpected(pieces.error());
