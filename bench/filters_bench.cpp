@@ -20,6 +20,7 @@ namespace fettle::bench {
 namespace {
 
 constexpr std::int32_t kProbeSide = 512;
+constexpr double kSpacing = 0.05;    // [mm]
 constexpr double kNoiseWidth = 0.3;  // of the rectangle that the noise is spread over
 
 /// Wall time and processor time of this process [s].
@@ -65,7 +66,7 @@ engine::Result<engine::Version> ground(std::int32_t side, FilterGround kind,
                                        const std::shared_ptr<engine::FieldMemory>& memory) {
   engine::Grid grid;
   grid.width = grid.height = side;
-  grid.spacing_x = grid.spacing_y = 0.05;
+  grid.spacing_x = grid.spacing_y = kSpacing;
   auto builder = engine::FieldBuilder::create(grid, memory, "bench filters");
   if (!builder) return tl::unexpected(builder.error());
   const auto samples = static_cast<std::size_t>(side);
@@ -138,9 +139,11 @@ engine::FilterSpec specOf(const FiltersBenchRow& row) {
   const engine::Filter& filter = engine::filterOf(row.kind);
   // The weights of a nesting index reach as far as a window of this side.
   if (filter.nesting.exists())
-    spec.nesting_mm = std::max(0.5 * row.window, engine::FilterSpec::kLeastNesting);
+    spec.nesting_mm =
+        kSpacing * std::max(filter.has_element ? row.window / 2 : 0.5 * row.window, filter.least_nesting);
   else
     spec.window = row.window;
+  spec.element = row.element;
   spec.threads = row.threads;
   spec.range_sigma = kNoiseWidth / std::sqrt(12.0) * filter.noises;
   return spec;
@@ -205,7 +208,8 @@ engine::Status checked(const FiltersBenchOptions& options) {
   if (options.side < 64 || options.side > 32768 || options.repeats < 1 || options.repeats > 100 || !odd ||
       !within(options.windows, 3, engine::FilterSpec::kMaxWindow) ||
       !within(options.threads, 1, engine::FilterSpec::kMaxThreads) || options.kinds.empty() ||
-      options.grounds.empty() || !(options.limit_s > 0.0 && options.limit_s <= 1e6))
+      options.elements.empty() || options.grounds.empty() ||
+      !(options.limit_s > 0.0 && options.limit_s <= 1e6))
     return engine::inputError("an option of the benchmark is out of range", "bench filters",
                               "side 64 to 32768, windows odd and 3 to 1001, threads 1 to 1024, repeats 1 to "
                               "100, limit above 0");
@@ -276,19 +280,22 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
   for (const engine::FilterKind kind : options.kinds) {
     const engine::Filter& filter = engine::filterOf(kind);
     const std::vector<int> no_window{engine::FilterSpec{}.window};
+    const std::vector<engine::Element> no_element{engine::FilterSpec{}.element};
     for (const int window :
          filter.window.exists() || engine::separatesScales(filter) ? options.windows : no_window)
-      for (const FilterGround ground : options.grounds)
-        for (const int threads : options.threads) {
-          FiltersBenchRow row;
-          row.kind = kind;
-          row.window = window;
-          row.threads = threads;
-          row.ground = ground;
-          report.rows.push_back(row);
-          row.on_device = true;
-          if (options.device != nullptr && engine::runsOnDevices(filter)) report.rows.push_back(row);
-        }
+      for (const engine::Element element : filter.has_element ? options.elements : no_element)
+        for (const FilterGround ground : options.grounds)
+          for (const int threads : options.threads) {
+            FiltersBenchRow row;
+            row.kind = kind;
+            row.element = element;
+            row.window = window;
+            row.threads = threads;
+            row.ground = ground;
+            report.rows.push_back(row);
+            row.on_device = true;
+            if (options.device != nullptr && engine::runsOnDevices(filter)) report.rows.push_back(row);
+          }
   }
   job.begin("measuring", report.rows.size() * (static_cast<std::size_t>(options.repeats) + 1));
 
@@ -358,7 +365,7 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
     for (std::size_t one = 0; one < report.rows.size(); ++one) {
       const FiltersBenchRow& alone = report.rows[one];
       if (alone.threads == 1 && alone.kind == row.kind && alone.window == row.window &&
-          alone.ground == row.ground && alone.on_device == row.on_device)
+          alone.element == row.element && alone.ground == row.ground && alone.on_device == row.on_device)
         row.over_one = over(one);
     }
   }

@@ -24,6 +24,9 @@ struct FiltersBenchOptions {
   std::vector<int> windows = {3, 5, 11, 31, 101};  ///< [samples], odd, 3 .. FilterSpec::kMaxWindow
   std::vector<int> threads = {1, 2};               ///< each 1 .. FilterSpec::kMaxThreads
   std::vector<FilterGround> grounds = {FilterGround::kPlain, FilterGround::kHoles, FilterGround::kMarks};
+  /// Of the filters that have one: a row for each.
+  std::vector<engine::Element> elements = {engine::Element::kBall, engine::Element::kDisk,
+                                           engine::Element::kSquare};
   int repeats = 5;        ///< 1 .. 100
   double limit_s = 10.0;  ///< a row that would take longer gets a smaller field, > 0 .. 1e6
   /// Adds a row with this device to each row of a filter that can use it (Filter::on_device); null: none.
@@ -33,7 +36,8 @@ struct FiltersBenchOptions {
 /// One filter over one field: all of applyFilter, its report included. Rates in samples per second.
 struct FiltersBenchRow {
   engine::FilterKind kind = engine::FilterKind::kBox;
-  int window = 0;
+  engine::Element element = engine::Element::kBall;  ///< of a filter that has one
+  int window = 0;                                    ///< of a body: twice its radius
   int threads = 0;
   FilterGround ground = FilterGround::kPlain;
   bool on_device = false;

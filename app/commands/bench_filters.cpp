@@ -1,5 +1,6 @@
 #include "app/commands/bench.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,10 @@
 namespace fettle::app {
 
 namespace {
+
+std::string_view elementWord(engine::Element element) {
+  return engine::kElementWords[static_cast<std::size_t>(element)];
+}
 
 engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_device, engine::JobControl& job) {
   std::unique_ptr<engine::TgvDevice> device;
@@ -30,7 +35,9 @@ engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_devic
                 {"rows", Report::array()}};
   for (const bench::FiltersBenchRow& row : measured->rows) {
     const bench::FilterTarget target = bench::targetOf(row);
+    const bool rolls = engine::filterOf(row.kind).has_element;
     report["rows"].push_back({{"kind", engine::name(row.kind)},
+                              {"element", rolls ? Report(elementWord(row.element)) : Report()},
                               {"window", row.window},
                               {"ground", bench::groundName(row.ground)},
                               {"threads", row.threads},
@@ -67,17 +74,19 @@ void printBenchFilters(const Report& report) {
       "floats by as many threads, in the same run, and its target; x one: of the rate with one thread, and "
       "its target; *: met; CPU: per second of processor time\n\n",
       report["machine"].get<std::string>(), report["repeats"].get<int>());
-  fmt::print("{:<12}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}  hash\n", "",
+  fmt::print("{:<16}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}  hash\n", "",
              "window", "ground", "threads", "side", "Ms/s", "slowest", "fastest", "copy", "share target ",
              "x one target ", "CPU Ms/s", "CPU share");
   for (const Report& row : report["rows"]) {
     const auto number = [&row](const char* key) { return row[key].get<double>(); };
     const bool several = row["threads"].get<int>() > 1;
     fmt::print(
-        "{:<12}{:>7}{:>8}{:>9}{:>7}{:>10.2f}{:>10.2f}{:>10.2f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
-        row["kind"].get<std::string>(), row["window"].get<int>(), row["ground"].get<std::string>(),
-        row["threads"].get<int>(), row["side"].get<int>(), number("samples_per_second") * 1e-6,
-        number("slowest") * 1e-6, number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
+        "{:<16}{:>7}{:>8}{:>9}{:>7}{:>10.2f}{:>10.2f}{:>10.2f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
+        fmt::format("{}{}{}", row["kind"].get<std::string>(), row["element"].is_null() ? "" : " ",
+                    row["element"].is_null() ? "" : row["element"].get<std::string>()),
+        row["window"].get<int>(), row["ground"].get<std::string>(), row["threads"].get<int>(),
+        row["side"].get<int>(), number("samples_per_second") * 1e-6, number("slowest") * 1e-6,
+        number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
         valueAndTarget(number("share_of_copy"), number("share_target"), 4),
         valueAndTarget(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
         number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
@@ -112,6 +121,14 @@ void addBenchFilters(Command bench, Chosen& chosen) {
     options->grounds.clear();
     for (const std::string& word : typed) options->grounds.push_back(ground_named.at(word));
   };
+  std::vector<Word> elements;
+  for (const std::string_view word : engine::kElementWords) elements.emplace_back(std::string(word), "");
+  const auto take_elements = [options](const std::vector<std::string>& typed) {
+    options->elements.clear();
+    for (const std::string& word : typed)
+      options->elements.push_back(static_cast<engine::Element>(
+          std::ranges::find(engine::kElementWords, word) - engine::kElementWords.begin()));
+  };
   using Words = std::function<void(const std::vector<std::string>&)>;
   command.add({
       {.name = "--side",
@@ -124,6 +141,12 @@ void addBenchFilters(Command bench, Chosen& chosen) {
        .text = "Filters",
        .words = kinds,
        .otherwise = "those that do not keep edges",
+       .between = ','},
+      {.name = "--element",
+       .to = Words(take_elements),
+       .text = "Bodies of the filters that roll one",
+       .words = elements,
+       .otherwise = "all",
        .between = ','},
       {.name = "--window",
        .to = &options->windows,

@@ -220,6 +220,7 @@ std::vector<ReportSchema> measuring() {
           {"side", "integer", "samples"},
           repeats(),
           rows({{"kind", "string", "the filter"},
+                {"element", "string?", "of a filter that rolls a body"},
                 {"window", "integer", "samples"},
                 {"ground", "string", ""},
                 {"threads", "integer", ""},
