@@ -35,6 +35,8 @@ namespace fettle::engine {
 namespace {
 
 constexpr int kMostSteps = 1000;
+// The next round begins where one ends.
+constexpr int kMostStepsOfARound = 40;
 // Errors of a step are those that so many later ones take away, all but a little.
 constexpr std::size_t kLater = 4;
 
@@ -90,7 +92,8 @@ class SplineSurface {
         found_[i] = surface != nullptr ? lack_[i] * plane_.z[i] : 0.0;
       }
     });
-    return findLacking(surface != nullptr ? limit : plane_level_.deviation, job);
+    return surface != nullptr ? findLacking(limit, kMostStepsOfARound, job)
+                              : findLacking(plane_level_.deviation, kMostSteps, job);
   }
 
   // The surface that was solved for, rounded once.
@@ -187,7 +190,7 @@ class SplineSurface {
     return smoothPlane(x_, y_, plane_, level_, job);
   }
 
-  bool findLacking(double scale, const JobControl& job) {
+  bool findLacking(double scale, int most_steps, const JobControl& job) {
     // The distance of x from what the filter makes of it.
     if (!applied(found_, true, job)) return false;
     double squares = sums<1>([&](std::int32_t r) {
@@ -201,7 +204,7 @@ class SplineSurface {
     const double enough = std::pow(kSplineTolerance * scale, 2) * static_cast<double>(z_.size()),
                  none = 1e-32 * squares;
     std::vector<double> gains;  // of the steps, in squared errors
-    for (int step = 0; step < kMostSteps && squares > none; ++step) {
+    for (int step = 0; step < most_steps && squares > none; ++step) {
       if (!applied(direction_, false, job)) return false;
       const double along = sums<1>([&](std::int32_t r) {
         std::array<double, 1> sum{};
