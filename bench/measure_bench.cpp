@@ -14,9 +14,9 @@
 #include "engine/measure/align.h"
 #include "engine/measure/areal.h"
 #include "engine/measure/form.h"
-#include "engine/measure/gaussian_filter.h"
 #include "engine/measure/line_offsets.h"
 #include "engine/measure/lowered.h"
+#include "engine/measure/scale_filter.h"
 #include "engine/measure/section.h"
 #include "engine/transform/rearrange.h"
 #include "engine/transform/resample.h"
@@ -102,7 +102,8 @@ Result<Bits> parameters(const Version& field, const engine::ArealOptions& option
 Result<Bits> aligned(const Version& field, const Version& moved, JobControl& job) {
   const auto found = engine::alignFields(field, moved, {}, job);
   if (!found) return tl::unexpected(found.error());
-  return bitsOf({found->motion.shift.x, found->motion.shift.y, found->motion.shift.z, found->angles.rotation_z});
+  return bitsOf(
+      {found->motion.shift.x, found->motion.shift.y, found->motion.shift.z, found->angles.rotation_z});
 }
 
 struct Step {
@@ -133,7 +134,10 @@ std::vector<Step> steps(const Version& moved) {
       {"section, 100 lanes wide", section(99 * kSpacingMm)},
       {"S-filter, 25 samples",
        [](const Version& f, JobControl& job) {
-         return hashOf(engine::gaussianFiltered(f, kCutOffMm, engine::Waves::kLong, job));
+         engine::FilterSpec gaussian;
+         gaussian.kind = engine::FilterKind::kArealGaussian;
+         gaussian.nesting_mm = kCutOffMm;
+         return hashOf(engine::scaleFiltered(f, gaussian, engine::Waves::kLong, job));
        }},
       {"height, hybrid, functional", measured(false)},
       {"all parameters", measured(true)},

@@ -13,9 +13,9 @@
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
-#include "app/commands/estimate_text.h"
+#include "app/work/estimate_text.h"
 #include "app/commands/output_checks.h"
-#include "app/commands/read_units.h"
+#include "app/work/read_units.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"

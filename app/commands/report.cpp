@@ -310,8 +310,8 @@ class ScanReport {
     const std::string scale = scaleText(report_, "; ");
     page_.parts.emplace_back(
         textureTable(lines, heads({}),
-                     fmt::format("ISO 25178-2 about the form {}{}, over {} samples{}{}.{}", options_.form.form,
-                                 options_.form.robust ? " (robust)" : "",
+                     fmt::format("ISO 25178-2 about the form {}{}, over {} samples{}{}.{}",
+                                 options_.form.form, options_.form.robust ? " (robust)" : "",
                                  options_.form.region == "all" ? "all" : "the " + options_.form.region,
                                  scale.empty() ? "" : "; ", scale, tilt)));
     if (trials_ > 0) page_.parts.emplace_back(noiseTable(lines, heads({"Parameter"}), trials_));

@@ -48,11 +48,13 @@ void addScaleOptions(Command command, ScaleArguments& arguments) {
                "that rolls "
                "a ball, its radius",
        .kind = ValueKind::kLength,
+       .unit = "mm",
        .shown = "MM"},
       {.name = "--l-filter",
        .to = &arguments.l_filter,
        .text = "The same after the form: removes waves longer than this, of which half stays",
        .kind = ValueKind::kLength,
+       .unit = "mm",
        .shown = "MM"},
       {.name = "--s-filter-kind",
        .to = &arguments.s_kind,

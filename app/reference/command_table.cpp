@@ -171,7 +171,8 @@ std::string factsOf(const Parameter& p) {
   std::vector<std::string> facts;
   if (!p.words.empty()) facts.push_back(fmt::format("{}", fmt::join(wordsOf(p), ", ")));
   if (const std::string range = rangeText(p); !range.empty()) facts.push_back(range);
-  if (p.kind == ValueKind::kLength) facts.emplace_back("in the scan's unit, or as 20um");
+  if (p.kind == ValueKind::kLength)
+    facts.emplace_back(p.unit.empty() ? "in the scan's unit, or as 20um" : "or as 20um");
   if (p.several() && p.one_word && p.between == '\0') facts.emplace_back("may be repeated");
   if (!p.otherwise.empty())
     facts.push_back("without it: " + p.otherwise);

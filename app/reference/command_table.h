@@ -82,7 +82,7 @@ struct Parameter {
   std::string text = {};  ///< what it does; no period at the end
   ValueKind kind = ValueKind::kByTarget;
   std::optional<Range> range = {};
-  std::string unit = {};         ///< of a number, in the plural: "samples"
+  std::string unit = {};         ///< of a number, in the plural: "samples"; of a length not the scan's
   std::vector<Word> words = {};  ///< the only ones that are taken
   /// Words that completion offers among others that are taken; `problem` or the command refuses a wrong one.
   std::vector<std::string> proposed = {};

@@ -408,7 +408,7 @@ def facts_of(row):
     elif unit:
         facts.append(f"in{unit}")
     if row["kind"] == "length":
-        facts.append('in the scan\'s unit, or as "20um"')
+        facts.append('or as "20um"' if unit else 'in the scan\'s unit, or as "20um"')
     if row["kind"] == "marks":
         facts.append("or a bool array, a Field, True for the field's own")
     if row["kind"] == "lines":

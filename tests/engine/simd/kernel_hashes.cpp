@@ -203,10 +203,14 @@ void touches() {
           if (kind == &finds.edge_y || kind == &finds.inside) hash.add(&kind->v[k], 1);
         }
     }
-    if (count > 0) {
-      const double rises = kernels.rises(window, ball, cells[0]);
-      hash.add(&rises, 1);
-    }
+    const haptic::LaneValley valley{noise(), noise(), noise(), noise(), noise(), noise(), 1.0, 0.6};
+    double v[haptic::kSphereContactLanes], slopes[2][haptic::kSphereContactLanes];
+    for (double& at : v) at = 0.5 + 0.5 * noise();
+    kernels.steepSlopes(valley, v, slopes[0], slopes[1]);
+    const double rises = kernels.rises(valley);
+    hash.add(&rises, 1);
+    hash.add(slopes[0], haptic::kSphereContactLanes);
+    hash.add(slopes[1], haptic::kSphereContactLanes);
   }
   hash.print("touches");
 }
