@@ -54,7 +54,8 @@ void addJournal(Command root, Chosen& chosen) {
   command.notes(
       "Each line has the number of the entry, when it was stored (UTC) and the state that the field had "
       "then, and the "
-      "action as the page File formats describes it; data_bytes is the size of larger data, such as the ticks of a "
+      "action as the page File formats describes it; data_bytes is the size of larger data, such as the "
+      "ticks of a "
       "stroke.");
 }
 

@@ -157,7 +157,8 @@ TEST(Recipes, ATransformIsRepeatedFromASessionThatBeginsWithIt) {
 // A crop cuts lines into several, which a session keeps.
 TEST(Recipes, ACroppedSessionWithLinesCanBeRead) {
   const TempFolder folder;
-  const std::string scan = folder.file("s.tif"), recipe = folder.file("r.toml"), out = folder.file("o.fettle");
+  const std::string scan = folder.file("s.tif"), recipe = folder.file("r.toml"),
+                    out = folder.file("o.fettle");
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"locate_edges\"\n"
                            "[[step]]\ndo = \"transform\"\ncrop = [5, 5, 45, 40]\n";
   ASSERT_EQ(fettle({"synth", scan, "--size", "256x200", "--seed", "5"}).status, 0);
