@@ -57,6 +57,8 @@ std::string filterName(const engine::FilterSpec& spec) {
 void FilterPreview::compute(LoopClient& client, Keep keep, std::vector<engine::TileRange> seen_first) {
   keep_ = keep;
   apply_when_done_ = false;
+  // After a jump over a step that changes the form, field and original are still those under the form before.
+  client.awaitRestored();
   so_far_ = std::make_shared<SoFar>();
   so_far_->spec = spec;
   seen_so_far_ = {};
@@ -80,6 +82,7 @@ void FilterPreview::compute(LoopClient& client, Keep keep, std::vector<engine::T
 
 void FilterPreview::apply(LoopClient& client) {
   if (applying()) return;
+  client.awaitRestored();
   if (client.newest().formOver() != form_) {
     variants_.clear();
     computing_.cancel();

@@ -144,13 +144,22 @@ void LoopClient::poll() {
   steps_.journal().flushWhenDue();
 }
 
-void LoopClient::catchUp() {
+template <class Open>
+void LoopClient::pollWhile(const Open& open) {
   poll();
   const auto latest = std::chrono::steady_clock::now() + kLongestAnswer;
-  while (offer_open_ && !finished() && std::chrono::steady_clock::now() < latest) {
+  while (open() && !finished() && std::chrono::steady_clock::now() < latest) {
     std::this_thread::sleep_for(kAnswerInterval);
     poll();
   }
+}
+
+void LoopClient::catchUp() {
+  pollWhile([this] { return offer_open_; });
+}
+
+void LoopClient::awaitRestored() {
+  pollWhile([this] { return restores_open_ > 0; });
 }
 
 void LoopClient::takeTicks() {

@@ -72,6 +72,8 @@ class LoopClient final {
   [[nodiscard]] engine::Version newest() const {
     return restores_open_ > 0 ? history().current() : upright(field_);
   }
+  /// Waits, some ticks at most, until field() is newest(): what is worked out from it has its form and original.
+  void awaitRestored();
   [[nodiscard]] const engine::History& history() const noexcept { return steps_.history(); }
   /// The original scan under the form over field().
   [[nodiscard]] const engine::Version& original() const noexcept { return originals_.at(field_); }
@@ -167,6 +169,9 @@ class LoopClient final {
   void sendQuestion();
   // Before the history moves: events, and the answer to a filter's result that was sent.
   void catchUp();
+  // Polls while something is not answered, as long as a loop that runs needs to answer.
+  template <class Open>
+  void pollWhile(const Open& open);
   [[nodiscard]] bool strokeRuns() const noexcept;
   void keepStroke();
   // The paths of marking tools until an event become strokes.
