@@ -164,8 +164,9 @@ std::string HandPlay::form() {
   std::string what = "form put back";
   const auto choice = random_() % 4;
   if (client_.newest().formOver() == nullptr || choice == 0) {
-    constexpr engine::FormKind kKinds[] = {engine::FormKind::kPlane, engine::FormKind::kSphere,
-                                           engine::FormKind::kPolynomial3};
+    constexpr engine::FormKind kKinds[] = {engine::FormKind::kPlane,       engine::FormKind::kPolynomial2,
+                                           engine::FormKind::kPolynomial3, engine::FormKind::kSphere,
+                                           engine::FormKind::kPolynomial5, engine::FormKind::kMean};
     form_.options.kind = kKinds[random_() % std::size(kKinds)];
     form_.options.robust = random_() % 4 == 0;
     form_.options.region = random_() % 4 == 0 ? engine::Region::kUnmarked : engine::Region::kAll;
