@@ -49,7 +49,7 @@ struct MosaicRun {
 
 engine::Status checkMosaic(const MosaicRun& options, engine::JobControl& job) {
   if (options.files.size() < 3)
-    return engine::inputError("a mosaic needs two scans and a file to write", "IN", "give A B OUT");
+    return engine::inputError("a mosaic needs two scans and a file to write", "IN", "give IN IN OUT");
   if (options.overlap && options.layout.empty())
     return engine::inputError("places that files state have an overlap of their own", "--overlap",
                               "give --layout too, or leave it out");
@@ -229,7 +229,7 @@ void addMosaic(Command root, Chosen& chosen) {
         .to = &options->files,
         .text = "The scans, the first of which stays where it is, and the file to write, format by extension",
         .kind = ValueKind::kInput,
-        .shown = "A B... OUT",
+        .shown = "IN... OUT",
         .required = true},
        {.name = "--layout",
         .to = &options->layout,

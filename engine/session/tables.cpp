@@ -382,8 +382,6 @@ Result<std::vector<Value>> SessionTables::readOfStates(const char* sql, const ch
 }
 
 Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
-  // Lines that could not be read back, two of one number, would cost the whole session.
-  if (!unpackLines(packed)) return failure("edge lines of this step cannot be kept", database_->shownPath());
   if (Status status = makeTablesOf(kLinesFormat); !status) return status;
   const std::string data = packBytes(packed);
   return run("INSERT INTO lines VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});

@@ -12,6 +12,7 @@
 #include "engine/field/nominal_form.h"
 #include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
+#include "engine/session/tables.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
 
@@ -88,8 +89,9 @@ TEST(NoSession, ANewerFormatSaysToUpdate) {
   const std::string path = folder.file("a.fettle");
   JobControl job;
   ASSERT_TRUE(saveSession(somePlay().session, path, job));
-  runSql(path, "PRAGMA user_version=4");
-  expectRefused(path, "written by a newer Fettle (format 4, supported up to 3)");
+  runSql(path, fmt::format("PRAGMA user_version={}", kSessionFormat + 1));
+  expectRefused(path, fmt::format("written by a newer Fettle (format {}, supported up to {})", kSessionFormat + 1,
+                                  kSessionFormat));
 }
 
 TEST(Damage, LinesThatWereChangedAreNoticed) {
