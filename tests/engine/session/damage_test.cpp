@@ -90,8 +90,8 @@ TEST(NoSession, ANewerFormatSaysToUpdate) {
   JobControl job;
   ASSERT_TRUE(saveSession(somePlay().session, path, job));
   runSql(path, fmt::format("PRAGMA user_version={}", kSessionFormat + 1));
-  expectRefused(path, fmt::format("written by a newer Fettle (format {}, supported up to {})", kSessionFormat + 1,
-                                  kSessionFormat));
+  expectRefused(path, fmt::format("written by a newer Fettle (format {}, supported up to {})",
+                                  kSessionFormat + 1, kSessionFormat));
 }
 
 TEST(Damage, LinesThatWereChangedAreNoticed) {
