@@ -28,10 +28,12 @@ int reportUnwritten(const char* remedy) {
   return report({ErrorKind::kFailed, "the report could not be written", "standard output", remedy});
 }
 
-// A report that did not reach standard output is a failure, regardless of other results.
+// A report that did not reach standard output is a failure, regardless of other results; not that a reader, as head, had
+// enough of it.
 int finish(int status) {
   const bool flushed = std::fflush(stdout) == 0;
   const int error = errno;
+  if (!flushed && error == EPIPE) return status;
   if (!flushed && error == ENOSPC) return reportUnwritten("the disk is full: free space on it");
   if (!flushed || std::ferror(stdout) != 0) return reportUnwritten("");
   return status;
@@ -46,17 +48,23 @@ int runChosen(const Chosen& chosen) {
     return chosen.run(job);
   }();
   if (!result) return report(result.error());
-  // Printing throws when standard output is full or closed; the work is done then, as its files show.
-  if (chosen.json) {
-    addKeptWarnings(*result);
-    Report object{{"schema", chosen.schema}};
-    object.update(*result);
-    // A path may contain bytes that are not UTF-8: they are replaced in the report, never in the file system.
-    fmt::print("{}\n", object.dump(2, ' ', false, Report::error_handler_t::replace));
-  } else if (!chosen.quiet || chosen.printing == Printing::kResult) {
-    chosen.print(*result);
+  const int status = chosen.status ? chosen.status(*result) : 0;
+  try {
+    // Printing throws when standard output is full or closed; the work is done then, as its files show.
+    if (chosen.json) {
+      addKeptWarnings(*result);
+      Report object{{"schema", chosen.schema}};
+      object.update(*result);
+      // A path may contain bytes that are not UTF-8: they are replaced in the report, never in the file system.
+      fmt::print("{}\n", object.dump(2, ' ', false, Report::error_handler_t::replace));
+    } else if (!chosen.quiet || chosen.printing == Printing::kResult) {
+      chosen.print(*result);
+    }
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::broken_pipe) return status;
+    throw;
   }
-  return finish(chosen.status ? chosen.status(*result) : 0);
+  return finish(status);
 }
 
 // "help filter" is "filter --help", and "help" is "--help"; also with --json and --quiet, which do not change
@@ -102,7 +110,7 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   if (!text)
     return report(usageError(text.error(), fmt::format("see fettle {}--help", text.error().command)));
   if (!text->empty()) {
-    std::fputs(text->c_str(), stdout);
+    if (std::fputs(text->c_str(), stdout) < 0 && errno == EPIPE) return 0;
     return finish(0);
   }
   voice.json = chosen.json;

@@ -224,5 +224,21 @@ TEST(BadInput, AFullDiskIsAFailureThatSaysSoAndLeavesNothing) {
   EXPECT_NE(report.err.find("the disk is full"), std::string::npos) << report.err;
 }
 
+TEST(BadInput, AReaderThatHadEnoughOfTheReportIsNone) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "30x30"}).status, 0);
+  const std::string pipe = folder.file("pipe");
+  // The reader is gone before the first byte.
+  for (const std::string& command : {"info " + folder.file("s.tif"), "info --json " + folder.file("s.tif"),
+                                     std::string("filter --help"), std::string("--version")}) {
+    const Outcome run =
+        runProcess({"sh", "-c",
+                    "rm -f " + pipe + " && mkfifo " + pipe + " && { (: <" + pipe + ") & exec 3>" + pipe +
+                        "; wait; " + std::string(FETTLE_PROGRAM) + " " + command + " >&3; }"});
+    EXPECT_EQ(run.status, 0) << command;
+    EXPECT_EQ(run.err, "") << command;
+  }
+}
+
 }  // namespace
 }  // namespace fettle::tests
