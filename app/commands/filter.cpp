@@ -269,15 +269,15 @@ std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
   return flat.empty() || edge.empty() ? flat + edge : flat + " and " + edge;
 }
 
-// The reason for the choice, from the figures.
 // Whatever time it takes; null: none is.
-const engine::FilterCandidate* fastestWithin(const engine::FilterSuggestion& found, double tolerance) {
-  const engine::FilterCandidate* fastest = nullptr;
+const engine::FilterCandidate* cheapestWithin(const engine::FilterSuggestion& found, double tolerance) {
+  const engine::FilterCandidate* cheapest = nullptr;
   for (const engine::FilterCandidate& c : found.candidates)
-    if (c.error() <= tolerance && (fastest == nullptr || c.seconds < fastest->seconds)) fastest = &c;
-  return fastest;
+    if (c.error() <= tolerance && (cheapest == nullptr || c.betterThan(*cheapest))) cheapest = &c;
+  return cheapest;
 }
 
+// The reason for the choice, from the figures.
 std::string whyOf(const engine::FilterSuggestion& found, const engine::SuggestionRequest& asked,
                   const std::string& unit) {
   const engine::FilterCandidate& pick = found.picked();
@@ -296,14 +296,15 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
                              asked.tolerance, unit);
   if (found.met()) {
     why += fmt::format(
-        "{} leaves {}, in about {:.2g} s; of all tested filters that stay within {:.3g} {}, none is faster.",
+        "{} leaves {}, in about {:.2g} s; of all tested filters that stay within {:.3g} {}, none needs less "
+        "computing.",
         engine::methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
   } else {
     why +=
         fmt::format("No tested filter stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
                     asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
                     engine::methodOf(pick), leftBy(pick, unit), pick.seconds);
-    const engine::FilterCandidate* slow = fastestWithin(found, asked.tolerance);
+    const engine::FilterCandidate* slow = cheapestWithin(found, asked.tolerance);
     if (slow != nullptr)
       why += fmt::format(" {} does, in about {:.2g} s: give a larger --budget.", engine::methodOf(*slow),
                          slow->seconds);

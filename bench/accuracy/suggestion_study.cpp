@@ -104,6 +104,7 @@ engine::Status addScan(const PartSubject& subject, std::int32_t side, int seed,
   if (!scan) return tl::unexpected(scan.error());
   engine::SuggestionRequest request;
   request.tolerance = kTolerance_mm * subject.noise;
+  request.only_named = methods.size() == 1 && methods.front() == kNamedAlone;
   engine::JobControl quiet;
   const auto found = engine::suggestFilter(scan->scan, request, quiet);
   if (!found) return tl::unexpected(found.error());

@@ -46,15 +46,18 @@ std::int32_t anywhere(const FilterSpec&) {
 }
 
 // Means and medians smooth the edges together with the noise unless these are marked.
-constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
-constexpr FilterTrial kGaussianTrials[] = {{3}, {5}, {9}};
-constexpr FilterTrial kMedianTrials[] = {{3}, {5}, {7}, {5, 1, 0, true}};
-constexpr FilterTrial kBilateralTrials[] = {{3, 1, 4}, {5, 1, 4}, {7, 1, 4}, {9, 1, 4}, {5, 2, 3}, {9, 1, 6}};
-constexpr FilterTrial kTotalVariationTrials[] = {{7, 1, 1},  {7, 1, 1.5},  {17, 1, 1}, {17, 1, 1.5},
-                                                 {31, 1, 1}, {31, 1, 1.5}, {51, 1, 2}, {17, 1, 1.5, true}};
+constexpr FilterTrial kBoxTrials[] = {
+    {3, 1.4}, {5, 1.4}, {9, 1.4}, {3, 1.4, 2, 0, true}, {5, 1.4, 2, 0, true}, {9, 1.4, 2, 0, true}};
+constexpr FilterTrial kGaussianTrials[] = {{3, 1.5}, {5, 1.6}, {9, 2.0}};
+constexpr FilterTrial kMedianTrials[] = {{3, 1.7}, {5, 4.8}, {7, 7.7}, {5, 4.8, 1, 0, true}};
+constexpr FilterTrial kBilateralTrials[] = {{3, 4.4, 1, 4},  {5, 8.1, 1, 4}, {7, 13.4, 1, 4},
+                                            {9, 20.5, 1, 4}, {5, 8.1, 2, 3}, {9, 20.5, 1, 6}};
+constexpr FilterTrial kTotalVariationTrials[] = {
+    {7, 6.3, 1, 1},   {7, 6.3, 1, 1.5},   {17, 10.6, 1, 1}, {17, 10.6, 1, 1.5},
+    {31, 19.8, 1, 1}, {31, 19.8, 1, 1.5}, {51, 31.7, 1, 2}, {17, 10.6, 1, 1.5, true}};
 
-constexpr FilterTrial kPlaneTrials[] = {{FilterSpec{}.window, 1, 1}, {FilterSpec{}.window, 1, 1.3}};
-constexpr FilterTrial kTgvTrials[] = {{FilterSpec{}.window, 1, 1}, {FilterSpec{}.window, 1, 1.3}};
+constexpr FilterTrial kPlaneTrials[] = {{FilterSpec{}.window, 30, 1, 1}, {FilterSpec{}.window, 30, 1, 1.3}};
+constexpr FilterTrial kTgvTrials[] = {{FilterSpec{}.window, 930, 1, 1}, {FilterSpec{}.window, 930, 1, 1.3}};
 
 constexpr std::array kFilters{
     Filter{.kind = FilterKind::kBox,

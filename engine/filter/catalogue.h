@@ -29,6 +29,9 @@ struct FilterParameter {
 /// A setting of a filter that suggestFilter tries.
 struct FilterTrial {
   int window;
+  /// Processor time of one pass [ns per sample, one thread with AVX-512], as measured once: which of two is faster is not
+  /// left to the clock of a machine that does other work besides.
+  double cost;
   int passes = 1;
   double noises = 0.0;  ///< range sigma in standard deviations of the noise, for a filter that has one
   bool around_edges = false;

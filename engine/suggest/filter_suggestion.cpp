@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,9 @@ namespace fettle::engine {
 
 namespace {
 
+constexpr double kClearlyLess = 0.9;  // an error than another, as far as expectations are certain
+constexpr double kEdgeCost = 280.0;   // of finding edges and marking them, as FilterTrial::cost
+
 std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
   std::vector<FilterCandidate> all(1);
   all[0].spec.window = 1;
@@ -35,10 +39,19 @@ std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
       // Three digits: the value may be typed.
       if (hasRange(filter.kind)) c.spec.range_sigma = std::stod(fmt::format("{:.3g}", trial.noises * sigma));
       c.around_edges = trial.around_edges;
+      c.cost = trial.passes * trial.cost + (trial.around_edges ? kEdgeCost : 0.0);
       if (trial.around_edges) c.thickness = reachOf(c.spec) + 1.0;
       all.push_back(c);
     }
   return all;
+}
+
+// Indices, the cheapest first, of equal cost in their order.
+std::vector<std::size_t> byCost(const std::vector<FilterCandidate>& candidates) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return candidates[i].cost; });
+  return order;
 }
 
 // Runs a candidate on the sample: its errors and its time.
@@ -81,6 +94,10 @@ double FilterCandidate::error() const noexcept {
   return std::fmax(error_flat, error_edge);  // NaN is ignored if the other is a number
 }
 
+bool FilterCandidate::betterThan(const FilterCandidate& other) const noexcept {
+  return cost != other.cost ? cost < other.cost : error() < kClearlyLess * other.error();
+}
+
 std::string methodOf(const FilterCandidate& candidate) {
   if (candidate.spec.window == 1) return "the unchanged scan";
   const Filter& filter = filterOf(candidate.spec.kind);
@@ -116,21 +133,24 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   job.advance(2);
   const double scale =
       static_cast<double>(field.grid().samples()) / static_cast<double>(pieces.field.grid().samples());
-  const double none = std::numeric_limits<double>::infinity();
-  double best_time = none, best_error = none;
-  bool met = false;
-  for (std::size_t i = 0; i < found.candidates.size(); ++i) {
+  const FilterCandidate* best = nullptr;
+  for (const std::size_t i : byCost(found.candidates)) {
     if (job.cancelled()) return cancelled();
     FilterCandidate& c = found.candidates[i];
+    if (request.only_named && best != nullptr && best->within && c.cost > best->cost) {
+      c.error_flat = c.error_edge = std::numeric_limits<double>::quiet_NaN();
+      job.advance();
+      continue;
+    }
     if (auto ok = tryOn(*sample, judge, c, job); !ok) return tl::unexpected(ok.error());
     job.advance();
     c.seconds *= scale;
     const bool affordable = !request.budget_s || c.seconds <= *request.budget_s;
     c.within = affordable && c.error() <= request.tolerance;
-    if (c.within ? !met || c.seconds < best_time : !met && affordable && c.error() < best_error) {
-      met = c.within;
-      best_time = c.seconds;
-      best_error = c.error();
+    if (!affordable || std::isnan(c.error())) continue;
+    if (best == nullptr || (c.within && !best->within) ||
+        (c.within == best->within && (c.within ? c.betterThan(*best) : c.error() < best->error()))) {
+      best = &c;
       found.pick = i;
     }
   }

@@ -16,7 +16,7 @@ namespace fettle::engine {
 // it and timed.
 //
 //   scan --pieces--> mosaic --> sample --each candidate--> error on flats, near edges, time
-//                                                        \--> the fastest within the tolerance
+//                                                        \--> the cheapest within the tolerance
 
 struct SuggestionRequest {
   /// Largest root mean square error against the true surface [height_unit, > 0], on flats (farther than 12
@@ -24,6 +24,9 @@ struct SuggestionRequest {
   double tolerance = 0.0;
   std::optional<double> budget_s;  ///< that the whole scan may take [s, > 0]; none = any
   int threads = 0;                 ///< as FilterSpec::threads
+  /// Leaves candidates untried that cost more than one that is within tolerance and budget: their errors are NaN. A third of
+  /// the time.
+  bool only_named = false;
 };
 
 /// Samples of a scan from which on a suggestion takes no longer.
@@ -41,10 +44,16 @@ struct FilterCandidate {
   double error_flat = 0.0;  ///< root mean square [height_unit]; NaN: no flats there
   double error_edge = 0.0;  ///< likewise; NaN: no edges there
   double seconds = 0.0;     ///< for the whole scan, finding edges included, from this machine's measured rate
+  double cost = 0.0;        ///< known beforehand (FilterTrial::cost), finding edges included [ns per sample]
   bool within = false;      ///< both errors within the tolerance and the time within the budget
 
   /// The larger of the two errors.
   [[nodiscard]] double error() const noexcept;
+  /// Whether it is named instead of `other`, which is good enough as well and stands before it in the table: it costs less,
+  /// or as much and is expected to leave less by more than a tenth, which is how certain expectations are. Else the one
+  /// before stays, of two ranges of a filter the smaller, which changes the scan less. By no clock, so that the same scan
+  /// gives the same answer on a busy machine.
+  [[nodiscard]] bool betterThan(const FilterCandidate& other) const noexcept;
 };
 
 /// The candidate in words, another for each that is tried: "tv 31, range 1.5 noises". The range that the filter takes by
@@ -57,7 +66,7 @@ struct FilterSuggestion {
   double outlier_share = 0.0;               ///< of them
   double edge_share = 0.0;                  ///< of those judged, near edges
   std::vector<FilterCandidate> candidates;  ///< the unfiltered scan first
-  /// The fastest within tolerance and budget; without any, the one of least error() within the budget.
+  /// The cheapest (betterThan) within tolerance and budget; without any, the one of least error() within the budget.
   std::size_t pick = 0;
   [[nodiscard]] const FilterCandidate& picked() const noexcept { return candidates[pick]; }
   [[nodiscard]] bool met() const noexcept { return picked().within; }
@@ -67,8 +76,8 @@ struct FilterSuggestion {
 /// for nine of ten of all figures (docs/decisions/suggested-filters.md has them by part), and not where the smoothing
 /// that makes the truth loses what the scan has: near steps of the noise's own size generalised variation leaves 1.3
 /// times what is expected. Marks of the field are kept by every candidate; edge lines of the field are not used. Takes
-/// some 11 s of processor time for any size of scan from 1248 x 1248 samples on, on all cores. Errors are the same each
-/// time; times are measured, so that two filters of similar speed may change places from run to run.
+/// some 11 s of processor time for any size of scan from 1248 x 1248 samples on, on all cores. Errors, and without a budget the
+/// one that is named, are the same each time; times are measured.
 ///
 /// Progress: one stage; a cancel takes effect after the candidate at work, two seconds at most on two cores. Errors:
 /// tolerance or budget not positive and finite, no noise found (kInput); cancelled; memory (kFailed). Any thread, on all
