@@ -59,6 +59,8 @@ class BlockFilter {
   /// Whether an output is the median of its window's samples, of an even number the mean of the middle two: who has
   /// them in order need not run it.
   [[nodiscard]] virtual bool isMedian() const noexcept { return false; }
+  /// Whether an output is the exact sum of its window's samples, rounded to double, over their number, rounded to float.
+  [[nodiscard]] virtual bool isMean() const noexcept { return false; }
 };
 
 }  // namespace fettle::engine

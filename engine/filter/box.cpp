@@ -78,6 +78,8 @@ class BoxFilter final : public BlockFilter {
     return true;
   }
 
+  [[nodiscard]] bool isMean() const noexcept override { return true; }
+
  private:
   using Row = void (*)(const Columns& at, const RowWork& work) noexcept;
 

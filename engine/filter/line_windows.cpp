@@ -12,6 +12,7 @@
 
 #include "engine/filter/rank_set.h"
 #include "engine/filter/ranks.h"
+#include "engine/filter/whole_heights.h"
 
 namespace fettle::engine {
 
@@ -73,6 +74,8 @@ class LineWindows final : public BlockFilter {
     ranks_.sort(block);
     for (RankSet& side : sides_) side.begin(ranks_);
     taken_ = {};
+    const std::int64_t side = 2 * radius_ + 1;
+    means_ = windows_->isMean() && whole_.take(block, side * side);
     for (int r = 0; r < block.out_rows; ++r) {
       if (job.cancelled()) return false;
       for (int c = 0; c < block.out_columns; ++c) {
@@ -181,6 +184,10 @@ class LineWindows final : public BlockFilter {
       out = stays ? own : medianOf(block, window, reached, settled);
       return true;
     }
+    if (means_) {
+      out = meanOf(window, reached, settled, stays ? 1 : side_of_middle_);
+      return true;
+    }
     return runOn(block, window, settled, column, job, out);
   }
 
@@ -217,20 +224,24 @@ class LineWindows final : public BlockFilter {
     const int moved = window.left - taken_.window.left;
     const bool near = taken_.any && taken_.window.low == window.low && taken_.window.rows == window.rows &&
                       moved >= 0 && moved < 64 - kMostLineWindow;
-    if (!near)
+    if (!near) {
       for (RankSet& side : sides_) side.clear();
+      sums_ = {};
+    }
     const int left = near ? taken_.window.left : window.left;
     for (int r = 0; r < window.rows; ++r) {
       const auto k = static_cast<std::size_t>(r);
       const std::uint32_t* const ranks = ranksOf(block, left, window.low + r);
-      const auto become = [&](RankSet& side, WindowRow before, WindowRow now) {
-        forEachBit(before & ~now, [&](int c) { side.remove(ranks[c]); });
-        forEachBit(now & ~before, [&](int c) { side.add(ranks[c]); });
+      const std::int64_t* const heights = means_ ? whole_.row(window.low + r) + left : nullptr;
+      const auto become = [&](std::size_t side, WindowRow before, WindowRow now) {
+        forEachBit(before & ~now, [&](int c) { sides_[side].remove(ranks[c]); });
+        forEachBit(now & ~before, [&](int c) { sides_[side].add(ranks[c]); });
+        if (means_) sums_[side] += sumOf(heights, now & ~before) - sumOf(heights, before & ~now);
       };
       const int shift = window.left - left;
       const WindowRow was = near ? taken_.reached[k] : 0, was_known = near ? taken_.known[k] : 0;
-      become(sides_[1], was, reached[k] << shift);
-      become(sides_[0], was_known & ~was, (known[k] & ~reached[k]) << shift);
+      become(1, was, reached[k] << shift);
+      become(0, was_known & ~was, (known[k] & ~reached[k]) << shift);
     }
     taken_ = {true, window, known, reached};
   }
@@ -298,6 +309,28 @@ class LineWindows final : public BlockFilter {
     return median;
   }
 
+  static std::int64_t sumOf(const std::int64_t* heights, WindowRow samples) noexcept {
+    std::int64_t sum = 0;
+    forEachBit(samples, [&](int c) { sum += heights[c]; });
+    return sum;
+  }
+
+  // The same of the mean, `side` the one that most of them are of.
+  [[nodiscard]] float meanOf(const Window& window, const Rows& reached, const Rows& settled,
+                             std::size_t side) const noexcept {
+    std::int64_t sum = sums_[side];
+    int count = sides_[side].size();
+    for (int r = 0; r < window.rows; ++r) {
+      const auto k = static_cast<std::size_t>(r);
+      const WindowRow before = side == 1 ? reached[k] : taken_.known[k] & ~reached[k];
+      if (before == settled[k]) continue;
+      const std::int64_t* const heights = whole_.row(window.low + r) + window.left;
+      sum += sumOf(heights, settled[k] & ~before) - sumOf(heights, before & ~settled[k]);
+      count += std::popcount(settled[k]) - std::popcount(before);
+    }
+    return whole_.mean(sum, count);
+  }
+
   bool runOn(const Block& block, const Window& inner, const Rows& samples, int column, const JobControl& job,
              float& out) {
     Block window;
@@ -342,6 +375,9 @@ class LineWindows final : public BlockFilter {
     Rows known{}, reached{};
   } taken_;
   std::size_t side_of_middle_ = 1;  // of the window at hand, once settled
+  bool means_ = false;              // by sums_, those of sides_
+  WholeHeights whole_;
+  std::array<std::int64_t, 2> sums_{};
   std::vector<float> heights_;
 };
 

@@ -20,7 +20,7 @@ inline constexpr int kLineReach = 2;
 /// in a window with nothing beyond the line, those eighteen from its median are left out.
 ///
 /// Costs, for each sample within `radius` of a line, some 50 ns per row of the window, and what `windows` takes for one
-/// output; a median takes that from the same sets of samples. Bit-identical to a plain search, sample by sample.
+/// output; a median and a mean take that from the same sets of samples. Bit-identical to a plain search, sample by sample.
 [[nodiscard]] std::unique_ptr<BlockFilter> endingAtLines(std::unique_ptr<BlockFilter> windows, int radius);
 
 }  // namespace fettle::engine

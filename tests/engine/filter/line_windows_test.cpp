@@ -183,7 +183,8 @@ struct PlainSide {
   }
 };
 
-float plainLineMedian(const PlainField& field, const LineCuts& cuts, int column, int row, int radius) {
+std::vector<float> plainLineWindow(const PlainField& field, const LineCuts& cuts, int column, int row,
+                                   int radius) {
   const auto linksOf = [&](int c, int r) {
     for (const LineCut& cut : cuts.row(r))
       if (cut.column == c) return static_cast<int>(cut.links);
@@ -252,7 +253,14 @@ float plainLineMedian(const PlainField& field, const LineCuts& cuts, int column,
   std::vector<float> counted;
   for (const Sample& s : samples)
     if (const float z = field.at(s.c, s.r); s.reached == mine && !std::isnan(z)) counted.push_back(z);
-  return plainMedian(counted);
+  return counted;
+}
+
+// A long double holds the sums of these tests exactly.
+float plainMean(const std::vector<float>& values) {
+  long double sum = 0.0L;
+  for (const float z : values) sum += static_cast<long double>(z);
+  return static_cast<float>(static_cast<double>(sum) / static_cast<double>(values.size()));
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -278,11 +286,13 @@ TEST(LineWindows, AreThoseOfAPlainSearchBitForBit) {
   const LineCuts cuts(*scan.lines(), 97, 71);
   // A plain search takes the square of the window for each sample: of large windows some samples all over the field.
   for (const auto& [window, every] : {std::pair(5, 1), {13, 5}, {25, 23}, {51, 83}}) {
-    const PlainField got = toPlain(filtered(scan, specOf(FilterKind::kMedian, window)).field);
+    const PlainField median = toPlain(filtered(scan, specOf(FilterKind::kMedian, window)).field);
+    const PlainField mean = toPlain(filtered(scan, specOf(FilterKind::kBox, window)).field);
     for (int k = 0; k < field.width * field.height; k += every * kPlainEvery)
       if (const int c = k % field.width, r = k / field.width; !std::isnan(field.at(c, r))) {
-        ASSERT_TRUE(sameBits(got.at(c, r), plainLineMedian(field, cuts, c, r, window / 2)))
-            << window << ": " << c << ", " << r;
+        const std::vector<float> counted = plainLineWindow(field, cuts, c, r, window / 2);
+        ASSERT_TRUE(sameBits(median.at(c, r), plainMedian(counted))) << window << ": " << c << ", " << r;
+        ASSERT_TRUE(sameBits(mean.at(c, r), plainMean(counted))) << window << ": " << c << ", " << r;
       }
   }
 }
