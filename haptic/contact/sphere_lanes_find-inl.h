@@ -8,43 +8,26 @@ struct Around {
 
 inline void gather(const LaneWindow& w, const LaneProbe& ball, const LaneCell* cells, int count,
                    Around& a) noexcept {
-  struct Corners {
-    alignas(Lanes) double z00[kWidth], z10[kWidth], z20[kWidth];
-    alignas(Lanes) double z01[kWidth], z11[kWidth], z21[kWidth];
-    alignas(Lanes) double z02[kWidth], z12[kWidth];
-    alignas(Lanes) double column[kWidth], row[kWidth];
-  } in;
+  alignas(Lanes) double column[kWidth], row[kWidth];
+  const double* at[kWidth];
   for (int k = 0; k < kWidth; ++k) {
     const LaneCell cell = cells[k < count ? k : 0];
-    const double* z = w.z + cell.j * w.columns + cell.i;
-    const double* z1 = z + w.columns;
-    const double* z2 = z1 + w.columns;
-    in.z00[k] = z[0];
-    in.z10[k] = z[1];
-    in.z20[k] = z[2];
-    in.z01[k] = z1[0];
-    in.z11[k] = z1[1];
-    in.z21[k] = z1[2];
-    in.z02[k] = z2[0];
-    in.z12[k] = z2[1];
-    in.column[k] = w.column + cell.i;
-    in.row[k] = w.row + cell.j;
+    at[k] = w.z + cell.j * w.columns + cell.i;
+    column[k] = w.column + cell.i;
+    row[k] = w.row + cell.j;
   }
-  Lanes column, row;
-  load(a.z00, in.z00);
-  load(a.z10, in.z10);
-  load(a.z20, in.z20);
-  load(a.z01, in.z01);
-  load(a.z11, in.z11);
-  load(a.z21, in.z21);
-  load(a.z02, in.z02);
-  load(a.z12, in.z12);
-  load(column, in.column);
-  load(row, in.row);
-  a.mx0 = ball.x - column * w.sx;
-  a.mx1 = ball.x - (column + 1.0) * w.sx;
-  a.my0 = ball.y - row * w.sy;
-  a.my1 = ball.y - (row + 1.0) * w.sy;
+  across(at, a.z00, a.z10, a.z20);
+  for (const double*& z : at) z += w.columns;
+  across(at, a.z01, a.z11, a.z21);
+  for (const double*& z : at) z += w.columns;
+  across(at, a.z02, a.z12);
+  Lanes columns, rows;
+  load(columns, column);
+  load(rows, row);
+  a.mx0 = ball.x - columns * w.sx;
+  a.mx1 = ball.x - (columns + 1.0) * w.sx;
+  a.my0 = ball.y - rows * w.sy;
+  a.my1 = ball.y - (rows + 1.0) * w.sy;
 }
 
 // The cells of one register; results go to `at` and following.

@@ -41,6 +41,19 @@ inline void prepare(const LaneWindow& w, std::int32_t rows, double more_mm, Lane
   }
 }
 
+// The lanes in a mask, and then the first.
+struct LanesOf {
+  std::int16_t lane[kWidth];
+  std::int16_t count;
+};
+inline constexpr auto kLanesOf = [] {
+  std::array<LanesOf, 1u << kWidth> all{};
+  for (unsigned mask = 0; mask <= kAllLanes; ++mask)
+    for (int l = 0; l < kWidth; ++l)
+      if ((mask >> l & 1u) != 0) all[mask].lane[all[mask].count++] = static_cast<std::int16_t>(l);
+  return all;
+}();
+
 inline int reached(const LaneWindow& w, const LaneBounds& bounds, const LaneProbe& ball, std::int32_t i0,
                    std::int32_t i1, std::int32_t j0, std::int32_t j1, LaneCell* out) noexcept {
   const Lanes zero{};
@@ -72,21 +85,26 @@ inline int reached(const LaneWindow& w, const LaneBounds& bounds, const LaneProb
     for (int c = 0; c < chunks; ++c) {
       const std::int32_t i = i0 + c * kWidth;
       const std::int32_t k = j * w.columns + i;
-      Lanes top, nx, ny, nz, offset, margin;
+      Lanes top;
       load(top, bounds.top.data() + k);
+      Lanes gap = ball.z - top;
+      larger(gap, zero);
+      const unsigned lanes = i1 - i >= kWidth ? kAllLanes : (1u << (i1 - i + 1)) - 1u;
+      const unsigned near = bits(gap * gap + dx2[c] < left) & lanes;
+      if (near == 0) continue;
+      Lanes nx, ny, nz, offset, margin;
       load(nx, bounds.nx.data() + k);
       load(ny, bounds.ny.data() + k);
       load(nz, bounds.nz.data() + k);
       load(offset, bounds.offset.data() + k);
       load(margin, bounds.margin.data() + k);
-      Lanes gap = ball.z - top;
-      larger(gap, zero);
       Lanes over = nx * from_x + ny * from_y + (nz * ball.z + offset);
       absolute(over);
-      const unsigned lanes = i1 - i >= kWidth ? kAllLanes : (1u << (i1 - i + 1)) - 1u;
-      for (unsigned those = bits((gap * gap + dx2[c] < left) & (over - margin < reach)) & lanes; those != 0;
-           those &= those - 1)
-        out[n++] = {static_cast<std::int16_t>(i + __builtin_ctz(those)), static_cast<std::int16_t>(j)};
+      // All lanes are written, those in the mask first, and only those counted: no branch that cannot be predicted.
+      const LanesOf& those = kLanesOf[bits(over - margin < reach) & near];
+      for (int l = 0; l < kWidth; ++l)
+        out[n + l] = {static_cast<std::int16_t>(i + those.lane[l]), static_cast<std::int16_t>(j)};
+      n += those.count;
     }
   }
   return n;

@@ -58,6 +58,40 @@ inline void squareRoot(Lanes& a) noexcept {
 #endif
 }
 
+// The first two, or three, of the doubles at each of kWidth places, those of a place in one lane.
+#if FETTLE_LEVEL > 0
+inline void across(const double* const* at, Lanes& first, Lanes& second) noexcept {
+  __m128d p[kWidth];
+  for (int k = 0; k < kWidth; ++k) p[k] = _mm_loadu_pd(at[k]);
+  const __m256d even = _mm256_insertf128_pd(_mm256_castpd128_pd256(p[0]), p[2], 1);
+  const __m256d odd = _mm256_insertf128_pd(_mm256_castpd128_pd256(p[1]), p[3], 1);
+  const __m256d low = _mm256_unpacklo_pd(even, odd);
+  const __m256d high = _mm256_unpackhi_pd(even, odd);
+  std::memcpy(&first, &low, sizeof low);
+  std::memcpy(&second, &high, sizeof high);
+}
+
+inline void across(const double* const* at, Lanes& first, Lanes& second, Lanes& third) noexcept {
+  across(at, first, second);
+  const __m128d a = _mm_loadh_pd(_mm_load_sd(at[0] + 2), at[1] + 2);
+  const __m128d b = _mm_loadh_pd(_mm_load_sd(at[2] + 2), at[3] + 2);
+  const __m256d two = _mm256_insertf128_pd(_mm256_castpd128_pd256(a), b, 1);
+  std::memcpy(&third, &two, sizeof two);
+}
+#else
+inline void across(const double* const* at, Lanes& first, Lanes& second) noexcept {
+  for (int k = 0; k < kWidth; ++k) {
+    first[k] = at[k][0];
+    second[k] = at[k][1];
+  }
+}
+
+inline void across(const double* const* at, Lanes& first, Lanes& second, Lanes& third) noexcept {
+  across(at, first, second);
+  for (int k = 0; k < kWidth; ++k) third[k] = at[k][2];
+}
+#endif
+
 // Cells from `at` on, those of `lanes`.
 inline void keep(LaneContacts& out, int at, unsigned lanes, const LaneMask& found, const Lanes& mx,
                  const Lanes& my, const Lanes& mz, const Lanes& d2) noexcept {
