@@ -81,6 +81,26 @@ TEST(Certified, EqualsBruteForceOverAllCellsOnSmallRandomFields) {
   }
 }
 
+// From windows of few cells, without the pyramid, to those with it, also with many more columns than rows and the reverse.
+TEST(Certified, EqualsBruteForceInWindowsOfEverySize) {
+  std::mt19937_64 random(19);
+  for (const auto& [sx, sy] : {std::pair{1.0, 1.0}, {0.25, 1.0}, {1.0, 0.25}}) {
+    const engine::Version field = randomField(random, 60, 60, 1, sx, sy);
+    Surface surface(field.reader());
+    for (double radius = 1.0; radius < 9.0; radius += 0.13) {
+      const glm::dvec3 e{uniform(random, 20, 40) * sx, uniform(random, 20, 40) * sy,
+                         uniform(random, -6.0, 6.0)};
+      const long double brute2 = bruteCertified(surface, e, radius);
+      SurfacePoint point;
+      ASSERT_EQ(certifiedClosest(surface, e, radius, point), std::isfinite(brute2)) << radius;
+      if (!std::isfinite(brute2)) continue;
+      const double brute = static_cast<double>(std::sqrt(brute2));
+      ASSERT_NEAR(std::sqrt(point.distance2_mm2), brute, tolerance(brute, 50.0))
+          << sx << ' ' << sy << ' ' << radius;
+    }
+  }
+}
+
 TEST(Certified, PyramidPruningChangesNothingOnAFieldOfSeveralTiles) {
   std::mt19937_64 random(5);
   const engine::Version field = randomField(random, 150, 140, 1, 1.0, 1.0, 0.02);

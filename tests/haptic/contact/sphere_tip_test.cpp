@@ -277,6 +277,26 @@ TEST(SphereTip, FewStepsATickEndWhereManyDoAndNoTickTakesMore) {
   EXPECT_GT(same, 0.9 * touched) << same << " of " << touched;
 }
 
+// Ways through the air are cleared by bounds of blocks of 8 samples, at most 8 x 8 of them; longer ones are searched. Both
+// arrive at once.
+TEST(SphereTip, WaysThroughTheAirAreClearedByBoundsUpToEightBlocks) {
+  // A tower in a corner, so that not all of the field is below the ball.
+  for (const bool along_x : {true, false}) {
+    Ball ball(fieldOf(160, 160, [](int c, int r) { return c > 150 && r > 150 ? 50.0 : 0.0; }), 1.5);
+    const auto to = [&](double along) {
+      EXPECT_FALSE(ball.at(along_x ? along : 20.0, along_x ? 20.0 : along, 9.0).touching);
+      EXPECT_EQ(ball.tracker.centre(), glm::dvec3(along_x ? along : 20.0, along_x ? 20.0 : along, 9.0));
+      return ball.tracker.searches();
+    };
+    EXPECT_EQ(to(10.0), 0);  // samples 8 to 12: two blocks
+    EXPECT_EQ(to(61.0), 0);  // samples 8 to 63, block 1 to 7
+    EXPECT_EQ(to(10.0), 0);
+    EXPECT_EQ(to(69.0), 0);  // to 71: block 8, the eighth
+    EXPECT_GT(to(5.0), 0);   // samples 3 to 71: nine
+    EXPECT_GT(to(100.0), 0);
+  }
+}
+
 TEST(SphereTip, TendsToTheCertifiedClosestPointAsItShrinks) {
   // Gentle slopes, where the closest point is the only one there is near.
   std::mt19937_64 random(5);

@@ -74,6 +74,44 @@ Ended inAnotherProcess(const std::function<void(FakeDevice&)>& child,
   }
 }
 
+// Without a signal, in this process: what the handlers call.
+TEST(LastResort, EveryRegisteredDeviceIsSentItsZeroAndThoseThatLeftAreNot) {
+  struct Counted {
+    int zeros = 0;
+    static void zero(void* device) noexcept { ++static_cast<Counted*>(device)->zeros; }
+  };
+  Counted first, second;
+  ASSERT_FALSE(LastResort::fired());
+  {
+    const ZeroOnLastResort a(&Counted::zero, &first);
+    ASSERT_TRUE(a.registered());
+    {
+      const ZeroOnLastResort b(&Counted::zero, &second);
+      ASSERT_TRUE(b.registered());
+      LastResort::fire();
+      EXPECT_TRUE(LastResort::fired());
+      EXPECT_EQ(first.zeros, 1);
+      EXPECT_EQ(second.zeros, 1);
+    }
+    LastResort::fire();  // again: more than once is allowed
+    EXPECT_EQ(first.zeros, 2);
+    EXPECT_EQ(second.zeros, 1);
+  }
+  LastResort::fire();
+  EXPECT_EQ(first.zeros, 2);
+  LastResort::reset();
+  EXPECT_FALSE(LastResort::fired());
+  // Its place is free for others.
+  std::vector<std::unique_ptr<ZeroOnLastResort>> all;
+  for (int i = 0; i < ZeroOnLastResort::kMost; ++i)
+    all.push_back(std::make_unique<ZeroOnLastResort>(&Counted::zero, &first));
+  EXPECT_TRUE(all.back()->registered());
+  EXPECT_FALSE(ZeroOnLastResort(&Counted::zero, &second).registered());
+  LastResort::fire();
+  EXPECT_EQ(first.zeros, 2 + ZeroOnLastResort::kMost);
+  LastResort::reset();
+}
+
 class LastResortSignals : public ::testing::TestWithParam<int> {};
 
 TEST_P(LastResortSignals, ZeroReachesTheDeviceAndTheProgramDiesByThatSignal) {

@@ -326,6 +326,34 @@ TEST(Collision, NeverMissesWhatBruteForceSees) {
   }
 }
 
+// Over a plain that squares of the pyramid clear, to a wall at its end: from every place and in every direction it is found, in
+// few steps.
+TEST(Collision, ALongRayOverClearedSquaresComesToTheWallAtItsEnd) {
+  const engine::Version field = tests::fieldOf(
+      600, 600, [](int c, int r) { return c < 20 || c >= 580 || r < 20 || r >= 580 ? 50.0 : 0.0; });
+  Surface surface(field.reader());
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 from{uniform(random, 30, 570), uniform(random, 30, 570), uniform(random, 20, 40)};
+    const double angle = uniform(random, 0.0, 6.28);
+    const glm::dvec3 to = from + glm::dvec3(700.0 * std::cos(angle), 700.0 * std::sin(angle), -10.0);
+    RayWalk walk(surface, from, to);
+    RayCell cell;
+    bool entered = false;
+    while (!entered && walk.next(cell)) {
+      Patch patch;
+      ASSERT_TRUE(surface.patch(cell.cell, patch));
+      entered = entersPatch(patch, from, to, cell.enter, cell.leave);
+    }
+    ASSERT_TRUE(entered) << i;
+    EXPECT_FALSE(walk.stoppedByBound());
+    // The wall's foot is within one cell of 20 and 580.
+    const glm::dvec3 at = from + cell.enter * (to - from);
+    const double margin = std::min(std::min(at.x, 599.0 - at.x), std::min(at.y, 599.0 - at.y));
+    EXPECT_NEAR(margin, 19.5, 0.6) << i;
+  }
+}
+
 TEST(Tick, AHandBelowTheSurfaceIsAlwaysInContactAndItsProxyOnTheSurface) {
   std::mt19937_64 random(31);
   for (int i = 0; i < 60; ++i)
