@@ -87,7 +87,8 @@ TEST(Certified, EqualsBruteForceInWindowsOfEverySize) {
   for (const auto& [sx, sy] : {std::pair{1.0, 1.0}, {0.25, 1.0}, {1.0, 0.25}}) {
     const engine::Version field = randomField(random, 60, 60, 1, sx, sy);
     Surface surface(field.reader());
-    for (double radius = 1.0; radius < 9.0; radius += 0.13) {
+    for (int step = 0; step < 62; ++step) {
+      const double radius = 1.0 + 0.13 * step;
       const glm::dvec3 e{uniform(random, 20, 40) * sx, uniform(random, 20, 40) * sy,
                          uniform(random, -6.0, 6.0)};
       const long double brute2 = bruteCertified(surface, e, radius);
