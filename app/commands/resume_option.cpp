@@ -94,6 +94,7 @@ engine::Error stillKept(engine::Error error, const ResumeOptions& options, const
 void addKept(Report& report, const engine::KeptWork* kept, int passes) {
   if (kept == nullptr) return;
   report["resumed_share"] = kept->shareAtStart(passes);
+  if (kept->roundsAtStart() > 0) report["resumed_rounds"] = kept->roundsAtStart();
   report["kept_bytes"] = kept->mostBytes();
   report["kept_seconds"] = kept->secondsWriting();
 }

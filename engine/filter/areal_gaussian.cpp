@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/field/tile.h"
+#include "engine/filter/filter_work.h"
 #include "engine/filter/gaussian_plane.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/surface_pass.h"
@@ -125,7 +128,16 @@ Result<PassResult> robustGaussianPass(const Version& input, const Version& origi
   WholeSurface now(field), before(field);
   SampleWeights weights;
   double limit = 0.0;
-  for (int round = 0; round < kMostRobustRounds; ++round) {
+  int round = 0;
+  const std::size_t bytes = now.z.size() * sizeof(now.z[0]);
+  const auto kept = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
+  if (kept && kept->numbers.size() == bytes) {
+    std::memcpy(now.z.data(), kept->numbers.data(), bytes);
+    limit = kept->limit;
+    round = kept->done;
+    weights = {now.z.data(), now.stride, limit};
+  }
+  for (; round < kMostRobustRounds; ++round) {
     if (!filter.prepare(weights, job)) return cancelled();
     // Blocks of one round may still read the weights of the last one.
     std::swap(now, before);
@@ -137,6 +149,8 @@ Result<PassResult> robustGaussianPass(const Version& input, const Version& origi
     limit = next;
     if (ends) break;
     weights = {now.z.data(), now.stride, limit};
+    if (tuning.work != nullptr && tuning.work->wantsRounds())
+      tuning.work->roundDone({round + 1, limit, {reinterpret_cast<const char*>(now.z.data()), bytes}});
   }
   return passOfSurface(
       [&](const SampleRect& rect, float* out, std::ptrdiff_t stride) {

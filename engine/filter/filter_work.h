@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -30,6 +32,18 @@ class FilterWork {
 
   /// The next pass begins, from this state.
   [[nodiscard]] virtual Status beginPass(const State& before) = 0;
+
+  /// Where a pass stands that goes over the whole field round by round before its first block.
+  struct Rounds {
+    int done = 0;
+    double limit = 0.0;   ///< beyond which samples do not count in the next one [height_unit]
+    std::string numbers;  ///< the surface that the last one left, in the pass's own form: any bytes
+  };
+  /// Those of the pass that has begun; nothing: none.
+  [[nodiscard]] virtual std::optional<Rounds> roundsBefore() { return std::nullopt; }
+  /// Whether roundDone() would be of use now: it copies a surface.
+  [[nodiscard]] virtual bool wantsRounds() { return false; }
+  virtual void roundDone(Rounds) {}
 
   /// Whether the tiles of a block need not be worked out. Where it is false, done() or a cancel follows on this thread.
   [[nodiscard]] virtual bool isDone(const TileRect& block) = 0;

@@ -20,12 +20,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <tbb/parallel_for.h>
 
 #include "engine/field/tile.h"
 #include "engine/filter/areal_gaussian.h"
+#include "engine/filter/filter_work.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/spline_lines.h"
 #include "engine/filter/surface_pass.h"
@@ -103,6 +107,17 @@ class SplineSurface {
       for (std::int32_t c = 0; c < width_; ++c)
         to[at(r) + c] = static_cast<float>(plane_level_.at(c, r) + plane_.z[at(r) + c]);
     });
+  }
+
+  // The surface about its plane, which with the limit is all that another round begins with.
+  [[nodiscard]] std::string numbers() const {
+    return {reinterpret_cast<const char*>(plane_.z.data()), plane_.z.size() * sizeof(plane_.z[0])};
+  }
+  // False where these are not numbers of this field.
+  bool takeNumbers(const std::string& numbers) {
+    if (numbers.size() != plane_.z.size() * sizeof(plane_.z[0])) return false;
+    std::memcpy(plane_.z.data(), numbers.data(), numbers.size());
+    return true;
   }
 
   [[nodiscard]] const FieldReader& reader() const noexcept { return reader_; }
@@ -280,7 +295,14 @@ Result<PassResult> robustSplinePass(const Version& input, const Version& origina
   {
     SplineSurface filter(input, spec, std::min(tuning.level, bestCpuLevel()));
     double limit = 0.0;
-    for (int round = 0; round < kMostRobustRounds; ++round) {
+    int round = 0;
+    const auto before = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
+    if (before && filter.takeNumbers(before->numbers)) {
+      filter.copyTo(surface);
+      limit = before->limit;
+      round = before->done;
+    }
+    for (; round < kMostRobustRounds; ++round) {
       if (!filter.solve(round == 0 ? nullptr : &surface, limit, job)) return cancelled();
       filter.copyTo(surface);
       const double next = kRobustLimit * middleDistance(filter.reader(), surface.data(), input.grid().width);
@@ -288,6 +310,8 @@ Result<PassResult> robustSplinePass(const Version& input, const Version& origina
       const bool ends = !(next > 0.0) || std::fabs(next - limit) <= kRobustTolerance * limit;
       limit = next;
       if (ends) break;
+      if (tuning.work != nullptr && tuning.work->wantsRounds())
+        tuning.work->roundDone({round + 1, limit, filter.numbers()});
     }
   }
   return passOfWhole(surface, input.reader(), input, original, spec, tuning, job);

@@ -35,7 +35,8 @@ KeptWork::KeptWork(KeepOptions options, const WorkIdentity& identity, const Vers
       identity_(identity.text()),
       input_(input),
       tile_columns_(input.reader().tileColumns()),
-      tile_rows_(input.reader().tileRows()) {
+      tile_rows_(input.reader().tileRows()),
+      rounds_(options_.path + ".rounds", identity_) {
   start_ = {0, input};
 }
 
@@ -163,6 +164,7 @@ Status KeptWork::writePending() {
 void KeptWork::finish() {
   const std::lock_guard writing(writing_);
   file_.remove();
+  rounds_.remove();
 }
 
 double KeptWork::pauseAfter(double seconds) const noexcept {
@@ -196,7 +198,30 @@ Result<FilterWork::State> KeptWork::begin(const Version&) {
   return start_;
 }
 
+std::optional<FilterWork::Rounds> KeptWork::roundsBefore() {
+  std::optional<Rounds> before = rounds_.read(pass_);
+  if (before) rounds_at_start_ = before->done;
+  since_rounds_ = {};
+  return before;
+}
+
+bool KeptWork::wantsRounds() {
+  return since_rounds_.seconds() >= pauseAfter(last_rounds_seconds_);
+}
+
+void KeptWork::roundDone(Rounds rounds) {
+  const Stopwatch watch;
+  const Status kept = rounds_.keep(pass_, rounds);
+  last_rounds_seconds_ = watch.seconds();
+  since_rounds_ = {};
+  if (!kept) return report(kept.error());
+  const std::lock_guard lock(mutex_);
+  seconds_ += last_rounds_seconds_;
+  most_bytes_ = std::max<std::uint64_t>(most_bytes_, rounds.numbers.size());
+}
+
 Status KeptWork::beginPass(const State& before) {
+  pass_ = before.passes;
   const std::lock_guard writing(writing_);
   if (std::exchange(first_pass_, false)) {
     keeps_this_pass_ = true;
@@ -259,6 +284,8 @@ void KeptWork::done(const TileRect& block, std::vector<NewTile>& made, std::size
 void KeptWork::addMade(std::vector<NewTile>& made) {
   std::move(taken_.tiles.begin(), taken_.tiles.end(), std::back_inserter(made));
   taken_ = {};
+  // The pass is over; its rounds are in its blocks.
+  rounds_.remove();
 }
 
 }  // namespace fettle::engine

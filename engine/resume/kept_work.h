@@ -6,12 +6,14 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "engine/base/stopwatch.h"
 #include "engine/filter/filter_work.h"
+#include "engine/resume/kept_rounds.h"
 #include "engine/resume/work_file.h"
 #include "engine/resume/work_identity.h"
 
@@ -32,7 +34,7 @@ struct KeepOptions {
 /// was cut off, with the same bits.
 ///
 /// A thread of its own writes what was finished, every KeepOptions::every_seconds. Between passes the whole state is written where that keeps to the same share, else the next pass is not kept
-/// and begins again after a cut. What is lost is the time between two writes, and at most one pass beyond.
+/// and begins again after a cut. What is lost is the time between two writes, and at most one pass beyond. Rounds are kept beside it, as seldom.
 ///
 /// Threading: as FilterWork; the rest on the thread of applyFilter.
 class KeptWork final : public FilterWork {
@@ -45,6 +47,8 @@ class KeptWork final : public FilterWork {
   ~KeptWork() override;
   KeptWork& operator=(KeptWork&&) = delete;
 
+  /// Rounds of its pass that were there, where the filter has rounds.
+  [[nodiscard]] int roundsAtStart() const noexcept { return rounds_at_start_; }
   /// Share of the whole work that the file held when it was opened, 0 .. 1.
   [[nodiscard]] double shareAtStart(int passes) const noexcept;
   /// Bytes of the file that were damaged and are worked out again.
@@ -60,6 +64,9 @@ class KeptWork final : public FilterWork {
 
   [[nodiscard]] Result<State> begin(const Version& input) override;
   [[nodiscard]] Status beginPass(const State& before) override;
+  [[nodiscard]] std::optional<Rounds> roundsBefore() override;
+  [[nodiscard]] bool wantsRounds() override;
+  void roundDone(Rounds rounds) override;
   [[nodiscard]] bool isDone(const TileRect& block) override;
   void done(const TileRect& block, std::vector<NewTile>& made, std::size_t first) override;
   void addMade(std::vector<NewTile>& made) override;
@@ -88,6 +95,11 @@ class KeptWork final : public FilterWork {
   DoneBlocks taken_;               // and of the pass after it
   std::vector<bool> done_before_;  // by tile; only written between passes
   bool first_pass_ = true, keeps_this_pass_ = false;
+  KeptRounds rounds_;
+  int pass_ = 0;  // that has begun, from 0
+  int rounds_at_start_ = 0;
+  double last_rounds_seconds_ = 0.0;
+  Stopwatch since_rounds_;
   double last_state_seconds_ = 0.0;
   Stopwatch since_state_;
 

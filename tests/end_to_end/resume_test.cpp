@@ -120,6 +120,32 @@ TEST_P(KilledAgainAndAgain, AFilterComesToTheBytesOfOneRun) {
   EXPECT_EQ(bytesOf(out), wanted);
   EXPECT_FALSE(fs::exists(out + ".resume"));
   EXPECT_FALSE(fs::exists(out + ".resume.new"));
+  EXPECT_FALSE(fs::exists(out + ".resume.rounds"));
+  EXPECT_FALSE(fs::exists(out + ".resume.rounds.new"));
+}
+
+// A filter that goes over the whole field in rounds has no block to keep until the last one is done.
+TEST(ResumedRounds, ARobustFilterGoesOnAfterTheRoundThatWasKept) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), out = folder.file("o.tif");
+  ASSERT_EQ(fettle({"synth", in, "--size", "500x460"}).status, 0);
+  for (const std::string filter : {"robust-gaussian", "robust-spline"}) {
+    std::vector<std::string> command{
+        "filter", in, folder.file("whole.tif"), "--filter", filter, "--cutoff", "4", "--force"};
+    ASSERT_EQ(fettle(command).status, 0);
+    command[2] = out;
+    command.insert(command.end(), {"--resume", "--resume-every", "0"});
+    const Outcome cut = fettle(command, endedWith(out + ".resume.rounds", 1, SIGKILL));
+    ASSERT_EQ(cut.status, 128 + SIGKILL) << cut.err;
+    const auto report = fettleJson(command);
+    EXPECT_GT(report["resumed_rounds"], 0) << filter;
+    EXPECT_EQ(bytesOf(out), bytesOf(folder.file("whole.tif"))) << filter;
+    // Damaged rounds are worked out again, rounds of other work are not taken.
+    std::ofstream(out + ".resume.rounds") << "FTLROUND and no more";
+    EXPECT_FALSE(fettleJson(command).contains("resumed_rounds")) << filter;
+    EXPECT_EQ(bytesOf(out), bytesOf(folder.file("whole.tif"))) << filter;
+    EXPECT_FALSE(fs::exists(out + ".resume.rounds"));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Resume, KilledAgainAndAgain,
