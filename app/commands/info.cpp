@@ -49,6 +49,7 @@ Report figure(double value) {
 void printHistogram(const Report& histogram, const std::string& unit) {
   constexpr double kLongest = 50.0;
   const auto counts = histogram["counts"].get<std::vector<std::int64_t>>();
+  if (std::isnan(histogram["low"].get<double>())) return;  // there is no height
   const std::int64_t most = *std::max_element(counts.begin(), counts.end());
   const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
   const double low = histogram["low"], high = histogram["high"];
@@ -184,6 +185,7 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
        {{"low", shortest(histogram->low)},
         {"high", shortest(histogram->high)},
         {"counts", histogram->counts}}},
+      {"hash", hashOf(imported->field)},
       {"format", imported->format},
       {"spacing_x_mm", grid.spacingXMm()},
       {"spacing_y_mm", grid.spacingYMm()},

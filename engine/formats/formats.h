@@ -22,8 +22,8 @@ namespace fettle::engine {
 /// (with a warning). Height unit: that of the band or of the vertical coordinate system, otherwise the
 /// lateral one. Rows from bottom to top and columns from right to left in the file give a warning too.
 ///
-/// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
-/// holds no valid height, more samples than memory can hold (determined from the header, before anything is
+/// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, a cloud
+/// without a point (a raster of holes alone gives a warning), more samples than memory can hold (determined from the header, before anything is
 /// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file; clouds take
 /// another 40 bytes per point and 8 per cell while they are gridded.
 ///

@@ -53,14 +53,12 @@ void describeTally(const HeightTally& tally, const std::string& unit, std::vecto
 }
 
 Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule, const HeightTally& tally,
-                              std::string format, std::vector<std::string> warnings,
-                              const std::string& path) {
+                              std::string format, std::vector<std::string> warnings) {
   describeTally(tally, builder.grid().height_unit.name, warnings);
   Imported imported;
   imported.field = std::move(builder).build();
   if (imported.field.reader().bounds().empty())
-    return inputError("the file holds no valid height, every sample is no-data", path,
-                      "check the file and --no-data");
+    warnings.emplace_back("there is no height: every sample is no-data; check the file and --no-data");
   imported.lone_values = doubtLoneValues(imported.field, rule, warnings);
   imported.format = std::move(format);
   imported.warnings = std::move(warnings);

@@ -27,11 +27,11 @@ namespace fettle::engine {
 [[nodiscard]] Status checkPacking(std::uint64_t raw_bytes, std::uint64_t stored_bytes,
                                   const std::string& path);
 
-/// Builds the field, refuses one without any height, and adds the warnings of the tally, and one for each
+/// Builds the field and adds the warning where it has no height, the warnings of the tally, and one for each
 /// value that looks like an undeclared hole (lone_value.h). `rule` is the one that the heights were computed
 /// by.
 [[nodiscard]] Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule,
                                             const HeightTally& tally, std::string format,
-                                            std::vector<std::string> warnings, const std::string& path);
+                                            std::vector<std::string> warnings);
 
 }  // namespace fettle::engine

@@ -264,7 +264,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   if (job.cancelled()) return cancelled();
   warnings.push_back(fmt::format(
       "a mesh of {} triangles, sampled from above: surfaces underneath are left out", mesh.triangles.size()));
-  return finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
 }
 
 }  // namespace fettle::engine

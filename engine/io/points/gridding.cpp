@@ -160,7 +160,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
   if (job.cancelled()) return cancelled();
   rule.user_no_data = options.no_data;  // applied already, before a cell could mix it with heights
   Result<Imported> imported =
-      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
+      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
   if (imported) imported->gridding = report;
   return imported;
 }

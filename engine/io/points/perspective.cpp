@@ -109,7 +109,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   }
   tally.rounding = 0.0;  // floats originally, or doubles of a sensor of much lower resolution
   Result<Imported> imported =
-      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
+      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
   if (imported) {
     const DepthCamera fitted{std::abs(fit.column_by_slope.scale), std::abs(fit.row_by_slope.scale),
                              fit.column_by_slope.offset, fit.row_by_slope.offset};

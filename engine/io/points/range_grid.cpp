@@ -150,7 +150,7 @@ Result<Imported> gridRange(PointCloud&& cloud, const RangeGrid& range, const Imp
   if (Status status = writePlaces(cloud, range, fit, rule, *builder, tally, job); !status)
     return tl::unexpected(status.error());
   Result<Imported> imported =
-      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
+      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
   if (!imported || fit.raster()) return imported;
   if (fit.camera()) {
     imported->warnings.push_back(

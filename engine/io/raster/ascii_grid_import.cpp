@@ -183,7 +183,7 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   if (text.lastLineIsOpen()) warnings.emplace_back(kOpenLastLine);
   if (std::string_view rest; text.word(rest))
     warnings.push_back("there are more numbers than the header states, the rest was left out");
-  return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings));
 }
 
 }  // namespace

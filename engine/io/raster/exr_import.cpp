@@ -311,7 +311,7 @@ Result<Imported> readExr(const InputFile& file, const ImportOptions& options, Jo
   Imf::InputPart part(picture, index);
   if (Status status = readRows(part, *plan, rule, *builder, tally, job); !status)
     return tl::unexpected(status.error());
-  return finishImport(std::move(*builder), rule, tally, "EXR", std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, "EXR", std::move(warnings));
 } catch (const std::bad_alloc&) {
   throw;
 } catch (const std::exception& error) {

@@ -93,7 +93,7 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
                                         : readRowsDown<std::uint8_t>(read, rule, *builder, tally, job);
   if (!rows) return tl::unexpected(rows.error());
   if (Status finished = reader->finish(); !finished) return tl::unexpected(finished.error());
-  return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings), file.path());
+  return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings));
 }
 
 }  // namespace

@@ -179,10 +179,10 @@ SdfPlan planOf(const SdfHeader& h, const ImportOptions& options) {
   return plan;
 }
 
-Result<Imported> finishSdf(SdfPlan plan, FieldBuilder&& builder, HeightTally tally, const std::string& path) {
+Result<Imported> finishSdf(SdfPlan plan, FieldBuilder&& builder, HeightTally tally) {
   // As long as counts stay distinct, the float of each represents it and nothing is lost; decimals are no floats.
   tally.rounding = 0.0;
-  return finishImport(std::move(builder), plan.rule, tally, "SDF", std::move(plan.warnings), path);
+  return finishImport(std::move(builder), plan.rule, tally, "SDF", std::move(plan.warnings));
 }
 
 template <class T>
@@ -259,7 +259,7 @@ Result<Imported> readBinarySdf(const InputFile& file, const ImportOptions& optio
       break;
   }
   if (!status) return tl::unexpected(status.error());
-  return finishSdf(std::move(plan), *std::move(builder), tally, path);
+  return finishSdf(std::move(plan), *std::move(builder), tally);
 }
 
 Result<Imported> readTextSdf(const InputFile& file, const ImportOptions& options, JobControl& job) {
@@ -307,7 +307,7 @@ Result<Imported> readTextSdf(const InputFile& file, const ImportOptions& options
     plan.warnings.emplace_back("no star ends the data: the file may be cut short inside its last number");
   if (more && rest.front() != '*')
     plan.warnings.emplace_back("there are more numbers than the header states, the rest was left out");
-  return finishSdf(std::move(plan), *std::move(builder), tally, path);
+  return finishSdf(std::move(plan), *std::move(builder), tally);
 }
 
 Result<Imported> readSdf(const InputFile& file, const ImportOptions& options, JobControl& job) {

@@ -242,7 +242,7 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   if (!status) return tl::unexpected(status.error());
   // As long as counts stay distinct, the float of each represents it and nothing is lost.
   if (tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
-  return finishImport(std::move(*builder), rule, tally, "SUR", std::move(warnings), file.path());
+  return finishImport(std::move(*builder), rule, tally, "SUR", std::move(warnings));
 }
 
 }  // namespace

@@ -519,8 +519,7 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   checkMainXml(xml, *surface, *folder, file, warnings);
   if (own && !options.z_scale) tally.rounding = 0.0;  // rounds to exactly the float that was written
   if (surface->z.type == 'L' && tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
-  Result<Imported> imported =
-      finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings), file.path());
+  Result<Imported> imported = finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings));
   if (imported && !own && !options.unit) doubtTexture(*imported, "metres");
   return imported;
 }

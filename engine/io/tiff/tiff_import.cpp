@@ -103,7 +103,7 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
       *scan, [&](auto zero) { status = readSamples<decltype(zero)>(*scan, samples, *builder, tally, job); });
   if (!known) return inputError("the samples are of a type that cannot be heights", path);
   if (!status) return tl::unexpected(status.error());
-  return finishImport(std::move(*builder), scan->rule, tally, "GTiff", std::move(scan->warnings), path);
+  return finishImport(std::move(*builder), scan->rule, tally, "GTiff", std::move(scan->warnings));
 }
 
 }  // namespace
