@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/usage_error.h"
+#include "app/reference/report_schema.h"
 #include "app/terminal.h"
 
 namespace fettle::app {
@@ -27,6 +28,8 @@ using engine::JobControl;
 int reportUnwritten(const char* remedy) {
   return report({ErrorKind::kFailed, "the report could not be written", "standard output", remedy});
 }
+
+constexpr const char* kVersion = "fettle " FETTLE_VERSION;
 
 // A report that did not reach standard output is a failure, regardless of other results; not that a reader, as head, had
 // enough of it.
@@ -93,7 +96,7 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   setVoice(voice);
   if (const auto error = emptyArgument(arguments)) return report(*error);
   takeHelpForOption(arguments);
-  CommandLine line("fettle", "Clean up large scanned height fields by touch", "fettle " FETTLE_VERSION);
+  CommandLine line("fettle", "Clean up large scanned height fields by touch", kVersion);
   Command root = line.root();
   root.requireSubcommand();
   Chosen chosen;
@@ -109,6 +112,10 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   const auto text = line.parse(arguments);
   if (!text)
     return report(usageError(text.error(), fmt::format("see fettle {}--help", text.error().command)));
+  if (voice.json && *text == kVersion + std::string("\n")) {
+    fmt::print("{}\n", Report{{"schema", schemaName("fettle version")}, {"version", FETTLE_VERSION}}.dump(2));
+    return finish(0);
+  }
   if (!text->empty()) {
     if (std::fputs(text->c_str(), stdout) < 0 && errno == EPIPE) return 0;
     return finish(0);

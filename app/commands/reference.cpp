@@ -1,8 +1,14 @@
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/chrono.h>
 
 #include "app/commands/command.h"
 #include "app/reference/completion.h"
@@ -26,13 +32,26 @@ engine::Status write(const std::string& folder, const std::string& name, const s
   return engine::writeFileAtomically(path.string(), text);
 }
 
+// The day that SOURCE_DATE_EPOCH names [s since 1970, UTC], as builds state the date of their source: pages of one source are the
+// same whenever they are made. Empty without it.
+std::string sourceDate() {
+  const char* const typed = std::getenv("SOURCE_DATE_EPOCH");  // NOLINT(concurrency-mt-unsafe): no thread sets it
+  const std::string text = typed == nullptr ? "" : typed;
+  std::int64_t seconds = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  constexpr std::int64_t kMost = 253'402'300'799;  // year 9999
+  if (error != std::errc{} || end != text.data() + text.size() || seconds < 0 || seconds > kMost) return {};
+  return fmt::format("{:%F}", std::chrono::sys_seconds(std::chrono::seconds(seconds)));
+}
+
 engine::Result<Report> reference(const std::string& folder, const CommandTable& root) {
+  const ManVersion version{"fettle " FETTLE_VERSION, sourceDate()};
   int pages = 0;
   engine::Status status;
   forEachCommand(root, [&](const CommandTable& command) {
     if (!status) return;
     status =
-        write(folder, "man/" + manName(command) + ".1", manPage(command, root, {"fettle " FETTLE_VERSION}));
+        write(folder, "man/" + manName(command) + ".1", manPage(command, root, version));
     ++pages;
   });
   std::vector<std::pair<std::string, std::string>> others = {

@@ -105,12 +105,19 @@ _fettle() {{
   # "--name=value" comes as three words.
   [[ $word == = ]] && word=
   [[ $before == = ]] && before=${{COMP_WORDS[COMP_CWORD-2]}}
+  local help=
   for ((i = 1; i < COMP_CWORD; ++i)); do
     [[ ${{COMP_WORDS[i]}} == -* ]] && continue
+    # "help bench haptic" names a command, as "bench haptic" does.
+    if [[ $path$help == fettle && ${{COMP_WORDS[i]}} == help ]]; then help=1; continue; fi
     [[ " ${{commands[$path]-}} " == *" ${{COMP_WORDS[i]}} "* ]] || break
     path+=" ${{COMP_WORDS[i]}}"
   done
   COMPREPLY=()
+  if [[ -n $help ]]; then
+    ((i == COMP_CWORD)) && mapfile -t COMPREPLY < <(compgen -W "${{commands[$path]-}}" -- "$word")
+    return 0
+  fi
   local takes=${{values["$path $before"]-}}
   case $takes in
     list\ *)

@@ -9,6 +9,7 @@ namespace fettle::app {
 /// What stands at the foot of every page: "fettle 0.1.0".
 struct ManVersion {
   std::string program;
+  std::string date = {};  ///< "2026-11-25"; empty: none
 };
 
 /// "fettle-bench-haptic": the name of a command's page, in section 1.

@@ -44,7 +44,7 @@ _READ = Command(
     summary="Read a scan of any format: rasters, point clouds, meshes, files of instruments, sessions",
 )
 _SYNTH = Command("synth", "synth", hidden=("to", "force"))
-_MOSAIC = Command("mosaic", "mosaic", hidden=("to", "force", "from", "store"), hides=(WRITING,))
+_MOSAIC = Command("mosaic", "mosaic", hidden=("to", "force", "estimate", "from", "store"), hides=(WRITING,))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 
 
@@ -111,6 +111,10 @@ def replay(scan, strokes=None, *, progress=None, **options):
     if strokes is None:
         return Session(scan).replay(progress=progress)
     return (scan if isinstance(scan, Field) else read(scan)).replay(strokes, progress=progress, **options)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
 
 
 def formats() -> list[tuple[str, str, list[str], bool, bool]]:

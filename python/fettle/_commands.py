@@ -116,7 +116,9 @@ def type_of(row):
     if row["kind"] == "text" and row["values"] == "any":
         return "str | float | Sequence[str | float]"
     if row["kind"] == "word":
-        one = "Literal[" + ", ".join(repr(word["word"]) for word in row["words"]) + "]"
+        words = [word["word"] for word in row["words"]]
+        numbers = [word for word in words if all(each.isdigit() for each in words)]
+        one = "Literal[" + ", ".join([*map(repr, words), *numbers]) + "]"
     else:
         one = _TYPES[row["kind"]]
     if row["values"] == 1:

@@ -147,6 +147,14 @@ class Stub(unittest.TestCase):
                     checked += 1
         self.assertGreater(checked, 200)
 
+    def test_words_that_are_numbers_are_taken_as_numbers(self):
+        with open(os.path.join(os.path.dirname(fettle.__file__), "__init__.pyi"), encoding="utf-8") as file:
+            self.assertIn("turn: Literal['90', '180', '270', 90, 180, 270]", file.read())
+        self.assertEqual(fettle.synth(size=(40, 30)).transformed(turn=90).shape, (40, 30))
+
+    def test_dir_names_what_the_package_offers(self):
+        self.assertEqual(sorted(dir(fettle)), sorted([*fettle.__all__, "__version__"]))
+
     @unittest.skipIf(shutil.which("mypy") is None, "mypy is not installed")
     def test_mypy_takes_right_calls_and_refuses_wrong_ones(self):
         right = """
@@ -154,7 +162,7 @@ class Stub(unittest.TestCase):
             import numpy as np
             scan = fettle.read("scan.tif")
             clean: fettle.Field = scan.mark(edges=True).filter("tgv", max_change="50um").level(form="poly2", layer="put")
-            part: fettle.Field = clean.fill(max_extent=0.5).transformed(crop=(0, 0, 1, 1), to_spacing=0.02)
+            part: fettle.Field = clean.fill(max_extent=0.5).transformed(crop=(0, 0, 1, 1), to_spacing=0.02, turn=90)
             figures: dict = part.measure(only=["height", "hybrid"], at_height=[0, "-0.5um"])
             cut: dict = part.section(line=[(0, 0), (1, 1)], probe=(0.5, 0.5), compare=scan)
             picture: np.ndarray = scan.align(clean, moves="level").render(size=(640, 400))
