@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include "app/commands/recipe_file.h"
 #include "engine/base/job.h"
 #include "engine/field/builder.h"
 #include "engine/field/mark_setter.h"
@@ -27,6 +28,13 @@ namespace fettle::python {
 namespace py = pybind11;
 
 namespace {
+
+// In the recipe of the scan.
+void leaveOut(Scan& scan, const char* what) {
+  engine::Imported& data = scan.data;
+  if (data.steps.empty()) data.steps = data.recipe;
+  data.steps += app::leftOutLine(what);
+}
 
 constexpr const char* kArray = "array";
 
@@ -160,6 +168,7 @@ Scan withMarks(const Scan& scan, const py::array_t<bool>& marks) {
     }
     Scan made = scan;
     made.data.field = setter.result();
+    leaveOut(made, "the marks that a program set");
     if (!made.data.original) made.data.original = scan.data.field;
     return made;
   }();
@@ -204,6 +213,7 @@ std::vector<engine::EdgeLine> linesOf(const std::vector<LineRow>& rows, const en
 
 Scan withLines(const Scan& scan, const std::vector<LineRow>& rows) {
   Scan made = scan;
+  leaveOut(made, "the edge lines that a program set");
   if (!made.data.original) made.data.original = scan.data.field;
   if (rows.empty()) {
     made.data.field = made.data.field.withLines(nullptr);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -34,6 +35,7 @@ constexpr const char* kLevelWord = "level";
 constexpr const char* kFillWord = "fill";
 constexpr const char* kTransformWord = "transform";
 constexpr const char* kFormWord = "form";
+constexpr std::string_view kLeftOut = "# Left out: ";
 constexpr const char* kRecipeRemedy = "the page File formats of the documentation describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
@@ -404,30 +406,41 @@ double RecipeLength::in(const engine::Grid& grid) const noexcept {
   return unit ? value * unit->mm / grid.height_unit.mm : value;
 }
 
+std::string leftOutLine(const std::string& step) {
+  return fmt::format("{}{}\n", kLeftOut, step);
+}
+
 std::string recipeText(const Recipe& recipe) {
   std::string text = fmt::format(
       "# Steps of a session, for other scans: fettle apply RECIPE IN... --out-dir FOLDER\nrecipe = {}\n",
       kRecipeVersion);
-  for (const std::string& step : recipe.left_out) text += fmt::format("# Left out: {}\n", step);
+  for (const std::string& step : recipe.left_out) text += leftOutLine(step);
   for (const RecipeStep& step : recipe.steps)
     text += "\n[[step]]\n" + std::visit([](const auto& each) { return textOf(each); }, step);
   return text;
 }
 
-std::string recipeTextWith(const std::string& earlier, const RecipeStep& step) {
+RecipeLength recipeLength(double value, const engine::Grid& grid) {
+  const auto known = engine::lengthUnitFromName(grid.height_unit.name);
+  return {value, known && known->mm == grid.height_unit.mm ? known : std::nullopt};
+}
+
+engine::Result<Recipe> parseNote(const std::string& text) {
   Recipe recipe;
-  if (!earlier.empty()) {
-    auto read = parseRecipe(earlier, engine::kRecipeNote);
-    if (!read) return "";
+  if (text.find("[[step]]") != std::string::npos) {
+    auto read = parseRecipe(text, engine::kRecipeNote);
+    if (!read) return read;
     recipe = *std::move(read);
   }
-  recipe.steps.push_back(step);
-  return recipeText(recipe);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(kLeftOut)) recipe.left_out.push_back(line.substr(kLeftOut.size()));
+  return recipe;
 }
 
 bool putsForm(const std::string& recipe) {
-  const auto read = parseRecipe(recipe, engine::kRecipeNote);
-  const auto* last = read ? std::get_if<RecipeForm>(&read->steps.back()) : nullptr;
+  const auto read = parseNote(recipe);
+  const auto* last = read && !read->steps.empty() ? std::get_if<RecipeForm>(&read->steps.back()) : nullptr;
   return last != nullptr && last->layer == kLayerPut;
 }
 

@@ -84,9 +84,15 @@ struct Recipe {
 
 [[nodiscard]] std::string recipeText(const Recipe& recipe);
 
-/// The text of a recipe with one more step at its end; `earlier` is such a text, or empty for none. Empty where it cannot be
-/// read: then it is not known what came before the step.
-[[nodiscard]] std::string recipeTextWith(const std::string& earlier, const RecipeStep& step);
+/// A recipe as a session has it in a note: it may be empty or without steps, and what is left out is read back from the
+/// comments of recipeText. Errors: those of parseRecipe.
+[[nodiscard]] engine::Result<Recipe> parseNote(const std::string& text);
+
+/// The comment of a step that is left out, which may be added to such a text.
+[[nodiscard]] std::string leftOutLine(const std::string& step);
+
+/// A difference of heights of a scan [height_unit], with the unit where that is one which a recipe can read: volts are not.
+[[nodiscard]] RecipeLength recipeLength(double value, const engine::Grid& grid);
 
 /// Whether the last step of such a text puts a form over the field.
 [[nodiscard]] bool putsForm(const std::string& recipe);

@@ -1,5 +1,6 @@
 #include "app/commands/recipe_of_session.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,27 +40,56 @@ std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
   return made;
 }
 
-// What made the scan with which the session begins; apart the form that a command laid over it, which is a step.
-std::optional<RecipeForm> addNoted(const engine::Session& session, Recipe& recipe) {
-  const auto note = session.notes.find(engine::kRecipeNote);
-  if (note == session.notes.end()) return std::nullopt;
-  auto noted = parseRecipe(note->second, engine::kRecipeNote);
+// What is known of the states that no entry of the journal made.
+struct Noted {
+  std::optional<RecipeForm> over;  // that a command laid over the scan with which the session begins
+  bool lies = false;               // whether one is over the last of these states
+  std::int64_t states = 0;         // that a command made after that scan
+};
+
+// How many states a command wrote, and noted what led to them: one of its steps, then a form, then an inversion.
+std::int64_t statesOfCommands(const engine::Session& session, const std::map<std::int64_t, Made>& made) {
+  const engine::History& history = session.history;
+  if (!session.notes.contains(engine::kStepsNote) || history.first() != 0) return 0;
+  std::int64_t states = 0;
+  for (std::int64_t k = 1; k <= history.number() && !made.contains(k); ++k) {
+    const engine::StepInfo& info = history.info(k);
+    const bool by_commands =
+        info.kind == engine::StepKind::kImport && info.name == engine::kByCommands && k == 1;
+    if (!by_commands && info.kind != engine::StepKind::kForm && info.kind != engine::StepKind::kInvert) break;
+    states = k;
+  }
+  return states;
+}
+
+// What commands did before the first step of the journal.
+Noted addNoted(const engine::Session& session, const std::map<std::int64_t, Made>& made, Recipe& recipe) {
+  Noted known;
+  known.states = statesOfCommands(session, made);
+  const auto note = session.notes.find(known.states > 0 ? engine::kStepsNote : engine::kRecipeNote);
+  if (note == session.notes.end()) return known;
+  auto noted = parseNote(note->second);
   if (!noted) {
     recipe.left_out.push_back(fmt::format("what made the scan of step 0: {}", noted.error().line()));
-    return std::nullopt;
+    return known;
   }
-  std::optional<RecipeForm> over;
+  recipe.left_out = std::move(noted->left_out);
+  if (noted->steps.empty()) return known;
   if (const auto* last = std::get_if<RecipeForm>(&noted->steps.back());
-      last != nullptr && last->layer == kLayerPut) {
-    over = *last;
+      known.states == 0 && last != nullptr && last->layer == kLayerPut) {
+    known.over = *last;
     noted->steps.pop_back();
   }
-  bool lies = false;  // a form that is not left out
+  bool marks = false;       // that steps set
+  bool& lies = known.lies;  // a form that is not left out
   for (RecipeStep& step : noted->steps) {
     const auto* level = std::get_if<RecipeLevel>(&step);
     const auto* form = std::get_if<RecipeForm>(&step);
     const FormArguments* by = level != nullptr ? &level->form : form != nullptr ? &form->form : nullptr;
-    if (by != nullptr && by->region != "all") {
+    if (std::holds_alternative<RecipeEdges>(step)) marks = true;
+    // Marks that steps set again choose the samples again.
+    const bool chosen = !marks || !recipe.left_out.empty();
+    if (by != nullptr && by->region != "all" && chosen) {
       recipe.left_out.push_back(
           fmt::format("the {} of the {} samples of step 0: which these are belongs to this scan",
                       level != nullptr ? "level" : "form", by->region));
@@ -72,7 +102,7 @@ std::optional<RecipeForm> addNoted(const engine::Session& session, Recipe& recip
       recipe.steps.push_back(std::move(step));
     }
   }
-  return over;
+  return known;
 }
 
 bool hasMarks(const engine::Version& field) {
@@ -84,8 +114,8 @@ using Reason = tl::unexpected<const char*>;
 // The steps of the form over the field, as they follow each other.
 class FormSteps {
  public:
-  // `over`: that a command laid over the scan. `chosen`: whether marks of a hand chose samples of the scan.
-  FormSteps(std::optional<RecipeForm> over, bool chosen) : over_(std::move(over)), chosen_(chosen) {}
+  // `chosen`: whether marks of a hand chose samples of the scan.
+  FormSteps(const Noted& noted, bool chosen) : over_(noted.over), chosen_(chosen), lies_(noted.lies) {}
 
   // Marks that the recipe does not set again.
   void marksLeftOut() noexcept { chosen_ = true; }
@@ -121,7 +151,7 @@ class FormSteps {
  private:
   std::optional<RecipeForm> over_;
   bool chosen_;
-  bool lies_ = false;  // a form, after the steps that are not left out
+  bool lies_;  // a form, after the steps that are not left out
 };
 
 }  // namespace
@@ -129,15 +159,11 @@ class FormSteps {
 engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job) {
   const engine::History& history = session.history;
   const std::map<std::int64_t, Made> made = madeBy(session);
-  // A unit that is no length, such as volts, is that of the scan; a recipe names only those that it can read.
-  const engine::LengthUnit& unit = history.current().grid().height_unit;
-  const auto known = engine::lengthUnitFromName(unit.name);
-  const auto length = [&](double value) {
-    return RecipeLength{value, known && known->mm == unit.mm ? known : std::nullopt};
-  };
+  const auto length = [&](double value) { return recipeLength(value, history.current().grid()); };
   Recipe recipe;
-  FormSteps forms(addNoted(session, recipe), hasMarks(session.original));
-  for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
+  const Noted noted = addNoted(session, made, recipe);
+  FormSteps forms(noted, hasMarks(history.state(std::max(noted.states, history.first()))));
+  for (std::int64_t k = std::max(noted.states, history.first()) + 1; k <= history.number(); ++k) {
     const engine::StepInfo& info = history.info(k);
     const auto leave = [&](const char* why) {
       if (info.kind == engine::StepKind::kMark || info.kind == engine::StepKind::kLines ||

@@ -200,6 +200,8 @@ engine::Status saveField(const engine::Version& field, const std::string& path, 
     place->scan.emplace();
     place->scan->field = field;
     place->scan->original = writing.original;
+    place->scan->recipe = writing.recipe;
+    place->scan->steps = writing.steps;
     return {};
   }
   return writeTo(path, withDot(to), job, [&](const std::string& file) -> engine::Status {

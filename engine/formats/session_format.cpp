@@ -26,6 +26,15 @@ bool looksLikeSession(std::string_view head, std::string_view extension) {
   return application == kSessionApplicationId;
 }
 
+// The note of steps, where they and no others led to the current state.
+std::string stepsOfCommands(const Session& session) {
+  const History& history = session.history;
+  const auto steps = session.notes.find(kStepsNote);
+  if (steps == session.notes.end() || history.number() != 1 || history.first() != 0) return {};
+  const StepInfo& only = history.info(1);
+  return only.kind == StepKind::kImport && only.name == kByCommands ? steps->second : std::string();
+}
+
 Result<Imported> readSession(const InputFile& file, const ImportOptions& options, JobControl& job) {
   if (options.no_data || options.z_scale)
     return inputError("a session stores heights and holes unchanged",
@@ -42,6 +51,7 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
       (inverted ? session->original.inverted() : session->original).withForm(imported.field.form());
   if (const auto recipe = session->notes.find(kRecipeNote); recipe != session->notes.end())
     imported.recipe = recipe->second;
+  imported.steps = stepsOfCommands(*session);
   imported.format = "Fettle";
   Grid grid = imported.field.grid();
   if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {
@@ -78,12 +88,18 @@ Result<Exported> writeSession(const Version& field, const std::string& path, con
   session.history = History(session.original);
   if (const Version worked = upright(field).withForm(nullptr);
       !tilesThatDiffer(session.original, worked).empty() || worked.lines() != session.original.lines())
-    session.history.push({"Earlier steps", StepKind::kImport, stepTimeNow(), {}, 0}, worked);
+    session.history.push(
+        {options.steps.empty() ? "Earlier steps" : kByCommands, StepKind::kImport, stepTimeNow(), {}, 0},
+        worked);
   if (field.form() != nullptr)
     session.history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0},
                          session.history.current().withForm(field.form()));
   if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
-  if (!options.recipe.empty()) session.notes.emplace(kRecipeNote, options.recipe);
+  // Steps that changed nothing are of the scan itself.
+  const bool stepped = session.history.number() > 0;
+  const std::string& before = stepped || options.steps.empty() ? options.recipe : options.steps;
+  if (!before.empty()) session.notes.emplace(kRecipeNote, before);
+  if (stepped && !options.steps.empty()) session.notes.emplace(kStepsNote, options.steps);
   if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());
   return Exported{"Fettle", {}};
 }

@@ -42,6 +42,9 @@ struct ExportOptions {
   /// Session: steps that made the field with which it begins, as a recipe (docs/formats.md); kept as its note "recipe".
   /// Empty: none.
   std::string recipe = {};
+  /// Session: all steps that led to the field, those of `recipe` first, where `original` is not the field; kept as its note
+  /// "steps". Empty: not known.
+  std::string steps = {};
   /// TIFF: without a value kNone, and kDeflate where cloud-optimised.
   std::optional<TiffCompression> tiff_compression;
 };

@@ -53,6 +53,10 @@ struct JournalEntry {
 using SessionNotes = std::map<std::string, std::string>;
 /// The note of the steps that made the scan with which the session begins, as a recipe (docs/formats.md).
 inline constexpr const char* kRecipeNote = "recipe";
+/// The note of all steps, those of kRecipeNote first, that led to what a command wrote after that scan: to the step of the
+/// name kByCommands, a form and an inversion after it. No entry of the journal is of these.
+inline constexpr const char* kStepsNote = "steps";
+inline constexpr const char* kByCommands = "By commands";
 
 /// A session in memory.
 struct Session {
