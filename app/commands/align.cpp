@@ -7,12 +7,16 @@
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/nominal_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/moved_onto.h"
 #include "engine/nominal/nominal_surface.h"
@@ -26,24 +30,50 @@ struct AlignCommand {
   AlignArguments how;
   NominalArguments nominal;
   Replacing replacing = Replacing::kNoWork;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
 
 // Where B lies, and B at the samples of A, if that is written.
 struct PlacedB {
-  engine::Alignment alignment;
-  std::optional<engine::Version> moved;
-  std::optional<Report> nominal;
+  engine::Alignment alignment = {};
+  std::optional<engine::Version> moved = {};
+  std::optional<Report> nominal = {};
+  std::optional<Report> only = {};  // an estimate: nothing was done
 };
+
+engine::Result<Foreseen> foreseeAlign(const AlignCommand& options, const engine::Version& a,
+                                      PlannedOnPieces finding, PlannedOnPieces::Work moving,
+                                      engine::JobControl& job) {
+  PlannedWork planned{
+      .field = a,
+      .original = a,
+      .steps = {std::move(finding)},
+      .out = memoryPlace(options.out) == nullptr ? options.out : std::string(),
+      .extension = isStream(options.out) ? withDot(options.to) : engine::extensionOf(options.out),
+      .writing = options.writing};
+  if (!options.out.empty())
+    planned.steps.emplace_back(PlannedOnPieces{.work = std::move(moving), .fields = 2});
+  return foresee(planned, shownInput(options.b), options.estimate, job);
+}
 
 engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Version& a,
                                     engine::JobControl& job) {
   const auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
+  auto foreseen = foreseeAlign(
+      options, a, plannedAlignment(a, b->field, options.how),
+      [&](const engine::SampleRect& r, engine::JobControl& own) {
+        const engine::Version piece = engine::pieceOf(a, r.column, r.row, r.columns, r.rows);
+        return engine::movedOnto(piece, engine::RigidMotion{}, piece.grid(), own);
+      },
+      job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
   const auto alignment = alignmentOf(a, b->field, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
-  PlacedB placed{*alignment, std::nullopt, std::nullopt};
+  PlacedB placed{.alignment = *alignment};
   if (options.out.empty()) return placed;
   auto moved = engine::movedOnto(b->field, alignment->motion, a.grid(), job);
   if (!moved) return tl::unexpected(moved.error());
@@ -55,9 +85,20 @@ engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine
                                        engine::JobControl& job) {
   const auto nominal = loadNominal(options.b, options.nominal, a.grid(), Sides::kNotNeeded, job);
   if (!nominal) return tl::unexpected(nominal.error());
+  auto foreseen = foreseeAlign(
+      options, a, plannedAlignment(a, *nominal, options.how),
+      [&](const engine::SampleRect& r, engine::JobControl& own) {
+        const engine::Version piece = engine::pieceOf(a, r.column, r.row, r.columns, r.rows);
+        return engine::nominalHeights(
+            engine::NominalSurface(*nominal, engine::RigidMotion{}, engine::slackOn(piece.grid())),
+            piece.grid(), own);
+      },
+      job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
   const auto alignment = alignmentOf(a, *nominal, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
-  PlacedB placed{*alignment, std::nullopt, nominalReport(options.nominal, *nominal)};
+  PlacedB placed{.alignment = *alignment, .nominal = nominalReport(options.nominal, *nominal)};
   if (options.out.empty()) return placed;
   auto heights = engine::nominalHeights(
       engine::NominalSurface(*nominal, alignment->motion, engine::slackOn(a.grid())), a.grid(), job);
@@ -86,6 +127,7 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
   const auto placed = isNominal(options.b, options.reading) ? alignedNominal(options, a->field, job)
                                                             : alignedScan(options, a->field, job);
   if (!placed) return tl::unexpected(placed.error());
+  if (placed->only) return *placed->only;
   Report report = alignReport(options.how, placed->alignment);
   if (placed->nominal) report["nominal"] = *placed->nominal;
   if (placed->moved) {
@@ -138,6 +180,7 @@ void addAlign(Command root, Chosen& chosen) {
         .kind = ValueKind::kFormat,
         .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addForceOption(command, options->replacing);
+  addEstimateOption(command, options->estimate);
   addAlignOptions(command, options->how);
   addNominalOptions(command, options->nominal);
   addCompressOption(command, options->writing);

@@ -14,6 +14,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/filling.h"
 #include "app/commands/finished_scans.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/level_layer.h"
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
@@ -35,8 +36,6 @@
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
 #include "engine/formats/formats.h"
-#include "engine/measure/form_fit.h"
-#include "engine/measure/line_offsets.h"
 #include "engine/resume/work_identity.h"
 
 namespace fettle::app {
@@ -246,33 +245,9 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
                           : engine::Result<engine::Version>(tl::unexpected(marked.error()));
           }});
     } else if (const auto* level = std::get_if<RecipeLevel>(&step)) {
-      steps.emplace_back(
-          PlannedOnPieces{[&field, level](const engine::SampleRect& r, engine::JobControl& own) {
-            const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
-            engine::FormChoice form = formChoiceOf(level->form);
-            form.region = engine::Region::kAll;  // marks of an earlier step are not there yet
-            Levelling levelling;
-            if (!level->lines.rows.empty()) {
-              engine::LineOptions counting = lineOptionsOf(level->lines, level->form);
-              counting.region = engine::Region::kAll;
-              auto lines = engine::findLineOffsets(piece, counting, own);
-              if (!lines && lines.error().kind == engine::ErrorKind::kInput)
-                return engine::Result<engine::Version>(piece);
-              if (!lines) return engine::Result<engine::Version>(tl::unexpected(lines.error()));
-              levelling.lines = *std::move(lines);
-            }
-            auto fit = engine::fitNominalForm(piece, form, own);
-            // Of a piece of holes there is none.
-            if (!fit && fit.error().kind == engine::ErrorKind::kInput)
-              return engine::Result<engine::Version>(piece);
-            if (!fit) return engine::Result<engine::Version>(tl::unexpected(fit.error()));
-            levelling.fit = *std::move(fit);
-            // As the step: the scan, and what its changes are limited from; the one without its lines costs as much.
-            auto levelled = levelling.takenFrom(piece, own);
-            const auto limit = levelling.takenFrom(piece, own);
-            if (levelled && !limit) return engine::Result<engine::Version>(tl::unexpected(limit.error()));
-            return levelled;
-          }});
+      FormArguments form = level->form;
+      form.region = "all";  // marks of an earlier step are not there yet
+      steps.emplace_back(plannedLevel(field, field, level->lines, form, Lowered::kTwice));
     } else if (const auto* filling = std::get_if<RecipeFill>(&step)) {
       const auto fill = fillOptionsOf(filling->what, grid);
       if (!fill) return tl::unexpected(fill.error());
@@ -325,19 +300,17 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   const engine::Stopwatch watch;
   Applied at{imported->field, original, task, *imported, options};
   engine::ExportOptions writing = options.writing;
-  writing.recipe = imported->recipe;
-  bool worked_on = isWorkedOn(*imported);
+  auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
   for (std::size_t k = 0; k < recipe.steps.size(); ++k) {
-    // What a session begins with is levelled and transformed, too, or loses the form that is baked: by a fit that is known
-    // only where it is that of an unchanged scan. A layer is a step after that.
-    const auto* form = std::get_if<RecipeForm>(&recipe.steps[k]);
-    if (form != nullptr && form->layer != kLayerBake)
-      writing.recipe = recipeTextWith(writing.recipe, recipe.steps[k]);
-    else if (form != nullptr || std::holds_alternative<RecipeLevel>(recipe.steps[k]) ||
+    // What a session begins with is levelled and transformed, too, and under the same form.
+    if (const auto* level = std::get_if<RecipeLevel>(&recipe.steps[k]))
+      known->levelledBoth(*level);
+    else if (std::holds_alternative<RecipeForm>(recipe.steps[k]) ||
              std::holds_alternative<RecipeTransform>(recipe.steps[k]))
-      writing.recipe = worked_on ? "" : recipeTextWith(writing.recipe, recipe.steps[k]);
+      known->didToBoth(recipe.steps[k]);
     else
-      worked_on = true;
+      known->did(recipe.steps[k]);
     if (auto done = std::visit([&](const auto& step) { return take(step, at, job); }, recipe.steps[k]);
         !done) {
       engine::Error error = done.error();
@@ -349,6 +322,7 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   }
   const double seconds = watch.seconds();
   writing.original = at.original;
+  known->note(writing);
   if (auto status = saveField(at.field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   std::error_code ignored;

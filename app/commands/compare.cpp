@@ -1,5 +1,6 @@
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -55,8 +56,6 @@ void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a
 
 // Options that say something about an alignment, or that exclude one.
 engine::Status checkAligned(const CompareArguments& options) {
-  if (options.aligned && options.estimate)
-    return engine::inputError("what aligning takes is not known before", "--estimate", "leave out --align");
   if (options.aligned) return checkAlign(options.align);
   const char* const alone = options.align.rotation          ? "--rotation"
                             : options.align.region != "all" ? "--region"
@@ -74,10 +73,49 @@ engine::Status checkNominal(const CompareArguments& options) {
                          : engine::inputError(fmt::format("{} is no nominal mesh", shownInput(options.b)),
                                               alone, "give an .stl as B");
   }
-  const char* const excluded = !options.truth.empty() ? "--truth" : options.estimate ? "--estimate" : nullptr;
-  return excluded == nullptr ? engine::Status()
-                             : engine::inputError(fmt::format("{} is a nominal mesh", shownInput(options.b)),
-                                                  excluded, "it is for two scans");
+  return options.truth.empty()
+             ? engine::Status()
+             : engine::inputError(fmt::format("{} is a nominal mesh", shownInput(options.b)), "--truth",
+                                  "it is for two scans");
+}
+
+engine::Result<Foreseen> foreseeCompare(const CompareArguments& options, const engine::Version& a,
+                                        const engine::Version& b, engine::JobControl& job) {
+  const engine::Grid &of_a = a.grid(), &of_b = b.grid();
+  // The comparison refuses it.
+  if (!options.aligned && (of_a.width != of_b.width || of_a.height != of_b.height)) return Foreseen{};
+  const auto pieceAt = [](const engine::Version& of, const engine::SampleRect& r) {
+    return engine::pieceOf(of, r.column, r.row, r.columns, r.rows);
+  };
+  std::vector<PlannedStep> steps;
+  if (options.aligned) {
+    steps.emplace_back(plannedAlignment(a, b, options.align));
+    // As long as of B, whose samples may be others.
+    steps.emplace_back(PlannedOnPieces{.work = [&](const engine::SampleRect& r, engine::JobControl& own) {
+      const engine::Version piece = pieceAt(a, r);
+      return engine::movedOnto(piece, engine::RigidMotion{}, piece.grid(), own);
+    }});
+  }
+  steps.emplace_back(
+      PlannedOnPieces{.work =
+                          [&](const engine::SampleRect& r, engine::JobControl& own) {
+                            const engine::Version first = pieceAt(a, r);
+                            const engine::Version second = options.aligned ? first : pieceAt(b, r);
+                            const auto compared = engine::compareFields(first, second, own);
+                            if (!compared)
+                              return engine::Result<engine::Version>(tl::unexpected(compared.error()));
+                            return options.deviation.empty() ? engine::Result<engine::Version>(first)
+                                                             : engine::deviationField(first, second, own);
+                          },
+                      .fields = 2});
+  const PlannedWork planned{
+      .field = a,
+      .original = a,
+      .steps = std::move(steps),
+      .out = memoryPlace(options.deviation) != nullptr ? std::string() : options.deviation,
+      .extension = isStream(options.deviation) ? withDot(options.to) : engine::extensionOf(options.deviation),
+      .writing = {}};
+  return foresee(planned, shownInput(options.b), options.estimate, job);
 }
 
 engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
@@ -91,12 +129,16 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
       !status)
     return tl::unexpected(status.error());
   if (isNominal(options.b, options.reading))
-    return compareNominal(options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
-                          options.reading, options.deviation, options.to, job);
+    return compareNominal({options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
+                           options.reading, options.deviation, options.to, options.estimate},
+                          job);
   const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
   auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
+  auto foreseen = foreseeCompare(options, a->field, b->field, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   Report alignment;
   if (options.aligned) {
     const auto found = alignmentOf(a->field, b->field, options.a, options.b, options.align, job);
@@ -105,32 +147,6 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
     if (!moved) return tl::unexpected(moved.error());
     b->field = *std::move(moved);
     alignment = alignReport(options.align, *found);
-  }
-  const bool same_size =
-      a->field.grid().width == b->field.grid().width && a->field.grid().height == b->field.grid().height;
-  if (same_size && !options.aligned) {
-    const PlannedOnPieces comparing{
-        [&](const engine::SampleRect& r, engine::JobControl& own) {
-          const engine::Version first = engine::pieceOf(a->field, r.column, r.row, r.columns, r.rows);
-          const engine::Version second = engine::pieceOf(b->field, r.column, r.row, r.columns, r.rows);
-          const auto compared = engine::compareFields(first, second, own);
-          if (!compared) return engine::Result<engine::Version>(tl::unexpected(compared.error()));
-          return options.deviation.empty() ? engine::Result<engine::Version>(first)
-                                           : engine::deviationField(first, second, own);
-        },
-        2};
-    const bool in_memory = memoryPlace(options.deviation) != nullptr;
-    const PlannedWork planned{.field = b->field,
-                              .original = b->field,
-                              .steps = {comparing},
-                              .out = in_memory ? std::string() : options.deviation,
-                              .extension = isStream(options.deviation)
-                                               ? withDot(options.to)
-                                               : engine::extensionOf(options.deviation),
-                              .writing = {}};
-    auto foreseen = foresee(planned, shownInput(options.b), options.estimate, job);
-    if (!foreseen) return tl::unexpected(foreseen.error());
-    if (foreseen->only) return *std::move(foreseen->only);
   }
   const auto deviation = engine::compareFields(a->field, b->field, job);
   if (!deviation) return tl::unexpected(deviation.error());
@@ -172,6 +188,7 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
 }
 
 void printCompared(const Report& report) {
+  if (report.contains("text")) return printReport(report);
   if (report.contains("align")) printAlignment(report["align"]);
   Report rest = report;
   rest.erase("align");

@@ -2,13 +2,19 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "app/commands/estimate_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
+#include "app/work/outputs.h"
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 #include "engine/nominal/nominal_deviation.h"
 
 namespace fettle::app {
@@ -40,6 +46,38 @@ engine::Result<NominalInPlace> nominalInPlace(const engine::Version& part, const
   return NominalInPlace{placed->motion, std::nullopt};
 }
 
+// The mesh is searched as a whole for each piece, as for the part.
+engine::Result<Foreseen> foreseeNominal(const NominalComparison& comparison, const engine::Version& part,
+                                        const engine::NominalMesh& mesh,
+                                        const engine::NominalOptions& options, engine::JobControl& job) {
+  const auto stored = engine::placedAsStored(mesh, part.grid());
+  std::vector<PlannedStep> steps;
+  if (comparison.align != nullptr) steps.emplace_back(plannedAlignment(part, mesh, *comparison.align));
+  steps.emplace_back(PlannedOnPieces{.work = [&, motion = stored ? stored->motion : engine::RigidMotion{}](
+                                                 const engine::SampleRect& r,
+                                                 engine::JobControl& own) -> engine::Result<engine::Version> {
+    const engine::Version piece = engine::pieceOf(part, r.column, r.row, r.columns, r.rows);
+    engine::RigidMotion to_piece = motion;
+    to_piece.shift -= glm::dvec3(r.column * part.grid().spacingXMm(), r.row * part.grid().spacingYMm(), 0.0);
+    auto found = engine::deviationFromNominal(piece, mesh, to_piece, options, own);
+    if (!found) return tl::unexpected(found.error());
+    return std::move(found->field);
+  }});
+  const bool in_memory = memoryPlace(comparison.deviation) != nullptr;
+  const PlannedWork planned{.field = part,
+                            .original = part,
+                            .steps = std::move(steps),
+                            .out = in_memory ? std::string() : comparison.deviation,
+                            .extension = isStream(comparison.deviation)
+                                             ? withDot(comparison.to)
+                                             : engine::extensionOf(comparison.deviation),
+                            .writing = {}};
+  // Of a part with few samples what is done once for the mesh is most of the work.
+  const bool few = static_cast<std::int64_t>(mesh.triangles().size()) * 32 > part.grid().samples();
+  if (few && !comparison.estimate) return Foreseen{};
+  return foresee(planned, shownInput(comparison.nominal), comparison.estimate, job);
+}
+
 }  // namespace
 
 void addInspectOptions(Command command, InspectArguments& arguments) {
@@ -65,10 +103,8 @@ std::string optionOfNominal(const InspectArguments& arguments) {
                                             : "";
 }
 
-engine::Result<Report> compareNominal(const std::string& part, const std::string& nominal,
-                                      const InspectArguments& arguments, const AlignArguments* align,
-                                      const ScanOptions& reading, const std::string& deviation,
-                                      const std::string& to, engine::JobControl& job) {
+engine::Result<Report> compareNominal(const NominalComparison& comparison, engine::JobControl& job) {
+  const auto& [part, nominal, arguments, align, reading, deviation, to, estimate] = comparison;
   engine::NominalOptions options;
   options.distance = arguments.distance == "shortest" ? engine::NominalDistance::kShortest
                                                       : engine::NominalDistance::kVertical;
@@ -84,6 +120,9 @@ engine::Result<Report> compareNominal(const std::string& part, const std::string
       nominal, arguments.nominal, grid,
       options.distance == engine::NominalDistance::kShortest ? Sides::kNeeded : Sides::kNotNeeded, job);
   if (!mesh) return tl::unexpected(mesh.error());
+  auto foreseen = foreseeNominal(comparison, a->field, *mesh, options, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   auto placed = nominalInPlace(a->field, *mesh, part, nominal, align, job);
   if (!placed) return tl::unexpected(placed.error());
   const auto found = engine::deviationFromNominal(a->field, *mesh, placed->motion, options, job);

@@ -24,12 +24,19 @@ void addInspectOptions(Command command, InspectArguments& arguments);
 /// The option among these that is given although B is no mesh; empty: none.
 [[nodiscard]] std::string optionOfNominal(const InspectArguments& arguments);
 
-/// The report of fettle compare where B is a mesh: how the part deviates from it, above 0 where the part has more.
-/// `align`: null where it is measured in the place that the files state. Writes `deviation`, empty: nothing.
-[[nodiscard]] engine::Result<Report> compareNominal(const std::string& part, const std::string& nominal,
-                                                    const InspectArguments& arguments,
-                                                    const AlignArguments* align, const ScanOptions& reading,
-                                                    const std::string& deviation, const std::string& to,
+/// `fettle compare` where B is a mesh.
+struct NominalComparison {
+  const std::string &part, &nominal;  ///< paths
+  const InspectArguments& inspect;
+  const AlignArguments* align;  ///< null: it is measured in the place that the files state
+  const ScanOptions& reading;
+  const std::string& deviation;  ///< to write, empty: nothing; to "-" in the format `to`
+  const std::string& to;
+  bool estimate;
+};
+
+/// Its report: how the part deviates from the mesh, above 0 where the part has more; or an estimate alone.
+[[nodiscard]] engine::Result<Report> compareNominal(const NominalComparison& comparison,
                                                     engine::JobControl& job);
 
 }  // namespace fettle::app

@@ -4,6 +4,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -30,11 +31,16 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   if (!imported) return tl::unexpected(imported.error());
   if (MemoryPlace* place = memoryPlace(task.out)) {
     place->scan = *imported;
-    return Report{{"format", ""}, {"from", imported->format}, {"warnings", imported->warnings}};
+    return Report{{"format", ""},
+                  {"from", imported->format},
+                  {"hash", hashOf(imported->field)},
+                  {"warnings", imported->warnings}};
   }
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original;
-  writing.recipe = imported->recipe;
+  const auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  known->note(writing);
   if (!options.max_error.empty()) {
     const auto error = parseHeight(options.max_error, imported->field.grid(), "--max-error");
     if (!error) return tl::unexpected(error.error());
@@ -59,7 +65,10 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
     written->warnings.push_back("the marks of the session are not stored, the format has none");
   for (const std::string& warning : written->warnings) warn(shownOutput(task.out) + ": " + warning);
-  return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
+  return Report{{"format", written->format},
+                {"from", imported->format},
+                {"hash", hashOf(imported->field)},
+                {"warnings", written->warnings}};
 }
 
 engine::Result<Report> convert(const ConvertArguments& options, engine::JobControl& job) {

@@ -10,6 +10,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/filling.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
@@ -92,7 +93,13 @@ engine::Result<Report> fillOne(const FillRun& options, const BatchTask& task, en
   sayWhatStays(*done, task.in, *fill);
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original.value_or(imported->field);
-  writing.recipe = imported->recipe;
+  auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  for (const auto& [file, what] :
+       {std::pair(&options.keep, "marks of --keep"), {&options.lines, "edge lines of --lines"}})
+    if (!file->empty()) known->leftOut(fmt::format("the {}: they belong to this scan", what));
+  known->did(RecipeFill{options.what});
+  known->note(writing);
   if (done->filled > 0 && options.filled_out.empty() && memoryPlace(task.out) == nullptr &&
       !writesSession(task))
     warn(fmt::format("{}: only a session stores which samples were filled{}", shownOutput(task.out),

@@ -16,6 +16,7 @@
 #include "app/commands/compute_option.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/place_report.h"
@@ -114,6 +115,32 @@ engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   return spec;
 }
 
+// What a session that is written notes of this filter; `spec` as typed.
+engine::Status noteSteps(const FilterArguments& options, engine::FilterSpec spec, const BatchTask& task,
+                         const engine::Imported& imported, engine::ExportOptions& writing,
+                         engine::JobControl& job) {
+  auto known = KnownSteps::of(imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  const engine::Grid& grid = imported.field.grid();
+  RecipeFilter step;
+  if (engine::hasRange(spec.kind) && spec.range_sigma > 0.0)
+    step.range_sigma = recipeLength(spec.range_sigma, grid);
+  if (spec.max_change) step.max_change = recipeLength(*spec.max_change, grid);
+  spec.range_sigma = 0.0;
+  spec.max_change.reset();
+  step.spec = spec;
+  if (!options.original.empty())
+    known->leftOut("what was done before the filter to the scan that --original names");
+  for (const auto& [file, option] :
+       {std::pair(&options.keep, "--keep"), {&options.only, "--only"}, {&options.lines, "--lines"}})
+    if (!file->empty())
+      known->leftOut(fmt::format("the {} of {}: they belong to this scan",
+                                 file == &options.lines ? "edge lines" : "marks", option));
+  known->did(step);
+  known->note(writing);
+  return {};
+}
+
 engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterSpec spec,
                                  FilterCompute& compute, const BatchTask& task, engine::JobControl& job) {
   auto imported = loadScan(task.in, options.reading, job);
@@ -137,6 +164,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     // 0 would select the noise's.
     if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
   }
+  const engine::FilterSpec typed = spec;
   const auto ready = engine::withMeasuredRange(spec, field, job);
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
@@ -148,7 +176,8 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (auto report = finished.earlier(task.out, identity)) return *std::move(report);
   engine::ExportOptions writing = options.writing;
   writing.original = *original;
-  if (options.original.empty()) writing.recipe = imported->recipe;
+  if (auto status = noteSteps(options, typed, task, *imported, writing, job); !status)
+    return tl::unexpected(status.error());
   const PlannedWork planned{
       .field = field,
       .original = *original,
@@ -392,14 +421,16 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   request.budget_s = options.budget;
   request.threads = options.threads;
   // A suggestion is tried on pieces of so many samples at most.
-  const PlannedOnPieces trying{
-      [&](const engine::SampleRect& rect, engine::JobControl& own) {
-        const engine::Version piece = engine::pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
-        auto tried = engine::suggestFilter(piece, request, own);
-        return tried ? engine::Result<engine::Version>(piece)
-                     : engine::Result<engine::Version>(tl::unexpected(tried.error()));
-      },
-      1, engine::kMostSuggestionSamples};
+  PlannedOnPieces trying{[&](const engine::SampleRect& rect, engine::JobControl& own) {
+                           const engine::Version piece =
+                               engine::pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
+                           auto tried = engine::suggestFilter(piece, request, own);
+                           return tried ? engine::Result<engine::Version>(piece)
+                                        : engine::Result<engine::Version>(tl::unexpected(tried.error()));
+                         },
+                         1, engine::kMostSuggestionSamples};
+  // Measured on scans of 1200 and 3000 samples a side; squares as small as an estimate tries show half of it.
+  trying.memory_each = 105.0;
   const PlannedWork planned{
       .field = field, .original = field, .steps = {trying}, .out = {}, .extension = {}, .writing = {}};
   auto foreseen = foresee(planned, shownInput(options.files.files[0]), options.estimate, job);

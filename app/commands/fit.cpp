@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/fit_files.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
@@ -17,8 +18,11 @@
 #include "app/commands/section_options.h"
 #include "app/commands/step_file.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/fit_choice.h"
@@ -40,6 +44,7 @@ struct FitArguments {
   std::vector<int> between;
   std::string csv, step, residuals;
   Replacing replacing = Replacing::kNoWork;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -130,6 +135,36 @@ void warnOfOtherShape(const FittedRegion& fitted, double noise_mm) {
                   fitted.number, times, engine::infoOf(found.shape.kind).word));
 }
 
+// As if the samples of all regions were those of one.
+engine::Result<Foreseen> foreseeFit(const FitArguments& options, const engine::Version& field,
+                                    const std::vector<engine::FitRegion>& regions,
+                                    const std::vector<engine::ShapeKind>& kinds,
+                                    const engine::FitOptions& how, engine::JobControl& job) {
+  std::int64_t samples = 0;
+  for (const engine::FitRegion& region : regions) samples += region.samples;
+  PlannedOnPieces fitting;
+  fitting.share = static_cast<double>(samples) / static_cast<double>(field.grid().samples());
+  fitting.work = [&](const engine::SampleRect& r,
+                     engine::JobControl& own) -> engine::Result<engine::Version> {
+    const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+    auto region = engine::wholeRegion(piece, engine::Region::kAll, own);
+    if (!region) return tl::unexpected(region.error());
+    auto chosen = engine::fitBestShape(piece, *region, kinds, how, own);
+    // What the samples of a piece do not determine was tried all the same.
+    if (!chosen && chosen.error().kind == engine::ErrorKind::kInput) return piece;
+    if (!chosen) return tl::unexpected(chosen.error());
+    if (options.residuals.empty()) return piece;
+    return residualField(piece, {{1, *std::move(region), *std::move(chosen)}}, how.vertical, own);
+  };
+  const PlannedWork planned{.field = field,
+                            .original = field,
+                            .steps = {fitting},
+                            .out = memoryPlace(options.residuals) == nullptr ? options.residuals : "",
+                            .extension = engine::extensionOf(options.residuals),
+                            .writing = options.writing};
+  return foresee(planned, shownInput(options.scan), options.estimate, job);
+}
+
 engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job) {
   if (auto status = checkFit(options); !status) return tl::unexpected(status.error());
   if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"},
@@ -159,6 +194,9 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
   if (!regions) return tl::unexpected(regions.error());
 
   const std::vector<engine::ShapeKind> kinds = kindsOf(options);
+  auto foreseen = foreseeFit(options, *field, *regions, kinds, how, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   Report report{{"noise_mm", std::isnan(how.noise_mm) ? Report() : Report(how.noise_mm)},
                 {"distance", options.distance},
                 {"robust", options.robust},
@@ -312,6 +350,7 @@ void addFit(Command root, Chosen& chosen) {
                 .kind = ValueKind::kNewScan}},
               kWriting);
   addForceOption(command, options->replacing);
+  addEstimateOption(command, options->estimate);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(

@@ -118,6 +118,7 @@ Report relationReport(int first, int second, const engine::ShapeRelation& relati
 }
 
 void printFits(const Report& report) {
+  if (report.contains("text")) return printReport(report);
   const ReadAs degrees{"degrees", 1.0};
   if (!report["noise_mm"].is_null()) {
     const double noise = report["noise_mm"].get<double>();

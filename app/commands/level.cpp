@@ -4,7 +4,9 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/level_layer.h"
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
@@ -12,7 +14,10 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
+#include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 
@@ -24,9 +29,23 @@ struct LevelArguments {
   std::string scan_axis = "x";
   FormArguments form;
   std::string layer;  // empty: the form becomes heights
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
+
+engine::Result<Foreseen> foreseeLevel(const LevelArguments& options, const BatchTask& task,
+                                      const engine::Version& field, const engine::Version& counted,
+                                      const LineArguments& lines, engine::JobControl& job) {
+  const PlannedWork planned{
+      .field = field,
+      .original = field,
+      .steps = {plannedLevel(field, counted, lines, options.form, Lowered::kOnce)},
+      .out = task.out,
+      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+      .writing = options.writing};
+  return foresee(planned, shownOutput(task.out), options.estimate, job);
+}
 
 engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& task,
                                 engine::JobControl& job) {
@@ -35,6 +54,11 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   auto counted = countedOf(imported->field, imported->original, task.in, options.form, job);
   if (!counted) return tl::unexpected(counted.error());
   const LineArguments lines{options.rows, options.scan_axis};
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(task.out) == nullptr)
+    foreseen = foreseeLevel(options, task, imported->field, *counted, lines, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const auto levelling = levellingOf(*counted, task.in, *imported, lines, options.form, job);
   if (!levelling) return tl::unexpected(levelling.error());
   // Of the scan as it was read: the marks chose the samples that count, it keeps its own; and it is rounded once.
@@ -49,10 +73,16 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
     if (!measured) return tl::unexpected(measured.error());
     writing.original = *std::move(measured);
   }
-  // Of a session that was worked on the steps before this one would be missing; samples that were filled are no region
-  // of a recipe.
-  if (!isWorkedOn(*imported) && options.form.region != "measured")
-    writing.recipe = recipeTextWith(imported->recipe, RecipeLevel{lines, options.form});
+  auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  // Samples that were filled are no region of a recipe.
+  RecipeLevel step{lines, options.form};
+  if (step.form.region == "measured") {
+    known->leftOut("that filled samples did not count in the level");
+    step.form.region = "all";
+  }
+  known->beganWith(step);
+  known->note(writing);
   if (auto status = saveField(*levelled, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   Report report;
@@ -82,9 +112,10 @@ engine::Result<Report> level(const LevelArguments& options, engine::JobControl& 
     if (auto status = checkLayer(options.layer, options.form, *tasks); !status)
       return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
-    return options.layer.empty()
-               ? levelOne(options, task, j)
-               : changeLayer(options.layer, options.form, options.reading, options.writing, task, j);
+    return options.layer.empty() ? levelOne(options, task, j)
+                                 : changeLayer({options.layer, options.form, options.reading, options.writing,
+                                                options.estimate},
+                                               task, j);
   };
   if (options.files.many()) return runBatch(*tasks, job, one);
   const ProgressLine progress(job);
@@ -119,6 +150,7 @@ void addLevel(Command root, Chosen& chosen) {
         .text = "The form as a layer over a session, which goes in and out exactly, instead of new heights",
         .words = layerWords(),
         .otherwise = "the form is taken out of the heights"}});
+  addEstimateOption(command, options->estimate);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(

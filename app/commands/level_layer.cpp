@@ -4,13 +4,18 @@
 #include <optional>
 #include <utility>
 
+#include "app/commands/estimate_option.h"
+#include "app/commands/known_steps.h"
+#include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/upright.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 
@@ -31,15 +36,6 @@ tl::unexpected<engine::Error> noLayer(const std::string& scan) {
                             "name a session of fettle level --layer put");
 }
 
-// What the scan with which the result begins was made by, and the form over it: once that is baked what was done since,
-// strokes and filters, is among its heights.
-std::string recipeAfter(const std::string& layer, const FormArguments& form,
-                        const engine::Imported& imported) {
-  if (layer == kLayerPut && form.region == "measured") return imported.recipe;
-  if (layer == kLayerBake && isWorkedOn(imported)) return {};
-  return recipeTextWith(imported.recipe, RecipeForm{layer, form});
-}
-
 // Files store the form beside the samples; what stays in memory is what is seen.
 engine::Result<engine::Version> shownIn(const BatchTask& task, const engine::Version& version,
                                         engine::JobControl& job) {
@@ -47,6 +43,33 @@ engine::Result<engine::Version> shownIn(const BatchTask& task, const engine::Ver
   const auto seen = engine::SeenField::of(version, job);
   if (!seen) return tl::unexpected(seen.error());
   return seen->seen();
+}
+
+engine::Result<Foreseen> foreseeLayer(const LayerChange& change, const BatchTask& task,
+                                      const engine::Version& samples,
+                                      const std::optional<engine::Version>& original,
+                                      engine::JobControl& job) {
+  PlannedWork planned{.field = samples,
+                      .original = original ? *original : samples,
+                      .steps = {},
+                      .out = task.out,
+                      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+                      .writing = change.writing};
+  planned.writing.original = original;
+  if (change.layer == kLayerPut) {
+    PlannedOnPieces fit = plannedLevel(samples, samples, {}, change.form, Lowered::kOnce);
+    // What is seen is lowered, what is stored is not.
+    fit.work = [&samples, lower = fit.work](const engine::SampleRect& r,
+                                            engine::JobControl& own) -> engine::Result<engine::Version> {
+      auto seen = lower(r, own);
+      if (!seen) return seen;
+      return engine::pieceOf(samples, r.column, r.row, r.columns, r.rows);
+    };
+    fit.fields = 2;
+    fit.uneven = true;  // a session packs smooth places better than rough ones
+    planned.steps.emplace_back(std::move(fit));
+  }
+  return foresee(planned, shownOutput(task.out), change.estimate, job);
 }
 
 }  // namespace
@@ -102,10 +125,11 @@ engine::Result<Layered> withLayer(const std::string& layer, const FormArguments&
   return Layered{seen->seen(), *std::move(limit), *std::move(fit)};
 }
 
-engine::Result<Report> changeLayer(const std::string& layer, const FormArguments& form,
-                                   const ScanOptions& reading, const engine::ExportOptions& writing,
-                                   const BatchTask& task, engine::JobControl& job) {
-  const auto imported = loadScan(task.in, reading, job);
+engine::Result<Report> changeLayer(const LayerChange& change, const BatchTask& task,
+                                   engine::JobControl& job) {
+  const std::string& layer = change.layer;
+  const FormArguments& form = change.form;
+  const auto imported = loadScan(task.in, change.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Grid& grid = imported->field.grid();
   if (layer != kLayerPut && imported->field.seenOf() == nullptr) return noLayer(task.in);
@@ -117,6 +141,10 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
     if (!first) return tl::unexpected(first.error());
     original = *std::move(first);
   }
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(task.out) == nullptr) foreseen = foreseeLayer(change, task, *samples, original, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   Report report{{"layer", layer}};
   engine::Version result = *samples;
   if (layer == kLayerPut) {
@@ -139,9 +167,17 @@ engine::Result<Report> changeLayer(const std::string& layer, const FormArguments
     result = imported->field.withSeenOf(nullptr);
     if (imported->original) original = imported->original->withSeenOf(nullptr);
   }
-  engine::ExportOptions exported = writing;
+  engine::ExportOptions exported = change.writing;
   exported.original = std::move(original);
-  exported.recipe = recipeAfter(layer, form, *imported);
+  auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  RecipeForm step{layer, form};
+  if (form.region == "measured") {
+    known->leftOut("that filled samples did not count in the form");
+    step.form.region = "all";
+  }
+  known->didToBoth(step);
+  known->note(exported);
   if (auto status = saveField(result, task.out, job, exported, task.to); !status)
     return tl::unexpected(status.error());
   report["unit"] = grid.height_unit.name;

@@ -44,10 +44,17 @@ struct Layered {
                                                 const engine::Imported& imported, const std::string& scan,
                                                 engine::JobControl& job);
 
-/// Puts a form over a scan, takes it away or makes it heights, and writes the result.
-[[nodiscard]] engine::Result<Report> changeLayer(const std::string& layer, const FormArguments& form,
-                                                 const ScanOptions& reading,
-                                                 const engine::ExportOptions& writing, const BatchTask& task,
+/// `fettle level --layer` of one scan.
+struct LayerChange {
+  const std::string& layer;
+  const FormArguments& form;
+  const ScanOptions& reading;
+  const engine::ExportOptions& writing;
+  bool estimate;
+};
+
+/// Puts a form over a scan, takes it away or makes it heights, and writes the result; or an estimate of that alone.
+[[nodiscard]] engine::Result<Report> changeLayer(const LayerChange& change, const BatchTask& task,
                                                  engine::JobControl& job);
 
 }  // namespace fettle::app

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
 #include "engine/field/tile.h"
 #include "engine/measure/lowered.h"
 
@@ -88,6 +89,44 @@ engine::Result<Levelling> levellingOf(const engine::Version& counted, const std:
   if (!fit) return tl::unexpected(fit.error());
   levelling.fit = *std::move(fit);
   return levelling;
+}
+
+PlannedOnPieces plannedLevel(const engine::Version& field, const engine::Version& counted,
+                             const LineArguments& lines, const FormArguments& form, Lowered lowered) {
+  PlannedOnPieces pieces;
+  pieces.fields = field == counted ? 1 : 2;
+  pieces.work = [&field, &counted, lines, form, lowered](
+                    const engine::SampleRect& r, engine::JobControl& job) -> engine::Result<engine::Version> {
+    const auto pieceAt = [&](const engine::Version& of) {
+      return engine::pieceOf(of, r.column, r.row, r.columns, r.rows);
+    };
+    const engine::Version piece = pieceAt(field);
+    engine::Version level = field == counted ? piece : pieceAt(counted);
+    // Of a piece of holes there is no form.
+    const auto taken = [&](const engine::Error& error) -> engine::Result<engine::Version> {
+      if (error.kind == engine::ErrorKind::kInput) return piece;
+      return tl::unexpected(error);
+    };
+    Levelling levelling;
+    if (!lines.rows.empty()) {
+      auto found = engine::findLineOffsets(level, lineOptionsOf(lines, form), job);
+      if (!found) return taken(found.error());
+      levelling.lines = *std::move(found);
+      auto without = engine::lowered(
+          level, "levelling lines",
+          [&](const engine::SampleRect& rect, double* out) { levelling.lines->readHeights(rect, out); }, job);
+      if (!without) return without;
+      level = *std::move(without);
+    }
+    auto fit = engine::fitNominalForm(level, formChoiceOf(form), job);
+    if (!fit) return taken(fit.error());
+    levelling.fit = *std::move(fit);
+    auto result = levelling.takenFrom(piece, job);
+    if (!result || lowered == Lowered::kOnce) return result;
+    const auto limit = levelling.takenFrom(piece, job);
+    return limit ? result : limit;
+  };
+  return pieces;
 }
 
 void addLevelling(Report& report, const LineArguments& lines, const FormArguments& form,

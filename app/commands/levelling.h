@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
 #include "app/report.h"
+#include "app/work/work_estimate.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/grid.h"
@@ -45,6 +47,14 @@ struct Levelling {
                                                     const engine::Imported& imported,
                                                     const LineArguments& lines, const FormArguments& form,
                                                     engine::JobControl& job);
+
+/// How often a level is taken out of fields of one size: of the scan, or of what its changes are limited from as well.
+enum class Lowered : std::uint8_t { kOnce = 1, kTwice = 2 };
+
+/// The work for an estimate, by the samples of `counted` that count, a field of `field`'s size. Both live as long as what is returned.
+[[nodiscard]] PlannedOnPieces plannedLevel(const engine::Version& field, const engine::Version& counted,
+                                           const LineArguments& lines, const FormArguments& form,
+                                           Lowered lowered);
 
 /// As keys of a report: of lines rows, scan_axis, rows_rms, rows_empty; then those of addForm.
 void addLevelling(Report& report, const LineArguments& lines, const FormArguments& form,

@@ -5,12 +5,14 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -152,7 +154,9 @@ void reportLines(const std::vector<engine::EdgeLine>& lines, Report& report) {
       }
   const auto points = static_cast<double>(engine::countPoints(lines));
   const auto found = static_cast<double>(located);
-  report["lines"] = lines.size();
+  // Edges that became marks are counted already: located lines end where an edge cannot be, and are more.
+  if (!report.contains("lines")) report["lines"] = lines.size();
+  report["lines_written"] = lines.size();
   report["line_points"] = engine::countPoints(lines);
   report["located"] = found / points;
   report["deviation"] = located > 0 ? Report(std::sqrt(squares / found)) : Report();
@@ -230,6 +234,39 @@ engine::Result<engine::Version> markEdges(const engine::Version& scan, const eng
   return std::move(found->field);
 }
 
+// What the suggested edges of a piece make of it: marks and lines as markEdges.
+engine::Result<engine::Version> edgesOfPiece(const engine::Version& piece, const MarkArguments& options,
+                                             engine::JobControl& job) {
+  const auto map = engine::findEdges(piece, options.scale, job);
+  if (!map) return tl::unexpected(map.error());
+  if (options.as_lines) return drawSuggestion(piece, *map, options.choice, job);
+  auto found = engine::suggestMarks(piece, *map, options.choice, job);
+  if (!found) return tl::unexpected(found.error());
+  if (options.lines_out.empty()) return std::move(found->field);
+  auto lined = drawSuggestion(piece, *map, options.choice, job);
+  if (!lined) return lined;
+  return found->field.withLines(lined->lines());
+}
+
+// A field with its marks stays in memory with its steps. Suggested edges are one; other marks belong to their scan.
+engine::Status noteMarks(const MarkArguments& options, const engine::Imported& imported, MemoryPlace& place,
+                         engine::JobControl& job) {
+  auto known = KnownSteps::of(imported, {options.in, options.out, {}}, job);
+  if (!known) return tl::unexpected(known.error());
+  if (options.edges) known->did(RecipeEdges{EdgesBecome::kMarks, options.scale, options.choice});
+  for (const auto& [given, what] : {std::pair(options.as_lines, "that edges became lines"),
+                                    {!options.strokes.empty(), "strokes"},
+                                    {!options.add.empty(), "marks that were added"},
+                                    {options.filled, "marks of filled samples"},
+                                    {options.invert, "that marks were inverted"}})
+    if (given) known->leftOut(what);
+  engine::ExportOptions notes;
+  known->note(notes);
+  place.scan->recipe = notes.recipe;
+  place.scan->steps = notes.steps;
+  return {};
+}
+
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
   if (!options.lines_out.empty() && options.strokes.empty() && !options.edges)
     return engine::inputError("lines are located from strokes or edges", "--lines-out",
@@ -258,13 +295,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   if (options.edges)
     steps.emplace_back(PlannedOnPieces{[&](const engine::SampleRect& r, engine::JobControl& own) {
       const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
-      const auto map = engine::findEdges(piece, options.scale, own);
-      if (!map) return engine::Result<engine::Version>(tl::unexpected(map.error()));
-      if (!options.lines_out.empty()) return drawSuggestion(piece, *map, options.choice, own);
-      auto found = engine::suggestMarks(piece, *map, options.choice, own);
-      return found ? engine::Result<engine::Version>(std::move(found->field))
-                   : engine::Result<engine::Version>(tl::unexpected(found.error()));
+      return edgesOfPiece(piece, options, own);
     }});
+  if (!steps.empty()) std::get<PlannedOnPieces>(steps.back()).uneven = true;
   const PlannedWork planned{
       .field = field,
       .original = field,
@@ -272,8 +305,15 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
       .out = options.out,
       .extension = isStream(options.out) ? withDot(options.to) : engine::extensionOf(options.out),
       .writing = {},
-      .write = [](const engine::Version& piece, const std::string& path, engine::JobControl&) {
-        return engine::exportMarks(piece, path);
+      .write = [&](const engine::Version& piece, const std::string& path,
+                   engine::JobControl&) -> engine::Status {
+        if (auto status = engine::exportMarks(piece, path); !status) return status;
+        if (options.lines_out.empty() || piece.lines() == nullptr ||
+            memoryPlace(options.lines_out) != nullptr)
+          return {};
+        const std::string lines = isStream(options.lines_out) ? kLinesStream : options.lines_out;
+        return engine::exportLines(path + ".lines" + engine::extensionOf(lines), *piece.lines(),
+                                   piece.grid());
       }};
   engine::Result<Foreseen> foreseen;
   if (memoryPlace(options.out) == nullptr)
@@ -305,6 +345,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   const double seconds = watch.seconds();
   if (auto status = saveMarks(field, options.out, job, options.to); !status)
     return tl::unexpected(status.error());
+  if (MemoryPlace* place = memoryPlace(options.out))
+    if (auto status = noteMarks(options, *imported, *place, job); !status)
+      return tl::unexpected(status.error());
   report["marked"] = engine::summarize(field).marked;
   report["seconds"] = seconds;
   return report;

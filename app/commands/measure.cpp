@@ -8,7 +8,9 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scale_option.h"
@@ -37,6 +39,7 @@ struct MeasureArguments {
   std::string csv;
   CurveFiles curves;
   int noise_trials = kUsualTrials;
+  bool estimate = false;
   ScanOptions reading;
 };
 
@@ -91,13 +94,23 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   const auto limitedOf = [&](const engine::Version& field) {
     return scaleLimited(field, scan, *imported, options.form, options.scale, job);
   };
-  const auto limited = limitedOf(*marked);
-  if (!limited) return tl::unexpected(limited.error());
   const engine::Grid& grid = imported->field.grid();
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
   engine::ArealOptions wanted = *areal;
   addCurves(options.curves, wanted);
+  const PlannedWork planned{.field = *marked,
+                            .original = *marked,
+                            .steps = {plannedMeasuring({*marked, scan, *imported, options.form, options.scale,
+                                                        wanted, options.noise_trials})},
+                            .out = {},
+                            .extension = {},
+                            .writing = {}};
+  auto foreseen = foresee(planned, shownInput(scan), options.estimate, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
+  const auto limited = limitedOf(*marked);
+  if (!limited) return tl::unexpected(limited.error());
   const auto measured = engine::measureAreal(limited->field, limited->form, wanted, job);
   if (!measured) return tl::unexpected(measured.error());
   if (auto status = writeCurves(options.curves, *measured, grid); !status)
@@ -176,11 +189,13 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
     return tl::unexpected(status.error());
   auto report = measureAll(options, job);
   if (!report) return report;
+  if (options.estimate) return report;
   if (auto status = writeCsv(options, *report, job); !status) return tl::unexpected(status.error());
   return report;
 }
 
 void printOneMeasured(const Report& report) {
+  if (report.contains("text")) return printReport(report);
   const auto samples = report["samples"].get<std::int64_t>();
   const auto filled = report.value("filled", std::int64_t{0});
   fmt::print("{} sample{}{}, form {}{}\n", samples, samples == 1 ? "" : "s",
@@ -242,6 +257,7 @@ void addMeasure(Command root, Chosen& chosen) {
                 .text = "Write a row per scan and parameter, in the scan's units",
                 .kind = ValueKind::kOutput}});
   addNoiseOption(command, options->noise_trials);
+  addEstimateOption(command, options->estimate);
   addCurveOptions(command, options->curves);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);

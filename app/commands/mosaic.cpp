@@ -13,15 +13,19 @@
 
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/estimate_text.h"
+#include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 #include "engine/mosaic/blended.h"
 #include "engine/mosaic/overlap_motions.h"
 
@@ -40,12 +44,19 @@ struct MosaicRun {
   std::optional<double> rotation;
   std::string blend = "fade";
   Replacing replacing = Replacing::kNoWork;
+  bool estimate = false;
   std::string to;
   ScanOptions reading;
   engine::ExportOptions writing;
 
   [[nodiscard]] std::vector<std::string> scans() const { return {files.begin(), files.end() - 1}; }
 };
+
+engine::Blend blendOf(const MosaicRun& options) {
+  return options.blend == "mean"    ? engine::Blend::kMean
+         : options.blend == "first" ? engine::Blend::kFirst
+                                    : engine::Blend::kFade;
+}
 
 engine::Status checkMosaic(const MosaicRun& options, engine::JobControl& job) {
   if (options.files.size() < 3)
@@ -81,6 +92,80 @@ double playOf(const std::vector<engine::Version>& scans) {
     shortest = std::min({shortest, (scan.grid().width - 1) * scan.grid().spacingXMm(),
                          (scan.grid().height - 1) * scan.grid().spacingYMm()});
   return 0.1 * shortest;
+}
+
+// What a mosaic has to do, in samples of the first scan.
+struct MosaicSize {
+  double aligned = 0.0;  // of all pairs, each as it is reduced
+  double largest = 0.0;  // of one pair
+  double made = 0.0;     // of the result
+};
+
+MosaicSize mosaicSizeOf(const std::vector<engine::Version>& scans,
+                        const std::optional<std::vector<glm::dvec2>>& places, double play) {
+  const engine::Grid& unit = scans[0].grid();
+  const double cell = unit.spacingXMm() * unit.spacingYMm();
+  const auto sides = [&](std::size_t k) {
+    const engine::Grid& grid = scans[k].grid();
+    return glm::dvec2(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm());
+  };
+  constexpr double kReduced = 1 << 20;  // alignFields()
+  MosaicSize size;
+  glm::dvec2 low(0.0), high(0.0);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const glm::dvec2 at = places ? (*places)[i] : glm::dvec2(0.0), end = at + sides(i);
+    low = glm::min(low, at);
+    high = glm::max(high, end);
+    // Nobody knows how they lie: at most side by side.
+    if (!places) size.made += sides(i).x * sides(i).y / cell;
+    for (std::size_t j = i + 1; j < scans.size(); ++j) {
+      glm::dvec2 both = glm::min(sides(i), sides(j));
+      if (places) both = glm::min(end, (*places)[j] + sides(j)) - glm::max(at, (*places)[j]) + 2.0 * play;
+      if (!(both.x > 2.0 * play && both.y > 2.0 * play)) continue;
+      const double samples = std::min(kReduced, both.x * both.y / cell);
+      size.aligned += samples;
+      size.largest = std::max(size.largest, samples);
+    }
+  }
+  if (places) size.made = (high.x - low.x) * (high.y - low.y) / cell;
+  return size;
+}
+
+engine::Result<Foreseen> foreseeMosaic(const MosaicRun& options, const std::vector<engine::Version>& scans,
+                                       const std::optional<std::vector<glm::dvec2>>& places,
+                                       engine::JobControl& job) {
+  const engine::Version& first = scans[0];
+  const MosaicSize size = mosaicSizeOf(scans, places, options.within.value_or(playOf(scans)));
+  const auto samples = static_cast<double>(first.grid().samples());
+  const auto pieceAt = [&](const engine::SampleRect& r) {
+    return engine::pieceOf(first, r.column, r.row, r.columns, r.rows);
+  };
+  // Overlaps are alike enough to the first scan and the second.
+  AlignArguments how;
+  how.moves = options.moves;
+  how.rotation = options.rotation;
+  PlannedOnPieces aligning = plannedAlignment(first, scans[1], how);
+  aligning.most_samples = 1e18;
+  aligning.share = size.aligned / samples;
+  aligning.memory_each *= size.largest / std::max(1.0, size.aligned);
+  const PlannedOnPieces blending{
+      .work =
+          [&](const engine::SampleRect& r, engine::JobControl& own) {
+            const engine::Version piece = pieceAt(r);
+            engine::AdjustedPoses poses;
+            poses.poses.resize(2);
+            return engine::blendedScans({piece, piece}, poses, piece.grid(), blendOf(options), own);
+          },
+      .share = size.made / samples};
+  const std::string& out = options.files.back();
+  const PlannedWork planned{.field = first,
+                            .original = first,
+                            .steps = {aligning, blending},
+                            .out = memoryPlace(out) == nullptr ? out : std::string(),
+                            .extension = isStream(out) ? withDot(options.to) : engine::extensionOf(out),
+                            .writing = options.writing,
+                            .result = size.made / samples};
+  return foresee(planned, shownOutput(out), options.estimate, job);
 }
 
 // The scan that nothing joins to the first, and why its pairs failed.
@@ -142,6 +227,9 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
   engine::AlignOptions align;
   align.moves = movesOf(options.moves);
   align.most_rotation_deg = options.rotation.value_or(align.most_rotation_deg);
+  auto foreseen = foreseeMosaic(options, scans, *places, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const auto found =
       engine::overlapMotions(scans, *places, options.within.value_or(playOf(scans)), align, job);
   if (!found) return tl::unexpected(found.error());
@@ -153,10 +241,7 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
   if (!overlaps) return tl::unexpected(overlaps.error());
   const auto grid = engine::gridOverAll(scans, *poses);
   if (!grid) return tl::unexpected(grid.error());
-  const engine::Blend blend = options.blend == "mean"    ? engine::Blend::kMean
-                              : options.blend == "first" ? engine::Blend::kFirst
-                                                         : engine::Blend::kFade;
-  const auto blended = engine::blendedScans(scans, *poses, *grid, blend, job);
+  const auto blended = engine::blendedScans(scans, *poses, *grid, blendOf(options), job);
   if (!blended) return tl::unexpected(blended.error());
   engine::ExportOptions writing = options.writing;
   writing.original = *blended;
@@ -184,6 +269,7 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
 }
 
 void printMosaic(const Report& report) {
+  if (report.contains("text")) return printReport(report);
   double longest = 1e-12;
   for (const Report& scan : report["scans"])
     for (const char* key : {"shift_x_mm", "shift_y_mm", "shift_z_mm"})
@@ -263,6 +349,7 @@ void addMosaic(Command root, Chosen& chosen) {
                   {"mean", "the mean of all"},
                   {"first", "that of the first of them"}}}});
   addForceOption(command, options->replacing);
+  addEstimateOption(command, options->estimate);
   addStreamFormat(command, options->to);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);

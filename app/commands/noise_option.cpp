@@ -18,14 +18,14 @@ namespace {
 constexpr int kMostTrials = 32, kFewestTrials = 4;
 constexpr std::int64_t kTrialSamples = std::int64_t{16} << 20;
 
-// How many are made of so many samples where the user does not say.
-int usualTrials(std::int64_t samples) {
+}  // namespace
+
+int noiseTrials(int trials, std::int64_t samples) noexcept {
+  if (trials != kUsualTrials) return trials;
   const auto fit = static_cast<int>(
       std::min<std::int64_t>(kMostTrials, kTrialSamples / std::max<std::int64_t>(samples, 1)));
   return fit < kFewestTrials ? 0 : fit - fit % 2;
 }
-
-}  // namespace
 
 void addNoiseOption(Command command, int& trials) {
   command.add(
@@ -42,7 +42,7 @@ engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& fiel
                                                      const ArealOf& measure, int trials,
                                                      engine::JobControl& job) {
   const std::int64_t samples = static_cast<std::int64_t>(field.grid().width) * field.grid().height;
-  const int wanted = trials == kUsualTrials ? usualTrials(samples) : trials;
+  const int wanted = noiseTrials(trials, samples);
   if (wanted == 0) {
     if (trials == kUsualTrials)
       note(fmt::format(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -15,6 +16,9 @@ namespace fettle::app {
 void addNoiseOption(Command command, int& trials);
 /// Its value where it is not given.
 inline constexpr int kUsualTrials = -1;
+
+/// How many are made of a field of so many samples where `trials` was given, or kUsualTrials.
+[[nodiscard]] int noiseTrials(int trials, std::int64_t samples) noexcept;
 
 /// Measures the parameters of a field as the command did, with all that it does before.
 using ArealOf = std::function<engine::Result<engine::ArealParameters>(const engine::Version& field)>;

@@ -15,7 +15,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/plots/gnuplot.h"
@@ -52,6 +54,7 @@ struct ReportArguments {
   FormArguments form;
   ScaleArguments scale;
   int noise_trials = kUsualTrials;
+  bool estimate = false;
   ReportSections sections;
   ScanOptions reading;
 };
@@ -116,18 +119,13 @@ class ScanReport {
       return tl::unexpected(status.error());
     if (auto status = checkSections(options_.sections); !status) return tl::unexpected(status.error());
     if (auto status = read(); !status) return tl::unexpected(status.error());
-    page_.title = options_.title.empty() ? nameOf(options_.scan) : options_.title;
-    page_.made_with = fmt::format("Made by fettle {} of {}, read as {}.", FETTLE_VERSION,
-                                  nameOf(options_.scan), imported_.format);
-    for (const auto part :
-         {&ScanReport::compare, &ScanReport::addPictures, &ScanReport::addScan, &ScanReport::addNoise,
-          &ScanReport::addDeviation, &ScanReport::addTexture, &ScanReport::addCurves,
-          &ScanReport::addSections, &ScanReport::addSettings, &ScanReport::addSteps})
-      if (auto status = (this->*part)(); !status) return tl::unexpected(status.error());
-    engine::Result<std::string> text = *extension == kPdf ? reportPdf(page_) : reportHtml(page_);
+    const auto foreseen = foreseeWork(*extension);
+    if (!foreseen) return tl::unexpected(foreseen.error());
+    if (foreseen->only) return *foreseen->only;
+    const auto text = page(*extension);
     if (!text) return tl::unexpected(text.error());
     if (MemoryPlace* place = memoryPlace(options_.out)) {
-      place->page = *std::move(text);
+      place->page = *text;
     } else {
       const auto written = writeTo(options_.out, *extension, job_, [&](const std::string& file) {
         return engine::writeFileAtomically(file, *text);
@@ -139,6 +137,65 @@ class ScanReport {
 
  private:
   static constexpr const char* kPdf = ".pdf";
+
+  // Of what was read.
+  engine::Result<std::string> page(const std::string& extension) {
+    page_.title = options_.title.empty() ? nameOf(options_.scan) : options_.title;
+    page_.made_with = fmt::format("Made by fettle {} of {}, read as {}.", FETTLE_VERSION,
+                                  nameOf(options_.scan), imported_.format);
+    for (const auto part :
+         {&ScanReport::compare, &ScanReport::addPictures, &ScanReport::addScan, &ScanReport::addNoise,
+          &ScanReport::addDeviation, &ScanReport::addTexture, &ScanReport::addCurves,
+          &ScanReport::addSections, &ScanReport::addSettings, &ScanReport::addSteps})
+      if (auto status = (this->*part)(); !status) return tl::unexpected(status.error());
+    return extension == kPdf ? reportPdf(page_) : reportHtml(page_);
+  }
+
+  // Pictures and plots take as long for any scan, and as much of the page: with --estimate a page of a piece is made.
+  engine::Result<Foreseen> foreseeWork(const std::string& extension) {
+    const engine::Version& field = states_.back().field;
+    const auto counted = countedOf(field, imported_.original, options_.scan, options_.form, job_);
+    if (!counted) return tl::unexpected(counted.error());
+    engine::ArealOptions areal;
+    areal.region = formChoiceOf(options_.form).region;
+    areal.at_ratios = curveRatios();
+    areal.analysis = true;
+    PlannedWork planned{
+        .field = field,
+        .original = field,
+        .steps = {plannedMeasuring({*counted, options_.scan, imported_, options_.form, options_.scale, areal,
+                                    options_.noise_trials, static_cast<int>(states_.size())})},
+        .out = {},
+        .extension = extension,
+        .writing = {}};
+    if (options_.estimate) {
+      planned.out = memoryPlace(options_.out) == nullptr ? options_.out : std::string();
+      planned.alike = true;
+      planned.write = [&](const engine::Version& piece, const std::string& path, engine::JobControl&) {
+        return writeOfPiece(piece, path, extension);
+      };
+    }
+    return foresee(planned, shownOutput(options_.out), options_.estimate, job_);
+  }
+
+  // The page as it would be of a piece, with as many states.
+  engine::Status writeOfPiece(const engine::Version& piece, const std::string& path,
+                              const std::string& extension) {
+    const KeptMessages said;
+    ReportArguments options = options_;
+    options.sections = {};
+    options.form.region = "all";
+    options.form.marks.clear();
+    options.scale = {};
+    options.noise_trials = 0;
+    engine::JobControl own = engine::JobControl::partOf(job_);
+    ScanReport small(options, own);
+    small.imported_.field = piece;
+    for (const ShownState& state : states_) small.states_.push_back({state.name, piece});
+    const auto text = small.page(extension);
+    if (!text) return tl::unexpected(text.error());
+    return engine::writeFileAtomically(path, *text);
+  }
 
   // With its dot, in lower case.
   [[nodiscard]] engine::Result<std::string> extensionOf() const {
@@ -393,8 +450,9 @@ class ScanReport {
     if (session_) {
       if (!session_->scan.path.empty()) add("Scan of the session", nameOf(session_->scan.path));
       if (!session_->scan.format.empty()) add("Format of that scan", session_->scan.format);
-      for (const auto& [note, name] :
-           {std::pair("recipe", "Recipe of the scan"), {"scene", "Scene of touch"}})
+      for (const auto& [note, name] : {std::pair(engine::kRecipeNote, "Recipe of the scan"),
+                                       {engine::kStepsNote, "Steps of commands"},
+                                       {"scene", "Scene of touch"}})
         if (const auto found = session_->notes.find(note); found != session_->notes.end())
           add(name, settingsOf(found->second));
     }
@@ -540,6 +598,7 @@ void addReport(Command root, Chosen& chosen) {
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
   addNoiseOption(command, options->noise_trials);
+  addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
   command.notes(
       "One file without links to others: pictures from the side and from above, noise, surface texture about "

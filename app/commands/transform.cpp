@@ -8,6 +8,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/known_steps.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
@@ -60,9 +61,10 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
   const auto result = transformed(imported->field, options.what, job);
   if (!result) return tl::unexpected(result.error());
   engine::ExportOptions writing = options.writing;
-  // A session begins with the transformed scan; of one that was worked on the steps before this one would be missing.
-  if (!isWorkedOn(*imported))
-    writing.recipe = recipeTextWith(imported->recipe, RecipeTransform{options.what});
+  auto known = KnownSteps::of(*imported, task, job);
+  if (!known) return tl::unexpected(known.error());
+  known->didToBoth(RecipeTransform{options.what});
+  known->note(writing);
   if (imported->original) {
     // What the session began with goes along, so that changes and filled samples stay known.
     auto original = transformed(*imported->original, options.what, job);

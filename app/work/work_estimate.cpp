@@ -21,6 +21,7 @@
 #include "engine/filter/catalogue.h"
 #include "engine/filter/work_sample.h"
 #include "engine/formats/formats.h"
+#include "engine/io/mesh/surface_mesh.h"
 
 namespace fettle::app {
 
@@ -117,11 +118,14 @@ engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Versio
   return cost;
 }
 
-// The mean disk of squares as large as `one`, in the middle of each of 3 x 3 parts of the field.
+// The mean disk of squares as large as `one`, in the middle of each of 3 x 3 parts of the field; `make`: what is written of
+// one.
 engine::Result<double> meanElsewhere(const PlannedWork& work, const engine::SampleRect& one,
-                                     const ScratchFolder& folder, engine::JobControl& job) {
+                                     const PlannedOnPieces::Work& make, const ScratchFolder& folder,
+                                     engine::JobControl& job) {
   constexpr int kSide = 3;
   const engine::Grid& grid = work.field.grid();
+  engine::JobControl own = engine::JobControl::partOf(job);
   double bytes = 0.0;
   for (int i = 0; i < kSide * kSide; ++i) {
     const auto middle = [](int part, std::int32_t side) {
@@ -130,12 +134,50 @@ engine::Result<double> meanElsewhere(const PlannedWork& work, const engine::Samp
     const engine::SampleRect at =
         squareAt(grid, middle(i % kSide, grid.width) - one.columns / 2,
                  middle(i / kSide, grid.height) - one.rows / 2, std::max(one.columns, one.rows));
-    const auto cost = costOf(work, pieceAt(work.field, at), at, std::nullopt, folder, job);
+    const auto made = make(at, own);
+    if (job.cancelled()) return engine::cancelled();
+    if (!made) return tl::unexpected(made.error());
+    const auto cost = costOf(work, *made, at, std::nullopt, folder, job);
     if (job.cancelled()) return engine::cancelled();
     if (!cost) return tl::unexpected(cost.error());
     bytes += cost->bytes;
   }
   return bytes / (kSide * kSide);
+}
+
+// What makes the squares of which the mean counts; empty: those that were worked out are enough.
+PlannedOnPieces::Work unevenWork(const PlannedWork& work) {
+  if (work.steps.empty())
+    return [&work](const engine::SampleRect& at, engine::JobControl&) {
+      return engine::Result<engine::Version>(pieceAt(work.field, at));
+    };
+  const auto* const last = std::get_if<PlannedOnPieces>(&work.steps.back());
+  return last != nullptr && last->uneven ? last->work : PlannedOnPieces::Work();
+}
+
+// The disk of a mesh with an error [bytes]: whole blocks of its triangles, which no cut adds any to, in 3 x 3 parts of the
+// field, or 4 x 4 where an estimate alone is asked for. Nothing where the field has too few of them.
+engine::Result<std::optional<double>> meshBytes(const PlannedWork& work, bool always,
+                                                const ScratchFolder& folder, engine::JobControl& job) {
+  constexpr std::int32_t kCells = engine::SurfaceMesh::kBlock;
+  const engine::Grid& grid = work.field.grid();
+  const std::int32_t across = (grid.width - 1) / kCells, down = (grid.height - 1) / kCells;
+  const std::int32_t parts = always ? 4 : 3;
+  if (!work.writing.max_error || across < parts || down < parts) return std::optional<double>();
+  double bytes = 0.0;
+  for (std::int32_t i = 0; i < parts * parts; ++i) {
+    const auto block = [&](std::int32_t part, std::int32_t blocks) {
+      return static_cast<std::int32_t>((2 * part + 1) * std::int64_t{blocks} / (2 * parts)) * kCells;
+    };
+    const engine::SampleRect at{block(i % parts, across), block(i / parts, down), kCells + 1, kCells + 1};
+    const auto cost = costOf(work, pieceAt(work.field, at), at, std::nullopt, folder, job);
+    if (job.cancelled()) return engine::cancelled();
+    // A block of holes has no surface.
+    if (!cost && cost.error().kind == engine::ErrorKind::kInput) continue;
+    if (!cost) return tl::unexpected(cost.error());
+    bytes += cost->bytes;
+  }
+  return bytes / (parts * parts) * (grid.width - 1) * (grid.height - 1) / (double{kCells} * kCells);
 }
 
 engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& pieces, bool always,
@@ -145,6 +187,7 @@ engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& piece
       ScratchFolder::create(isStream(work.out) ? std::string() : folderFor(work.out).string());
   if (!folder) return tl::unexpected(folder.error());
   std::array<double, 3> bytes = {}, seconds = {}, memory = {};
+  if (work.alike) return costOf(work, pieces.made[0], pieces.at[0], pieces.originals[0], *folder, job);
   for (int i = 0; i < 3; ++i) {
     const auto cost = costOf(work, pieces.made[i], pieces.at[i], pieces.originals[i], *folder, job);
     if (!cost) return tl::unexpected(cost.error());
@@ -156,9 +199,13 @@ engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& piece
   const double all = work.result * static_cast<double>(work.field.grid().samples());
   WritingCost whole{ofAll(all, 0, 1, samples, bytes), ofAll(all, 0, 2, samples, seconds),
                     memoryOfAll(all, samples, memory)};
-  if (work.steps.empty()) {
+  const auto mesh = meshBytes(work, always, *folder, job);
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (*mesh) {
+    whole.bytes = **mesh;
+  } else if (const auto make = unevenWork(work)) {
     const int size = always ? 2 : 1;
-    const auto elsewhere = meanElsewhere(work, pieces.at[size], *folder, job);
+    const auto elsewhere = meanElsewhere(work, pieces.at[size], make, *folder, job);
     if (!elsewhere) return tl::unexpected(elsewhere.error());
     whole.bytes = std::max(0.0, whole.bytes + (*elsewhere - bytes[size]) / samples[size] * all);
   }
@@ -193,7 +240,8 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
   // Of work that is long for few samples the largest piece is what the share allows.
   const double affordable = std::sqrt(kMostShare * all / 1.3125);
   if (!always && affordable < 64.0) return std::nullopt;
-  const std::int32_t largest = std::clamp(static_cast<std::int32_t>(affordable), always ? 192 : 64, 1024);
+  const std::int32_t largest =
+      std::clamp(static_cast<std::int32_t>(affordable), always ? step.side : 64, 1024);
   Pieces pieces;
   engine::JobControl own = engine::JobControl::partOf(job);  // whose stages are not shown
   for (int i = 0; i < 3; ++i) {
@@ -291,9 +339,14 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
       if (!*pieces) continue;
       long_enough = true;
       result = **pieces;
-      estimate.work_seconds += ofAll(result.all, 1, 2, result.amounts, result.seconds);
+      // Work that small squares say little of is in proportion to the largest one: it did not grow evenly up to there.
+      const bool largest_counts = on_pieces->side > PlannedOnPieces().side;
+      estimate.work_seconds += largest_counts ? result.seconds[2] / result.amounts[2] * result.all
+                                              : ofAll(result.all, 1, 2, result.amounts, result.seconds);
       const double all = std::min(on_pieces->most_samples, on_pieces->share * samples);
-      beside = std::max(beside, memoryOfAll(all, result.samples(), result.memory));
+      beside =
+          std::max(beside, on_pieces->memory_each > 0.0 ? all * on_pieces->memory_each
+                                                        : memoryOfAll(all, result.samples(), result.memory));
       continue;
     }
     const auto& filter = std::get<PlannedFilter>(step);

@@ -51,6 +51,13 @@ struct PlannedOnPieces {
   std::int32_t column = 0, row = 0;
   /// What the work makes of the original, for work whose result is of another size; empty: it stays as it is.
   Work of_original = {};
+  /// [bytes] for each sample up to most_samples, where pieces are too small to show what the work takes; 0: by the pieces.
+  double memory_each = 0.0;
+  /// Side of the largest square where an estimate alone is asked for, longer for work that small ones say little of [samples].
+  std::int32_t side = 192;
+  /// The disk is that of squares all over the field, as where the writing is all of the work: what is made lies densely here
+  /// and not there.
+  bool uneven = false;
 };
 
 using PlannedStep = std::variant<PlannedFilter, PlannedOnPieces>;
@@ -70,6 +77,7 @@ struct PlannedWork {
   bool kept = false;      ///< with --resume
   double result = 1.0;    ///< samples of the result for each of the field
   WritePiece write = {};  ///< empty: engine::exportField
+  bool alike = false;     ///< what is written is as large whatever the samples: one piece shows it
 };
 
 /// Estimates from a sample: blocks of the very filters (engine::sampleWork), other work on squares of three sizes from the

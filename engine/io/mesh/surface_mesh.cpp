@@ -6,7 +6,7 @@
 
 namespace fettle::engine {
 
-constexpr std::int64_t kBlock = 256;  // cells per side, a power of two
+constexpr std::int64_t kBlock = SurfaceMesh::kBlock;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 Result<SurfaceMesh> SurfaceMesh::create(const Version& field, std::optional<double> max_error,

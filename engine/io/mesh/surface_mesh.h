@@ -23,6 +23,7 @@ namespace fettle::engine {
 /// Cells with a hole at a corner have no surface. Threading: const methods from any thread.
 class SurfaceMesh {
  public:
+  static constexpr std::int32_t kBlock = 256;  ///< cells per side of a block, a power of two
   /// Corner: row * width + column.
   using Triangle = std::array<std::uint64_t, 3>;
 

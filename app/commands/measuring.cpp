@@ -1,0 +1,41 @@
+#include "app/commands/measuring.h"
+
+#include "app/commands/noise_option.h"
+#include "app/terminal.h"
+#include "engine/field/piece.h"
+
+namespace fettle::app {
+
+PlannedOnPieces plannedMeasuring(const PlannedMeasuring& measuring) {
+  // As many trials as the whole has: a piece alone would have more.
+  const int trials = noiseTrials(measuring.trials, measuring.counted.grid().samples());
+  PlannedOnPieces pieces;
+  pieces.share = measuring.states;
+  // The autocorrelation is that of a field of twice the sides, in doubles; measured on 1200 and 2500 samples a side.
+  if (measuring.areal.spatial || measuring.areal.analysis) pieces.memory_each = 90.0 / measuring.states;
+  pieces.work = [measuring, trials](const engine::SampleRect& r,
+                                    engine::JobControl& job) -> engine::Result<engine::Version> {
+    const KeptMessages said;  // of the scan the command itself says it
+    const engine::Version piece = engine::pieceOf(measuring.counted, r.column, r.row, r.columns, r.rows);
+    const auto measure = [&](const engine::Version& field) -> engine::Result<engine::ArealParameters> {
+      const auto limited =
+          scaleLimited(field, measuring.scan, measuring.imported, measuring.form, measuring.scale, job);
+      if (!limited) return tl::unexpected(limited.error());
+      return engine::measureAreal(limited->field, limited->form, measuring.areal, job);
+    };
+    // Of a piece of holes there is nothing to measure.
+    const auto taken = [&](const engine::Error& error) -> engine::Result<engine::Version> {
+      if (error.kind == engine::ErrorKind::kInput) return piece;
+      return tl::unexpected(error);
+    };
+    auto measured = measure(piece);
+    if (!measured) return taken(measured.error());
+    if (trials == 0) return piece;
+    const auto noise = arealNoise(piece, *measured, measure, trials, job);
+    if (!noise) return taken(noise.error());
+    return piece;
+  };
+  return pieces;
+}
+
+}  // namespace fettle::app

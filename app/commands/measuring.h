@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "app/commands/form_option.h"
+#include "app/commands/scale_option.h"
+#include "app/work/work_estimate.h"
+#include "engine/field/version.h"
+#include "engine/io/import.h"
+#include "engine/measure/areal.h"
+
+namespace fettle::app {
+
+/// The parameters of a surface that `fettle measure` and `report` state.
+struct PlannedMeasuring {
+  const engine::Version& counted;  ///< as countedOf
+  const std::string& scan;         ///< its path
+  const engine::Imported& imported;
+  const FormArguments& form;
+  const ScaleArguments& scale;
+  engine::ArealOptions areal;
+  int trials;      ///< as of addNoiseOption
+  int states = 1;  ///< of as many samples that are measured
+};
+
+/// The work for an estimate. What `measuring` refers to lives as long as what is returned.
+[[nodiscard]] PlannedOnPieces plannedMeasuring(const PlannedMeasuring& measuring);
+
+}  // namespace fettle::app
