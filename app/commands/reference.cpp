@@ -35,7 +35,8 @@ engine::Status write(const std::string& folder, const std::string& name, const s
 // The day that SOURCE_DATE_EPOCH names [s since 1970, UTC], as builds state the date of their source: pages of one source are the
 // same whenever they are made. Empty without it.
 std::string sourceDate() {
-  const char* const typed = std::getenv("SOURCE_DATE_EPOCH");  // NOLINT(concurrency-mt-unsafe): no thread sets it
+  const char* const typed =
+      std::getenv("SOURCE_DATE_EPOCH");  // NOLINT(concurrency-mt-unsafe): no thread sets it
   const std::string text = typed == nullptr ? "" : typed;
   std::int64_t seconds = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
@@ -50,8 +51,7 @@ engine::Result<Report> reference(const std::string& folder, const CommandTable& 
   engine::Status status;
   forEachCommand(root, [&](const CommandTable& command) {
     if (!status) return;
-    status =
-        write(folder, "man/" + manName(command) + ".1", manPage(command, root, version));
+    status = write(folder, "man/" + manName(command) + ".1", manPage(command, root, version));
     ++pages;
   });
   std::vector<std::pair<std::string, std::string>> others = {

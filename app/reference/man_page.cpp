@@ -94,9 +94,8 @@ std::string manName(const CommandTable& command) {
 
 std::string manPage(const CommandTable& command, const CommandTable& root, const ManVersion& version) {
   const std::string name = manName(command);
-  std::string page =
-      fmt::format(".TH \"{}\" 1 \"{}\" \"{}\" \"User Commands\"\n", upper(roff(name)), roff(version.date),
-                  roff(version.program));
+  std::string page = fmt::format(".TH \"{}\" 1 \"{}\" \"{}\" \"User Commands\"\n", upper(roff(name)),
+                                 roff(version.date), roff(version.program));
   page += fmt::format(".SH NAME\n{} \\- {}\n", roff(name), roff(command.summary));
   page += fmt::format(".SH SYNOPSIS\n{}{}\n", bold(command.path),
                       roff(usageOf(command).substr(command.path.size())));
