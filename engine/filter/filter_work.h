@@ -43,7 +43,7 @@ class FilterWork {
   [[nodiscard]] virtual std::optional<Rounds> roundsBefore() { return std::nullopt; }
   /// Whether roundDone() would be of use now: it copies a surface.
   [[nodiscard]] virtual bool wantsRounds() { return false; }
-  virtual void roundDone(Rounds) {}
+  virtual void roundDone(const Rounds&) {}
 
   /// Whether the tiles of a block need not be worked out. Where it is false, done() or a cancel follows on this thread.
   [[nodiscard]] virtual bool isDone(const TileRect& block) = 0;

@@ -209,7 +209,7 @@ bool KeptWork::wantsRounds() {
   return since_rounds_.seconds() >= pauseAfter(last_rounds_seconds_);
 }
 
-void KeptWork::roundDone(Rounds rounds) {
+void KeptWork::roundDone(const Rounds& rounds) {
   const Stopwatch watch;
   const Status kept = rounds_.keep(pass_, rounds);
   last_rounds_seconds_ = watch.seconds();

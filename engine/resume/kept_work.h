@@ -66,7 +66,7 @@ class KeptWork final : public FilterWork {
   [[nodiscard]] Status beginPass(const State& before) override;
   [[nodiscard]] std::optional<Rounds> roundsBefore() override;
   [[nodiscard]] bool wantsRounds() override;
-  void roundDone(Rounds rounds) override;
+  void roundDone(const Rounds& rounds) override;
   [[nodiscard]] bool isDone(const TileRect& block) override;
   void done(const TileRect& block, std::vector<NewTile>& made, std::size_t first) override;
   void addMade(std::vector<NewTile>& made) override;
