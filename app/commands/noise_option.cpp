@@ -15,8 +15,8 @@ namespace fettle::app {
 
 namespace {
 
-constexpr int kMostTrials = 32, kFewestTrials = 4;
-constexpr std::int64_t kTrialSamples = std::int64_t{16} << 20;
+constexpr int kMostTrials = 16, kFewestTrials = 4;
+constexpr std::int64_t kTrialSamples = std::int64_t{4} << 20;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void addNoiseOption(Command command, int& trials) {
         .text = "Measure so often with the scan's own noise added, for each parameter without noise and its "
                 "standard error; 0: leave these out",
         .range = Range{0.0, 1000.0},
-        .otherwise = "as many as measure 16 million samples, 32 at most, at least 4 or none"}});
+        .otherwise = "as many as measure 4 million samples, 16 at most, at least 4 or none"}});
 }
 
 engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& field,

@@ -12,7 +12,7 @@
 
 namespace fettle::app {
 
-/// --noise-trials. Without it as many as measure 16 million samples, 32 at most; none where that is less than 4.
+/// --noise-trials. Without it as many as measure 4 million samples, 16 at most; none where that is less than 4.
 void addNoiseOption(Command command, int& trials);
 /// Its value where it is not given.
 inline constexpr int kUsualTrials = -1;

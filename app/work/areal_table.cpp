@@ -193,7 +193,10 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
 
 void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid) {
   const auto number = [](double value) { return std::isfinite(value) ? Report(value) : Report(); };
-  report["noise"] = {{"sigma", number(noise.sigma)}, {"trials", noise.trials}, {"figures", Report::array()}};
+  report["noise"] = {{"sigma", number(noise.sigma)},
+                     {"trials", noise.trials},
+                     {"error_of_errors", engine::errorOfErrors(noise.trials / 2)},
+                     {"figures", Report::array()}};
   const auto figures = engine::arealFigures();
   for (const ArealRow& row : kArealRows) {
     if (!report.contains(row.key)) continue;
@@ -221,9 +224,12 @@ void printAreal(const Report& report) {
   const ReadAs length = readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
   const bool noise = report.contains("noise");
   if (noise)
-    fmt::print("noise {:.4g} {}; the second figure is without noise, +- its standard error, by {} trials\n",
-               report["noise"]["sigma"].get<double>() / height.size, height.name,
-               report["noise"]["trials"].get<int>());
+    fmt::print(
+        "noise {:.4g} {}; the second figure is without noise, +- its standard error, by {} trials, which is "
+        "known to "
+        "{:.0f} %\n",
+        report["noise"]["sigma"].get<double>() / height.size, height.name,
+        report["noise"]["trials"].get<int>(), 100.0 * report["noise"]["error_of_errors"].get<double>());
   for (const ArealGroup& group : kArealGroups) {
     bool headed = false;
     for (const ArealRow& row : kArealRows) {

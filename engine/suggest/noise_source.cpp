@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include <tbb/parallel_for.h>
+
 #include "engine/scanner/counter_random.h"
 
 namespace fettle::engine {
@@ -53,27 +55,30 @@ std::vector<double> NoiseSource::make(std::int32_t columns, std::int32_t rows, s
   const auto up = static_cast<std::int32_t>(along_column_.size() / 2);
   const std::int32_t wide = columns + 2 * across, high = rows + 2 * up;
   std::vector<double> by_row(static_cast<std::size_t>(columns) * static_cast<std::size_t>(high));
-  std::vector<double> white(static_cast<std::size_t>(wide));
-  for (std::int32_t r = 0; r < high; ++r) {
+  tbb::parallel_for(std::int32_t{0}, high, [&](std::int32_t r) {
+    std::vector<double> white(static_cast<std::size_t>(wide));
     for (std::int32_t c = 0; c < wide; ++c) white[static_cast<std::size_t>(c)] = own.normal(c, r);
     double* out = by_row.data() + static_cast<std::ptrdiff_t>(r) * columns;
-    for (std::int32_t c = 0; c < columns; ++c)
-      for (std::size_t k = 0; k < along_row_.size(); ++k)
+    for (std::size_t k = 0; k < along_row_.size(); ++k)
+      for (std::int32_t c = 0; c < columns; ++c)
         out[c] += along_row_[k] * white[static_cast<std::size_t>(c) + k];
-  }
+  });
   std::vector<double> noise(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for (std::int32_t r = 0; r < rows; ++r) {
+  std::vector<double> column_offset(static_cast<std::size_t>(columns));
+  for (std::int32_t c = 0; c < columns; ++c)
+    column_offset[static_cast<std::size_t>(c)] = column_offset_ * of_column.normal(c, 0);
+  tbb::parallel_for(std::int32_t{0}, rows, [&](std::int32_t r) {
     double* out = noise.data() + static_cast<std::ptrdiff_t>(r) * columns;
-    const double offset = row_offset_ * of_row.normal(0, r);
-    for (std::int32_t c = 0; c < columns; ++c) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < along_column_.size(); ++k)
-        sum +=
-            along_column_[k] * by_row[(static_cast<std::size_t>(r) + k) * static_cast<std::size_t>(columns) +
-                                      static_cast<std::size_t>(c)];
-      out[c] = own_ * sum + offset + column_offset_ * of_column.normal(c, 0);
+    // Row by row, so that a cache line is read once.
+    for (std::size_t k = 0; k < along_column_.size(); ++k) {
+      const double* const from =
+          by_row.data() + (static_cast<std::ptrdiff_t>(r) + static_cast<std::ptrdiff_t>(k)) * columns;
+      for (std::int32_t c = 0; c < columns; ++c) out[c] += along_column_[k] * from[c];
     }
-  }
+    const double offset = row_offset_ * of_row.normal(0, r);
+    for (std::int32_t c = 0; c < columns; ++c)
+      out[c] = own_ * out[c] + offset + column_offset[static_cast<std::size_t>(c)];
+  });
   return noise;
 }
 

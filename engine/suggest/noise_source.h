@@ -14,7 +14,7 @@ class NoiseSource {
   explicit NoiseSource(const NoiseParts& parts);
 
   /// `columns` x `rows` samples of it, row-major [unit of the parts' roots]. Other seeds give independent ones, the
-  /// same seed the same bits. Throws std::bad_alloc.
+  /// same seed the same bits, on any number of threads. Throws std::bad_alloc. Thread: any; on all workers of the arena.
   [[nodiscard]] std::vector<double> make(std::int32_t columns, std::int32_t rows, std::uint64_t seed) const;
 
  private:

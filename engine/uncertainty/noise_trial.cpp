@@ -53,10 +53,17 @@ double mean(std::span<const double> values) noexcept {
 
 }  // namespace
 
-Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::uint64_t seed, double sign,
-                          JobControl& job) try {
+Result<NoiseDraw> NoiseDraw::create(const Grid& grid, const NoiseModel& noise, std::uint64_t seed) try {
+  NoiseDraw draw;
+  draw.heights_ = NoiseSource(noise.parts).make(grid.width, grid.height, seed);
+  return draw;
+} catch (const std::bad_alloc&) {
+  return failure("memory is exhausted", "measuring errors", "leave the errors out");
+}
+
+Result<Version> NoiseDraw::addedTo(const Version& field, const NoiseModel& noise, double sign,
+                                   JobControl& job) const {
   const Grid& grid = field.grid();
-  const std::vector<double> drawn = NoiseSource(noise.parts).make(grid.width, grid.height, seed);
   const double over = noise.sigma > 0.0 ? 1.0 / noise.sigma : 0.0;
   return lowered(
       field, "adding noise",
@@ -67,13 +74,21 @@ Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::ui
             const double share = noise.map.empty() ? 1.0 : noise.sigmaAt(grid, column, row) * over;
             out[r * kTileSide + c] =
                 -sign * share *
-                drawn[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
-                      static_cast<std::size_t>(column)];
+                heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
+                         static_cast<std::size_t>(column)];
           }
       },
       job);
-} catch (const std::bad_alloc&) {
-  return failure("memory is exhausted", "measuring errors", "leave the errors out");
+}
+
+// Cornish and Fisher, 1937, of the quantile of Student's distribution at one standard deviation.
+double studentFactor(int pairs) noexcept {
+  const double n = std::max(pairs, 1);
+  return 1.0 + 0.5 / n + 0.25 / (n * n);
+}
+
+double errorOfErrors(int pairs) noexcept {
+  return 1.0 / std::sqrt(2.0 * std::max(pairs, 1));
 }
 
 NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth) {
@@ -98,7 +113,8 @@ NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseG
     scatter += halves[k] * halves[k] / n;
     spread += (means[k] - middle) * (means[k] - middle) / (n - 1.0);
   }
-  const double doubt = rule.doubt * raise, by_trials = rule.scatter * rule.scatter;
+  const double widened = rule.scatter * studentFactor(static_cast<int>(halves.size()));
+  const double doubt = rule.doubt * raise, by_trials = widened * widened;
   const double error = std::sqrt(by_trials * (scatter + spread * (1.0 + 1.0 / n)) + doubt * doubt);
   double without = grown(found) - raise;
   if (!rule.by_square) {
@@ -124,9 +140,11 @@ Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseM
   std::vector<std::vector<TrialPair>> pairs(found.size());
   for (int k = 0; k < options.pairs; ++k) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
+    const auto draw = NoiseDraw::create(field.grid(), noise, seed);
+    if (!draw) return tl::unexpected(draw.error());
     std::vector<double> sides[2];
     for (int side = 0; side < 2; ++side) {
-      const auto noisy = withNoise(field, noise, seed, side == 0 ? 1.0 : -1.0, job);
+      const auto noisy = draw->addedTo(field, noise, side == 0 ? 1.0 : -1.0, job);
       if (!noisy) return tl::unexpected(noisy.error());
       auto figures = measure(*noisy);
       if (!figures) return tl::unexpected(figures.error());

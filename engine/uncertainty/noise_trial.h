@@ -42,11 +42,27 @@ struct NoiseTrialOptions {
 /// Measures the figures of a field; as many each time, NaN for one that it does not determine.
 using FiguresOf = std::function<Result<std::vector<double>>(const Version& field)>;
 
-/// The field with noise of the model added at every sample, `sign` (1 or -1) times, as large at each place as the model's map
-/// says: the same bits for the same seed. Holes, marks, edge lines stay. Memory: 16 bytes per sample beside the field.
-/// Errors: kFailed without memory; kCancelled. Thread: any; a long job.
-[[nodiscard]] Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::uint64_t seed,
-                                        double sign, JobControl& job);
+/// Noise of a model for each sample of a grid: drawn once, and added with both signs. Memory: 8 bytes per sample, 16 while it is drawn.
+class NoiseDraw {
+ public:
+  /// The same bits for the same seed. Errors: kFailed without memory. Thread: any; on all workers of the arena.
+  [[nodiscard]] static Result<NoiseDraw> create(const Grid& grid, const NoiseModel& noise,
+                                                std::uint64_t seed);
+
+  /// A field of that grid with the noise, `sign` (1 or -1) times, at every sample, as large at each place as the model's map
+  /// says. Holes, marks, edge lines stay. Memory: a field's. Errors: kFailed without memory; kCancelled. Thread: any; a long job.
+  [[nodiscard]] Result<Version> addedTo(const Version& field, const NoiseModel& noise, double sign,
+                                        JobControl& job) const;
+
+ private:
+  std::vector<double> heights_;
+};
+
+/// By what the scatter of so many pairs is taken larger, so that one standard error covers 0.68 of normal figures: the
+/// quantile of Student's distribution over the normal one, 1.31 of two pairs, 1.07 of eight.
+[[nodiscard]] double studentFactor(int pairs) noexcept;
+/// The standard error of a standard error that scatter of so many pairs alone makes, over it: 1 / sqrt(2 pairs), 0.5 of two, 0.25 of eight.
+[[nodiscard]] double errorOfErrors(int pairs) noexcept;
 
 /// The effect of the noise on each figure: `found` is what `measure` gave of `field`, `growth` as many.
 ///
@@ -55,7 +71,7 @@ using FiguresOf = std::function<Result<std::vector<double>>(const Version& field
 /// the former. The figure without noise is what is found less that raise. Its standard error is the root of the sum of squares of both
 /// scatters, of what a few trials leave open, and of a share of the raise, since neither the size of the noise nor the extrapolation is exact
 /// (doubtOf in the source). What depends on ranks of heights scatters less around a surface that has noise than without: 1.25 times
-/// the scatter counts. Where noise explains all of a figure by square it is 0 without noise, with the error that leaves.
+/// the scatter counts, and studentFactor() times all. Where noise explains all of a figure by square it is 0 without noise, with the error that leaves.
 /// docs/decisions/parameter-errors.md has the shares of simulated scans in which it covers.
 ///
 /// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise raises by a fifth of it and more. Time: 2 pairs + 1 times that of

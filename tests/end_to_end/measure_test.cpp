@@ -143,7 +143,9 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   for (const char* heading : {"\nHeight\n", "\nSpatial\n", "\nHybrid\n", "\nFunctional\n", "\nFeature\n"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << heading;
   EXPECT_NE(text.out.find("Str      not stated: along"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("figure is without noise, +- its standard error, by 32 trials"), std::string::npos);
+  EXPECT_NE(
+      text.out.find("figure is without noise, +- its standard error, by 16 trials, which is known to 25 %"),
+      std::string::npos);
   EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
 }
 
@@ -168,7 +170,8 @@ TEST(Measure, StatesWhatNoiseDoesToEachParameter) {
   const auto truth = fettleJson({"measure", clean, "--unit", "mm", "--noise-trials", "0"});
   EXPECT_FALSE(truth.contains("noise"));
   const auto found = fettleJson({"measure", noisy, "--unit", "mm"});
-  EXPECT_EQ(found["noise"]["trials"], 32);
+  EXPECT_EQ(found["noise"]["trials"], 16);
+  EXPECT_NEAR(found["noise"]["error_of_errors"], 1.0 / 4.0, 1e-12);
   EXPECT_NEAR(found["noise"]["sigma"], 0.0002, 2e-5);
   int stated = 0, outside = 0;
   for (const auto& each : found["noise"]["figures"]) {

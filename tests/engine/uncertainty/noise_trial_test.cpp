@@ -43,6 +43,13 @@ std::vector<float> heightsOf(const Version& field) {
   return z;
 }
 
+Result<Version> withNoise(const Version& field, const NoiseModel& noise, std::uint64_t seed, double sign,
+                          JobControl& job) {
+  const auto draw = NoiseDraw::create(field.grid(), noise, seed);
+  if (!draw) return tl::unexpected(draw.error());
+  return draw->addedTo(field, noise, sign, job);
+}
+
 TEST(NoiseTrial, NoiseAndItsOppositeAreAddedAndHolesStay) {
   const Version field = plateOf(100, 80, 0.1);
   JobControl job;
@@ -95,16 +102,47 @@ TEST(NoiseTrial, UndoesTheRaiseOfWhatGrowsAsStated) {
   const NoiseEffect square = noiseEffectOf(std::sqrt(10.0), pairs, NoiseGrowth::kSquare);
   EXPECT_NEAR(square.without, 3.0, 1e-12);
   // Halves of the squares' differences: their root mean square, and 0.2 of the raise of 1.
-  EXPECT_NEAR(square.error, std::hypot(std::sqrt((25.0 + 4.0 + 1.0 + 16.0) / 4.0) * 1e-2, 0.2) / 6.0, 3e-4);
+  const double scatter = studentFactor(4) * std::sqrt((25.0 + 4.0 + 1.0 + 16.0) / 4.0) * 1e-2;
+  EXPECT_NEAR(square.error, std::hypot(scatter, 0.2) / 6.0, 3e-4);
   pairs = {{5.5, 4.5}, {4.0, 6.0}, {5.0, 5.0}};
   const NoiseEffect plain = noiseEffectOf(4.0, pairs, NoiseGrowth::kPlain);
   EXPECT_NEAR(plain.without, 3.0, 1e-12);
-  EXPECT_NEAR(plain.error, std::sqrt((0.25 + 1.0) / 3.0 + 0.04), 1e-12);
+  EXPECT_NEAR(plain.error, std::hypot(studentFactor(3) * std::sqrt((0.25 + 1.0) / 3.0), 0.2), 1e-12);
   // Half a turn is 0 again.
   const std::vector<TrialPair> axes = {{179.0, 1.0}, {1.0, 179.0}};
   const NoiseEffect axis = noiseEffectOf(0.5, axes, NoiseGrowth::kAxis);
   EXPECT_NEAR(axis.without, 1.0, 1e-9);
   EXPECT_LT(axis.error, 2.0);
+}
+
+// Quantiles of Student's distribution at 68.27 %, of a table, and the standard deviation of the root of a mean of n squares by simulation.
+TEST(NoiseTrial, AFewPairsWidenTheirErrorAndSayHowSureItIs) {
+  EXPECT_NEAR(studentFactor(2), 1.321, 0.01);
+  EXPECT_NEAR(studentFactor(4), 1.142, 0.002);
+  EXPECT_NEAR(studentFactor(8), 1.067, 0.001);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (const int pairs : {2, 4, 8, 16}) {
+    constexpr int kDraws = 20000;
+    double sum = 0.0, squares = 0.0;
+    int within = 0;
+    for (int i = 0; i < kDraws; ++i) {
+      std::vector<TrialPair> drawn;
+      for (int k = 0; k < pairs; ++k) {
+        const double z = normal(random);
+        drawn.push_back({10.0 + z, 10.0 - z});
+      }
+      const double error = noiseEffectOf(10.0, drawn, NoiseGrowth::kPlain).error / studentFactor(pairs);
+      sum += error;
+      squares += error * error;
+      within += std::abs(normal(random)) <= error * studentFactor(pairs) ? 1 : 0;
+    }
+    const double mean = sum / kDraws, scatter = std::sqrt(squares / kDraws - mean * mean);
+    // 1 / sqrt(2 n) is that of many; of two 0.463 instead of 0.5.
+    EXPECT_NEAR(scatter, errorOfErrors(pairs), 0.04) << pairs;
+    // Four standard deviations of the share.
+    EXPECT_NEAR(within / double(kDraws), 0.6827, 4.0 * std::sqrt(0.22 / kDraws) + 0.003) << pairs;
+  }
 }
 
 TEST(NoiseTrial, SaysNothingOfWhatItCannotDecide) {
