@@ -5,10 +5,10 @@
 #include <span>
 #include <utility>
 
-#include <cairo-ft.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
+#include "app/pages/cairo_calls.h"
 #include "render/plan/font_data.h"
 #include "render/plan/glyphs.h"
 
@@ -27,18 +27,18 @@ struct FaceKeeper {
 };
 constexpr cairo_user_data_key_t kFaceKey{};
 
-cairo_font_face_t* faceOf(const std::shared_ptr<FT_LibraryRec_>& library,
+cairo_font_face_t* faceOf(const CairoCalls& cairo, const std::shared_ptr<FT_LibraryRec_>& library,
                           std::span<const std::uint8_t> file) {
   auto keeper = std::make_unique<FaceKeeper>();
   keeper->library = library;
   if (FT_New_Memory_Face(library.get(), file.data(), static_cast<FT_Long>(file.size()), 0, &keeper->face) !=
       0)
     return nullptr;
-  cairo_font_face_t* face = cairo_ft_font_face_create_for_ft_face(keeper->face, FT_LOAD_NO_HINTING);
-  if (cairo_font_face_set_user_data(face, &kFaceKey, keeper.get(), [](void* kept) {
+  cairo_font_face_t* face = cairo.ft_font_face_create_for_ft_face(keeper->face, FT_LOAD_NO_HINTING);
+  if (cairo.font_face_set_user_data(face, &kFaceKey, keeper.get(), [](void* kept) {
         delete static_cast<FaceKeeper*>(kept);
       }) != CAIRO_STATUS_SUCCESS) {
-    cairo_font_face_destroy(face);
+    cairo.font_face_destroy(face);
     return nullptr;
   }
   (void)keeper.release();  // cairo's now
@@ -84,47 +84,51 @@ std::vector<std::u32string> wordsOf(const std::string& text) {
 }  // namespace
 
 struct PageText::Faces {
+  const CairoCalls& cairo;
   cairo_font_face_t* face[2] = {};
   cairo_scaled_font_t* measured[2] = {};
 
-  Faces() = default;
+  explicit Faces(const CairoCalls& calls) : cairo(calls) {}
   Faces& operator=(Faces&&) = delete;
   ~Faces() {
     for (int i = 0; i < 2; ++i) {
-      if (measured[i] != nullptr) cairo_scaled_font_destroy(measured[i]);
-      if (face[i] != nullptr) cairo_font_face_destroy(face[i]);
+      if (measured[i] != nullptr) cairo.scaled_font_destroy(measured[i]);
+      if (face[i] != nullptr) cairo.font_face_destroy(face[i]);
     }
   }
 
   [[nodiscard]] double widthOf(const std::string& text, double size, FaceWeight weight) const {
     cairo_text_extents_t extents;
-    cairo_scaled_font_text_extents(measured[static_cast<int>(weight)], text.c_str(), &extents);
+    cairo.scaled_font_text_extents(measured[static_cast<int>(weight)], text.c_str(), &extents);
     return extents.x_advance * size / kMeasured;
   }
 };
 
 engine::Result<PageText> PageText::create() {
+  const auto loaded = cairoCalls();
+  if (!loaded) return tl::unexpected(loaded.error());
+  const CairoCalls& cairo = **loaded;
   const tl::unexpected<engine::Error> none = engine::failure("memory is exhausted", "the page's font");
   FT_Library opened = nullptr;
   if (FT_Init_FreeType(&opened) != 0) return none;
   const std::shared_ptr<FT_LibraryRec_> library(opened, [](FT_Library l) { FT_Done_FreeType(l); });
-  auto faces = std::make_shared<Faces>();
+  auto faces = std::make_shared<Faces>(cairo);
   const std::span<const std::uint8_t> files[] = {render::regularFont(), render::boldFont()};
-  cairo_font_options_t* options = cairo_font_options_create();
-  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_t* options = cairo.font_options_create();
+  cairo.font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo.font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
   cairo_matrix_t size, plain;
-  cairo_matrix_init_scale(&size, kMeasured, kMeasured);
-  cairo_matrix_init_identity(&plain);
+  cairo.matrix_init_scale(&size, kMeasured, kMeasured);
+  cairo.matrix_init_identity(&plain);
   bool made = true;
   for (int i = 0; i < 2 && made; ++i) {
-    faces->face[i] = faceOf(library, files[i]);
+    faces->face[i] = faceOf(cairo, library, files[i]);
     if (faces->face[i] != nullptr)
-      faces->measured[i] = cairo_scaled_font_create(faces->face[i], &size, &plain, options);
+      faces->measured[i] = cairo.scaled_font_create(faces->face[i], &size, &plain, options);
     made =
-        faces->measured[i] != nullptr && cairo_scaled_font_status(faces->measured[i]) == CAIRO_STATUS_SUCCESS;
+        faces->measured[i] != nullptr && cairo.scaled_font_status(faces->measured[i]) == CAIRO_STATUS_SUCCESS;
   }
-  cairo_font_options_destroy(options);
+  cairo.font_options_destroy(options);
   if (!made) return none;
   return PageText(std::move(faces));
 }
@@ -175,10 +179,11 @@ std::vector<std::string> PageText::linesOf(const std::string& text, double size,
 
 void PageText::draw(cairo_t* page, const std::string& text, double x, double y, double size,
                     FaceWeight weight) const {
-  cairo_set_font_face(page, faces_->face[static_cast<int>(weight)]);
-  cairo_set_font_size(page, size);
-  cairo_move_to(page, x, y);
-  cairo_show_text(page, utf8Of(render::charactersOf(text)).c_str());
+  const CairoCalls& cairo = faces_->cairo;
+  cairo.set_font_face(page, faces_->face[static_cast<int>(weight)]);
+  cairo.set_font_size(page, size);
+  cairo.move_to(page, x, y);
+  cairo.show_text(page, utf8Of(render::charactersOf(text)).c_str());
 }
 
 }  // namespace fettle::app

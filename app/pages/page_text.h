@@ -19,7 +19,7 @@ enum class FaceWeight : std::uint8_t { kRegular, kBold };
 /// every machine. One thread at a time.
 class PageText {
  public:
-  /// Errors (kFailed): no memory.
+  /// Errors (kFailed): no memory; cairo is not installed (cairoCalls).
   [[nodiscard]] static engine::Result<PageText> create();
 
   /// Length of a line [unit of the size].

@@ -47,7 +47,7 @@ struct ReportPage {
 /// with the same libraries; the texts within plots are in the font that this machine has by the plot's name. Characters that the
 /// font lacks are drawn as a box and copied as they are; scripts that join their letters are not joined.
 ///
-/// Errors (kFailed): a picture or plot that cannot be read, no memory. Thread: any.
+/// Errors (kFailed): a picture or plot that cannot be read, no memory; a library that is not installed (cairo_calls.h). Thread: any.
 [[nodiscard]] engine::Result<std::string> reportPdf(const ReportPage& report);
 
 }  // namespace fettle::app

@@ -1,6 +1,7 @@
 // fettle report: the page as a browser and a reader of PDF read it.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -55,6 +56,36 @@ void makeSession(const std::string& scan, const std::string& work) {
 // Text of a PDF as `pdftotext` of poppler-utils finds it.
 std::string textOf(const std::string& pdf) {
   return runProcess({"pdftotext", "-layout", pdf, "-"}).out;
+}
+
+// The libraries that pages are drawn with are loaded by the first page, and by no other command: with theirs they are 24, which were a quarter of
+// what the program did at its start.
+TEST(ReportPage, ItsLibrariesAreLoadedByAPageAlone) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--part", "steps", "--size", "40x30"}).status, 0);
+  // What the loader says goes to a file for each process: plots are drawn by another program, which may load what it likes.
+  const auto loadedBy = [&](const std::string& name, std::vector<std::string> arguments) {
+    const std::string said = folder.file(name);
+    arguments.insert(arguments.begin(), {"env", "LD_DEBUG=files", "LD_DEBUG_OUTPUT=" + said, FETTLE_PROGRAM});
+    const Outcome outcome = runProcess(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    std::string text;
+    for (const auto& file : std::filesystem::directory_iterator(folder.path())) {
+      if (!file.path().filename().string().starts_with(name + ".")) continue;
+      std::ifstream in(file.path());
+      const std::string one{std::istreambuf_iterator<char>(in), {}};
+      if (one.find("initialize program: " FETTLE_PROGRAM) != std::string::npos) text += one;
+    }
+    return text;
+  };
+  const std::string info = loadedBy("info", {"info", scan, "--quiet"});
+  ASSERT_NE(info.find("libtiff"), std::string::npos) << "the loader says what it does";
+  for (const char* library : {"libcairo", "librsvg", "libpango", "libgio", "libpixman"})
+    EXPECT_EQ(info.find(library), std::string::npos) << library;
+  const std::string page = loadedBy("page", {"report", scan, folder.file("page.pdf"), "--quiet"});
+  EXPECT_NE(page.find("libcairo.so.2"), std::string::npos);
+  EXPECT_NE(page.find("librsvg-2.so.2"), std::string::npos);
 }
 
 TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
