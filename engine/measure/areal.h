@@ -67,7 +67,7 @@ struct ArealOptions {
 /// wavelength L sampled every h both are lower than the sine's by (2 pi h / L)^2 / 12 of the gradient's square.
 ///
 /// Sums in double, compensated over the tiles; order statistics exact. Bit-identical for any number of threads. Memory:
-/// 4 bytes per sample while heights are sorted, 28 for features, 40 for spatial parameters, which are not stated where
+/// 4 bytes per sample while heights are sorted, 32 for features, 40 for spatial parameters, which are not stated where
 /// so much is not free. Errors: kInput for a region without samples; kFailed without memory;
 /// kCancelled. Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const NominalForm& form,

@@ -1,6 +1,7 @@
 #include "engine/measure/hills.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -48,46 +49,91 @@ std::vector<Pass> passesOf(const Surface& surface) {
   return passes;
 }
 
+// Least first: the highest, of equal heights the first sample.
+std::uint64_t emergenceKey(float height, std::uint32_t sample) noexcept {
+  // Bits of floats in the order of their values; no -0.
+  const auto bits = std::bit_cast<std::uint32_t>(height + 0.0F);
+  const std::uint32_t rising = (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
+  return std::uint64_t{~rising} << 32U | sample;
+}
+std::uint32_t sampleOf(std::uint64_t key) noexcept {
+  return static_cast<std::uint32_t>(key);
+}
+
 // Hills that grow and merge while the water falls. A set's first sample is its peak.
+enum class Mapping : std::uint8_t { kNo, kYes };
 class Flood {
  public:
-  Flood(const Surface& surface, double least)
-      : surface_(surface), least_(least), parent_(surface.heights.size(), kLow) {}
+  // `mapping`: whether hillsOfSamples() is to be known.
+  Flood(const Surface& surface, double least, Mapping mapping)
+      : surface_(surface), least_(least), parent_(surface.heights.size(), kLow) {
+    if (mapping == Mapping::kNo) return;
+    rises_to_.assign(surface.heights.size(), kLow);
+    becomes_.assign(surface.heights.size(), kLow);
+  }
 
   void emerge(std::uint32_t sample) {
     parent_[sample] = sample;
     const auto width = static_cast<std::uint32_t>(surface_.width);
     const std::uint32_t column = sample % width, row = sample / width;
     const double height = surface_.heights[sample];
-    if (column > 0) join(sample, sample - 1, height);
-    if (column + 1 < width) join(sample, sample + 1, height);
-    if (row > 0) join(sample, sample - width, height);
-    if (row + 1 < static_cast<std::uint32_t>(surface_.height)) join(sample, sample + width, height);
+    std::uint32_t neighbours[4];
+    int count = 0;
+    const auto add = [&](bool inside, std::uint32_t other) {
+      if (inside && parent_[other] != kLow) neighbours[count++] = other;
+    };
+    add(column > 0, sample - 1);
+    add(column + 1 < width, sample + 1);
+    add(row > 0, sample - width);
+    add(row + 1 < static_cast<std::uint32_t>(surface_.height), sample + width);
+    if (!rises_to_.empty()) {
+      // The highest first: the sample is of its hill from then on, for the saddles between this and the others.
+      for (int i = 1; i < count; ++i)
+        if (before(neighbours[i], neighbours[0])) std::swap(neighbours[0], neighbours[i]);
+      rises_to_[sample] = count > 0 ? rises_to_[neighbours[0]] : sample;
+      if (count == 0) becomes_[sample] = sample;
+    }
+    for (int i = 0; i < count; ++i) join(sample, neighbours[i], height);
   }
   // At a saddle of this height.
   void join(std::uint32_t a, std::uint32_t b, double height) {
     if (parent_[a] == kLow || parent_[b] == kLow) return;
-    std::uint32_t high = peakOf(a), low = peakOf(b);
+    std::uint32_t high = peakOf(a), low = peakOf(b), beyond = a;
     if (high == low) return;
-    if (before(low, high)) std::swap(high, low);
+    if (before(low, high)) {
+      std::swap(high, low);
+      beyond = b;
+    }
     parent_[low] = high;
-    take(low, height);
+    // A hill that is pruned is one alone, as each that it had taken in was lower still over a higher saddle. A sample that
+    // emerges is none.
+    if (!take(low, height) && !rises_to_.empty() && rises_to_[low] == low)
+      becomes_[keptOf(low)] = keptOf(rises_to_[beyond]);
   }
   // What is left when all is dry, over the lowest sample of each connected part.
-  void finish(const std::vector<std::uint32_t>& order) {
+  void finish(const std::vector<std::uint64_t>& order) {
     // From the lowest on: the first sample of a part is its lowest one. A part that was seen has its peak's mark.
     std::vector<bool> seen(parent_.size(), false);
     for (auto at = order.rbegin(); at != order.rend(); ++at) {
-      const std::uint32_t peak = peakOf(*at);
+      const std::uint32_t peak = peakOf(sampleOf(*at));
       if (seen[peak]) continue;
       seen[peak] = true;
-      take(peak, surface_.heights[*at]);
+      take(peak, surface_.heights[sampleOf(*at)]);
     }
   }
   // Whether sample a is higher than b.
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const noexcept {
     const float za = surface_.heights[a], zb = surface_.heights[b];
     return za > zb || (za == zb && a < b);
+  }
+  // For each sample the number of its hill among hills(), which are sorted.
+  [[nodiscard]] std::vector<std::int32_t> hillsOfSamples() {
+    std::vector<std::int32_t> number(parent_.size(), HillMap::kNone);
+    for (std::size_t i = 0; i < peaks_.size(); ++i) number[peaks_[i].sample] = static_cast<std::int32_t>(i);
+    std::vector<std::int32_t> of(parent_.size(), HillMap::kNone);
+    for (std::size_t i = 0; i < of.size(); ++i)
+      if (rises_to_[i] != kLow) of[i] = number[keptOf(rises_to_[i])];
+    return of;
   }
   [[nodiscard]] std::vector<Hill> hills() {
     std::sort(peaks_.begin(), peaks_.end(),
@@ -115,28 +161,41 @@ class Flood {
     }
     return sample;
   }
-  void take(std::uint32_t peak, double saddle) {
+  // Whether it is a hill.
+  bool take(std::uint32_t peak, double saddle) {
     const double height = surface_.heights[peak] - saddle;
-    if (height >= least_ && height > 0.0) peaks_.push_back({peak, height});
+    const bool hill = height >= least_ && height > 0.0;
+    if (hill) peaks_.push_back({peak, height});
+    return hill;
+  }
+  // The peak of the hill that a peak's hill became part of.
+  std::uint32_t keptOf(std::uint32_t peak) noexcept {
+    while (becomes_[peak] != peak) {
+      becomes_[peak] = becomes_[becomes_[peak]];
+      peak = becomes_[peak];
+    }
+    return peak;
   }
 
   const Surface& surface_;
   double least_;
   std::vector<std::uint32_t> parent_;
   std::vector<Peak> peaks_;
+  std::vector<std::uint32_t> rises_to_;  // of each sample its peak, before pruning; empty without a map
+  std::vector<std::uint32_t> becomes_;   // of each peak that whose hill it is part of
 };
 
-}  // namespace
-
-Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, JobControl& job) {
+// The flood after all has emerged.
+Result<Flood> flooded(const Surface& surface, double least, Mapping mapping, JobControl& job) {
   job.begin("segmenting hills", static_cast<std::uint64_t>(surface.samples));
-  std::vector<std::uint32_t> order;
+  // Keys are sorted instead of samples, which would be looked up at each comparison: a half of the time.
+  std::vector<std::uint64_t> order;
   order.reserve(static_cast<std::size_t>(surface.samples));
   for (std::size_t i = 0; i < surface.heights.size(); ++i)
-    if (!std::isnan(surface.heights[i])) order.push_back(static_cast<std::uint32_t>(i));
-  Flood flood(surface, least);
-  tbb::parallel_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return flood.before(a, b); });
+    if (!std::isnan(surface.heights[i]))
+      order.push_back(emergenceKey(surface.heights[i], static_cast<std::uint32_t>(i)));
+  Flood flood(surface, least, mapping);
+  tbb::parallel_sort(order.begin(), order.end());
   std::vector<Pass> passes = passesOf(surface);
   tbb::parallel_sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
     return a.height > b.height || (a.height == b.height && a.from < b.from) ||
@@ -145,10 +204,11 @@ Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, Job
   std::size_t pass = 0;
   constexpr std::size_t kStep = 1U << 16U;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const float height = surface.heights[order[i]];
+    const std::uint32_t sample = sampleOf(order[i]);
+    const float height = surface.heights[sample];
     for (; pass < passes.size() && passes[pass].height > height; ++pass)
       flood.join(passes[pass].from, passes[pass].to, passes[pass].height);
-    flood.emerge(order[i]);
+    flood.emerge(sample);
     if (i % kStep == kStep - 1) {
       if (job.cancelled()) return cancelled();
       job.advance(kStep);
@@ -157,7 +217,56 @@ Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, Job
   // A pass is never below the lowest sample, so that each has been crossed but those at its very height.
   for (; pass < passes.size(); ++pass) flood.join(passes[pass].from, passes[pass].to, passes[pass].height);
   flood.finish(order);
-  return flood.hills();
+  return flood;
+}
+
+}  // namespace
+
+Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, JobControl& job) {
+  auto flood = flooded(surface, least, Mapping::kNo, job);
+  if (!flood) return tl::unexpected(flood.error());
+  return flood->hills();
+}
+
+Result<HillMap> mapHills(const Surface& surface, double least, JobControl& job) {
+  auto flood = flooded(surface, least, Mapping::kYes, job);
+  if (!flood) return tl::unexpected(flood.error());
+  HillMap map;
+  map.hills = flood->hills();
+  map.of = flood->hillsOfSamples();
+  return map;
+}
+
+std::vector<HillFigures> figuresOfHills(const Surface& surface, const HillMap& map) {
+  std::vector<HillFigures> figures;
+  for (const Hill& hill : map.hills) figures.push_back({.hill = hill});
+  std::vector<CompensatedSum> volumes(figures.size());
+  std::vector<std::int64_t> above(figures.size());
+  const double cell = surface.spacing_x * surface.spacing_y;
+  const auto hole = [&](std::int32_t c, std::int32_t r) {
+    return c < 0 || r < 0 || c >= surface.width || r >= surface.height || std::isnan(surface.at(c, r));
+  };
+  for (std::int32_t r = 0; r < surface.height; ++r)
+    for (std::int32_t c = 0; c < surface.width; ++c) {
+      const std::int32_t number =
+          map.of[static_cast<std::size_t>(r) * static_cast<std::size_t>(surface.width) +
+                 static_cast<std::size_t>(c)];
+      if (number == HillMap::kNone) continue;
+      const auto i = static_cast<std::size_t>(number);
+      HillFigures& of = figures[i];
+      ++of.samples;
+      const double over = surface.at(c, r) - (of.hill.peak - of.hill.height);
+      if (!(over > 0.0)) continue;
+      ++above[i];
+      volumes[i].add(over);
+      of.open = of.open || hole(c - 1, r) || hole(c + 1, r) || hole(c, r - 1) || hole(c, r + 1);
+    }
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    figures[i].area_mm2 = static_cast<double>(figures[i].samples) * cell;
+    figures[i].area_above_mm2 = static_cast<double>(above[i]) * cell;
+    figures[i].volume_mm3 = volumes[i].value() * cell * surface.height_mm;
+  }
+  return figures;
 }
 
 Result<FeatureParameters> measureFeatures(const Surface& surface, double sz, double prune, JobControl& job) {

@@ -27,9 +27,34 @@ struct Hill {
 /// as the higher one.
 ///
 /// By decreasing height, as R. Tarjan's sets merge (Efficiency of a good but not linear set union algorithm, 1975).
-/// Memory: some 24 bytes per sample. The hills are in the order of their peaks, the highest first; bit-identical for any
+/// Memory: some 28 bytes per sample. The hills are in the order of their peaks, the highest first; bit-identical for any
 /// number of threads. Errors: kCancelled. Throws std::bad_alloc. Thread: any; sorting on all workers of the arena.
 [[nodiscard]] Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, JobControl& job);
+
+/// Hills, and which of them each sample belongs to: that to which it rises along the steepest way over its neighbours along rows and columns, and of a
+/// hill that was pruned that on the other side of its saddle.
+struct HillMap {
+  std::vector<Hill> hills;  ///< as segmentHills()
+  /// Of each sample of the surface, row-major, the number of its hill in `hills`; kNone of holes and of parts without a hill.
+  std::vector<std::int32_t> of;
+
+  static constexpr std::int32_t kNone = -1;
+};
+/// The segmentation itself. Memory: 12 bytes per sample beside that of segmentHills(). Surfaces of at most 2^31 - 1 samples. Errors and the rest: as
+/// segmentHills.
+[[nodiscard]] Result<HillMap> mapHills(const Surface& surface, double least, JobControl& job);
+
+/// What a segment is like.
+struct HillFigures {
+  Hill hill;
+  std::int64_t samples = 0;
+  double area_mm2 = 0.0;        ///< of its samples
+  double area_above_mm2 = 0.0;  ///< of those above its saddle
+  double volume_mm3 = 0.0;      ///< between these and the saddle's height
+  bool open = false;            ///< it reaches the border of the surface, or a hole, above its saddle
+};
+/// Of each hill of a map, in its order.
+[[nodiscard]] std::vector<HillFigures> figuresOfHills(const Surface& surface, const HillMap& map);
 
 /// Feature parameters: ISO 25178-2:2021.
 struct FeatureParameters {

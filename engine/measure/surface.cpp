@@ -50,6 +50,8 @@ Result<Surface> surfaceOf(const Version& field, const NominalForm& form, double 
   surface.height_mm = grid.height_unit.mm;
   surface.samples = all.samples;
   if (all.samples == 0) return surface;
+  surface.first_column = all.left;
+  surface.first_row = all.low;
   surface.width = all.right - all.left + 1;
   surface.height = all.high - all.low + 1;
   const auto width = static_cast<std::size_t>(surface.width);

@@ -15,10 +15,11 @@ namespace fettle::engine {
 
 /// The samples of a region about their form, as one array: what parameters that need more than neighbours are taken of.
 struct Surface {
-  std::int32_t width = 0, height = 0;       ///< of the least rectangle around the region's samples [samples]
-  double spacing_x = 1.0, spacing_y = 1.0;  ///< [mm]
-  double height_mm = 1.0;                   ///< millimetres in a height unit
-  std::int64_t samples = 0;                 ///< that are no holes
+  std::int32_t width = 0, height = 0;  ///< of the least rectangle around the region's samples [samples]
+  std::int32_t first_column = 0, first_row = 0;  ///< of that rectangle in the field
+  double spacing_x = 1.0, spacing_y = 1.0;       ///< [mm]
+  double height_mm = 1.0;                        ///< millimetres in a height unit
+  std::int64_t samples = 0;                      ///< that are no holes
   std::vector<float>
       heights;  ///< row-major, less form and mean [height_unit]; NaN: a hole, or not of the region
 

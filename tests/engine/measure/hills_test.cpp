@@ -97,6 +97,131 @@ TEST(Hills, AreWhatPlainLoopsFind) {
   }
 }
 
+// Watersheds by the words of their definition: each sample follows its highest neighbour up to a peak; then, as long as a hill is lower than `least` over
+// its highest saddle, the lowest of these becomes part of the hill across that saddle. Saddles are the lower of two neighbours of
+// different hills, and passes across cells.
+std::vector<int> plainMap(const Surface& surface, double least) {
+  const int width = surface.width, n = surface.width * surface.height;
+  const auto z = [&](int i) { return static_cast<double>(surface.heights[static_cast<std::size_t>(i)]); };
+  struct Way {
+    int a, b;
+    double height;
+  };
+  std::vector<Way> ways;
+  for (int r = 0; r < surface.height; ++r)
+    for (int c = 0; c < width; ++c) {
+      const int i = r * width + c;
+      if (c + 1 < width && !std::isnan(z(i) + z(i + 1))) ways.push_back({i, i + 1, std::min(z(i), z(i + 1))});
+      if (r + 1 < surface.height && !std::isnan(z(i) + z(i + width)))
+        ways.push_back({i, i + width, std::min(z(i), z(i + width))});
+      if (c + 1 == width || r + 1 == surface.height) continue;
+      const double a = z(i), b = z(i + 1), d = z(i + width), e = z(i + width + 1);
+      if (std::isnan(a + b + d + e)) continue;
+      const double saddle = static_cast<float>((a * e - b * d) / (a + e - b - d));
+      if (std::min(a, e) > std::max(b, d)) ways.push_back({i, i + width + 1, saddle});
+      if (std::min(b, d) > std::max(a, e)) ways.push_back({i + 1, i + width, saddle});
+    }
+  std::vector<int> peak(static_cast<std::size_t>(n), -1);
+  for (int i = 0; i < n; ++i) {
+    if (std::isnan(z(i))) continue;
+    int at = i;
+    for (bool rises = true; rises;) {
+      rises = false;
+      int best = at;
+      const int c = at % width, r = at / width;
+      for (const auto& [dc, dr] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        if (c + dc < 0 || c + dc >= width || r + dr < 0 || r + dr >= surface.height) continue;
+        const int other = (r + dr) * width + c + dc;
+        if (z(other) > z(best)) best = other;
+      }
+      rises = best != at;
+      at = best;
+    }
+    peak[static_cast<std::size_t>(i)] = at;
+  }
+  for (;;) {
+    double lowest = least;
+    int from = -1, to = -1;
+    for (int p = 0; p < n; ++p) {
+      if (std::isnan(z(p)) || peak[static_cast<std::size_t>(p)] != p) continue;
+      double saddle = -std::numeric_limits<double>::infinity();
+      int across = -1;
+      for (const Way& way : ways) {
+        const int a = peak[static_cast<std::size_t>(way.a)], b = peak[static_cast<std::size_t>(way.b)];
+        if (a == b || (a != p && b != p) || way.height <= saddle) continue;
+        saddle = way.height;
+        across = a == p ? b : a;
+      }
+      // The highest of its part has no saddle to a higher one.
+      if (across < 0 || z(across) < z(p)) continue;
+      if (z(p) - saddle < lowest) {
+        lowest = z(p) - saddle;
+        from = p;
+        to = across;
+      }
+    }
+    if (from < 0) return peak;
+    std::replace(peak.begin(), peak.end(), from, to);
+  }
+}
+
+TEST(Hills, EverySampleIsOfTheHillThatTheDefinitionSays) {
+  int samples = 0, elsewhere = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const Surface surface = surfaceOf(13, 11, [&](int c, int r) {
+      const double z = normal(random) + std::sin(c * 0.8) + std::cos(r * 0.7);
+      return seed > 6 && z < -1.5 ? std::nan("") : z;
+    });
+    for (const double least : {0.0, 0.4, 1.2}) {
+      JobControl job;
+      const auto map = mapHills(surface, least, job);
+      ASSERT_TRUE(map);
+      const std::vector<Hill> hills = hillsOf(surface, least);
+      ASSERT_EQ(map->hills.size(), hills.size());
+      const std::vector<int> plain = plainMap(surface, least);
+      for (std::size_t i = 0; i < plain.size(); ++i) {
+        const std::int32_t number = map->of[i];
+        if (number == HillMap::kNone) continue;
+        const Hill& hill = map->hills[static_cast<std::size_t>(number)];
+        ++samples;
+        elsewhere += hill.row * surface.width + hill.column == plain[i] ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(samples, 4000);
+  EXPECT_EQ(elsewhere, 0);
+}
+
+// Two cones on a plane: half of the plane each, the cones' own volumes over their saddle.
+TEST(Hills, OfTwoConesHaveTheirAreasAndVolumes) {
+  constexpr int kWide = 161, kHigh = 81;
+  Surface surface = surfaceOf(kWide, kHigh, [](int c, int r) {
+    const double left = std::hypot(c - 40.0, r - 40.0), right = std::hypot(c - 120.0, r - 40.0);
+    return std::max({3.0 - 0.1 * left, 2.0 - 0.1 * right, -0.001 * std::min(left, right)});
+  });
+  surface.spacing_x = 0.5;
+  surface.spacing_y = 0.5;
+  surface.height_mm = 0.01;
+  JobControl job;
+  const auto map = mapHills(surface, 0.2, job);
+  ASSERT_TRUE(map);
+  ASSERT_EQ(map->hills.size(), 2U);
+  const auto figures = figuresOfHills(surface, *map);
+  EXPECT_EQ(figures[0].samples + figures[1].samples, kWide * kHigh);
+  EXPECT_NEAR(static_cast<double>(figures[0].samples), 0.5 * kWide * kHigh, 0.02 * kWide * kHigh);
+  // The saddle lies at about -0.04; a cone of height h and slope 0.1 has a volume of pi h (10 h)^2 / 3, with its foot of the plane above the saddle.
+  const double saddle = figures[1].hill.peak - figures[1].hill.height;
+  EXPECT_NEAR(saddle, -0.04, 0.002);
+  const auto cone = [](double height) { return std::numbers::pi * height * 100.0 * height * height / 3.0; };
+  EXPECT_NEAR(figures[1].volume_mm3 / (0.25 * 0.01), cone(2.0),
+              0.05 * cone(2.0) + 0.04 * static_cast<double>(figures[1].samples));
+  EXPECT_GT(figures[1].volume_mm3 / (0.25 * 0.01), 0.97 * cone(2.0));
+  EXPECT_DOUBLE_EQ(figures[0].area_mm2, 0.25 * static_cast<double>(figures[0].samples));
+  EXPECT_TRUE(figures[0].open) << "the highest has no saddle but the lowest sample";
+}
+
 // A bump of 4 % of the height is part of the slope that it stands on, one of 6 % is a hill.
 TEST(Hills, BelowFivePerCentArePruned) {
   for (const auto& [share, count] : {std::pair{0.04, 1}, {0.06, 2}}) {
