@@ -16,8 +16,8 @@ constexpr std::size_t kMostPoints = 300'000;
 }  // namespace
 
 AlignLevel::AlignLevel(const HeightMap& first, const HeightMap& second, double sigma)
-    : sigma_(sigma), spline_(smoothed(second, sigma, Holes::kFill, Borders::kLeftOut).value) {
-  const SmoothMap smooth = smoothed(first, sigma, Holes::kStay, Borders::kLeftOut);
+    : sigma_(sigma), spline_(smoothed(second, sigma, AtHoles::kFill, Borders::kLeftOut).value) {
+  const SmoothMap smooth = smoothed(first, sigma, AtHoles::kStay, Borders::kLeftOut);
   std::size_t count = 0;
   for (const double z : smooth.value.z) count += std::isnan(z) ? 0 : 1;
   const std::int32_t stride =

@@ -34,7 +34,7 @@ HeightMap flattened(const HeightMap& map, bool long_waves_too) {
   HeightMap out = map;
   if (long_waves_too) {
     const double sigma = 0.1 * std::max(map.width * map.spacing_x, map.height * map.spacing_y);
-    const SmoothMap waves = smoothed(map, sigma, Holes::kStay, Borders::kStay);
+    const SmoothMap waves = smoothed(map, sigma, AtHoles::kStay, Borders::kStay);
     for (std::size_t i = 0; i < out.z.size(); ++i) out.z[i] -= waves.value.z[i];
   } else {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -217,7 +217,7 @@ std::vector<RigidMotion> likelyMotions(const HeightMap& first, const HeightMap& 
   for (const bool long_waves_too : {false, true}) {
     const HeightMap a = flattened(first, long_waves_too), b = flattened(second, long_waves_too);
     const auto splineOf = [&](const HeightMap& map) {
-      return MapSpline(smoothed(map, 0.6 * cell, Holes::kFill, Borders::kStay).value);
+      return MapSpline(smoothed(map, 0.6 * cell, AtHoles::kFill, Borders::kStay).value);
     };
     const MapSpline of_first = splineOf(a), of_second = splineOf(b);
     const Raster still = rasterOf(of_first, a, cell, 0.0);

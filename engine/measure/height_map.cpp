@@ -182,7 +182,7 @@ void dropSpikes(HeightMap& map) {
     if (apart[i].distance > kOfRange * apart[i].range + kOfMedian * median) map.z[i] = kNoHeight;
 }
 
-SmoothMap smoothed(const HeightMap& map, double sigma, Holes holes, Borders borders) {
+SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders borders) {
   // Where the window is cut off it shifts the height by the curvature, and noise counts more.
   constexpr double kLeastWeight = 0.8, kFromBorder = 1.7;
   const auto left = [sigma](double own) { return std::sqrt(std::max(0.0, sigma * sigma - own * own)); };
@@ -218,7 +218,7 @@ SmoothMap smoothed(const HeightMap& map, double sigma, Holes holes, Borders bord
     for (std::int32_t c = 0; c < map.width; ++c) {
       const std::size_t at = map.index(c, row);
       out.value.z[at] = kNoHeight;
-      if (holes == Holes::kStay && std::isnan(map.z[at])) continue;
+      if (holes == AtHoles::kStay && std::isnan(map.z[at])) continue;
       if (borders == Borders::kLeftOut &&
           (std::min(c, map.width - 1 - c) * map.spacing_x < kFromBorder * sigma - 0.5 * map.spacing_x ||
            std::min(row, map.height - 1 - row) * map.spacing_y < kFromBorder * sigma - 0.5 * map.spacing_y))
