@@ -83,7 +83,8 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::V
 
 engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine::Version& a,
                                        engine::JobControl& job) {
-  const auto nominal = loadNominal(options.b, options.nominal, a.grid(), Sides::kNotNeeded, job);
+  const auto nominal =
+      loadNominal(options.b, options.nominal, options.reading.from, a.grid(), Sides::kNotNeeded, job);
   if (!nominal) return tl::unexpected(nominal.error());
   auto foreseen = foreseeAlign(
       options, a, plannedAlignment(a, *nominal, options.how),
@@ -109,9 +110,9 @@ engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine
 
 engine::Result<Report> align(const AlignCommand& options, engine::JobControl& job) {
   if (auto status = checkAlign(options.how); !status) return tl::unexpected(status.error());
-  if (!options.nominal.unit.empty() && !isNominal(options.b, options.reading))
+  if (!options.nominal.unit.empty() && !isNominal(options.b, options.reading, options.nominal))
     return engine::inputError(fmt::format("{} is no nominal mesh", shownInput(options.b)), "--nominal-unit",
-                              "give an .stl as B");
+                              "give an .stl or .ply as B");
   if (options.out.empty() && (!options.to.empty() || options.writing.tiff_compression))
     return engine::inputError("no scan is written", options.to.empty() ? "--compress" : "--to",
                               "name OUT too");
@@ -124,8 +125,9 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
     return tl::unexpected(status.error());
   const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
-  const auto placed = isNominal(options.b, options.reading) ? alignedNominal(options, a->field, job)
-                                                            : alignedScan(options, a->field, job);
+  const auto placed = isNominal(options.b, options.reading, options.nominal)
+                          ? alignedNominal(options, a->field, job)
+                          : alignedScan(options, a->field, job);
   if (!placed) return tl::unexpected(placed.error());
   if (placed->only) return *placed->only;
   Report report = alignReport(options.how, placed->alignment);
@@ -162,7 +164,8 @@ void addAlign(Command root, Chosen& chosen) {
         .required = true},
        {.name = "B",
         .to = &options->b,
-        .text = "The scan that is moved; its spacing and size may be others. Or the nominal shape of A, .stl",
+        .text = "The scan that is moved; its spacing and size may be others. Or the nominal shape of A, "
+                ".stl, or .ply with --nominal-unit",
         .kind = ValueKind::kInput,
         .required = true},
        {.name = "OUT",

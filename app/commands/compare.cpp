@@ -67,11 +67,11 @@ engine::Status checkAligned(const CompareArguments& options) {
 
 // Options that need a nominal mesh, or that it excludes.
 engine::Status checkNominal(const CompareArguments& options) {
-  if (!isNominal(options.b, options.reading)) {
+  if (!isNominal(options.b, options.reading, options.inspect.nominal)) {
     const std::string alone = optionOfNominal(options.inspect);
     return alone.empty() ? engine::Status()
                          : engine::inputError(fmt::format("{} is no nominal mesh", shownInput(options.b)),
-                                              alone, "give an .stl as B");
+                                              alone, "give an .stl as B, or a .ply with --nominal-unit");
   }
   return options.truth.empty()
              ? engine::Status()
@@ -128,7 +128,7 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
                                  options.replacing, job);
       !status)
     return tl::unexpected(status.error());
-  if (isNominal(options.b, options.reading))
+  if (isNominal(options.b, options.reading, options.inspect.nominal))
     return compareNominal({options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
                            options.reading, options.deviation, options.to, options.estimate},
                           job);

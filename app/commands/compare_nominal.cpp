@@ -117,7 +117,7 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
     options.tolerance = *tolerance;
   }
   const auto mesh = loadNominal(
-      nominal, arguments.nominal, grid,
+      nominal, arguments.nominal, reading.from, grid,
       options.distance == engine::NominalDistance::kShortest ? Sides::kNeeded : Sides::kNotNeeded, job);
   if (!mesh) return tl::unexpected(mesh.error());
   auto foreseen = foreseeNominal(comparison, a->field, *mesh, options, job);

@@ -19,6 +19,7 @@ namespace fettle::app {
 namespace {
 
 constexpr const char* kNominalExtension = ".stl";
+constexpr const char* kEitherExtension = ".ply";  // a scan, or a nominal mesh
 
 // A wrong unit is off by 10 and more; 25.4 is inches taken for millimetres.
 void warnOfSize(const engine::NominalMesh& nominal, const engine::Grid& part, const std::string& name,
@@ -37,24 +38,24 @@ void warnOfSize(const engine::NominalMesh& nominal, const engine::Grid& part, co
 }  // namespace
 
 void addNominalOptions(Command command, NominalArguments& arguments) {
-  command.add(
-      {{.name = "--nominal-unit",
-        .to = &arguments.unit,
-        .text = fmt::format("Unit of the numbers of a nominal mesh B, of which an STL states none: {}",
-                            fmt::join(engine::lengthUnitNames(), ", ")),
-        .proposed = engine::lengthUnitNames(),
-        .otherwise = "mm"}},
-      "A nominal mesh as B");
+  command.add({{.name = "--nominal-unit",
+                .to = &arguments.unit,
+                .text = fmt::format(
+                    "Unit of the numbers of a nominal mesh B; with it a .ply is one, and not a scan: {}",
+                    fmt::join(engine::lengthUnitNames(), ", ")),
+                .proposed = engine::lengthUnitNames(),
+                .otherwise = "mm of an .stl"}},
+              "A nominal mesh as B");
 }
 
-bool isNominal(const std::string& path, const ScanOptions& reading) {
-  return isStream(path) ? withDot(reading.from) == kNominalExtension
-                        : engine::extensionOf(path) == kNominalExtension;
+bool isNominal(const std::string& path, const ScanOptions& reading, const NominalArguments& arguments) {
+  const std::string extension = isStream(path) ? withDot(reading.from) : engine::extensionOf(path);
+  return extension == kNominalExtension || (extension == kEitherExtension && !arguments.unit.empty());
 }
 
 engine::Result<engine::NominalMesh> loadNominal(const std::string& path, const NominalArguments& arguments,
-                                                const engine::Grid& part, Sides sides,
-                                                engine::JobControl& job) {
+                                                const std::string& from, const engine::Grid& part,
+                                                Sides sides, engine::JobControl& job) {
   engine::LengthUnit unit;
   if (!arguments.unit.empty()) {
     const auto named = engine::lengthUnitFromName(arguments.unit);
@@ -65,7 +66,7 @@ engine::Result<engine::NominalMesh> loadNominal(const std::string& path, const N
   }
   auto nominal = [&]() -> engine::Result<engine::NominalMesh> {
     if (!isStream(path)) return engine::readNominal(path, unit, job);
-    const auto input = StandardInput::read(kNominalExtension, job);
+    const auto input = StandardInput::read(withDot(from), job);
     if (!input) return tl::unexpected(input.error());
     auto read = engine::readNominal(input->path(), unit, job);
     if (!read) return tl::unexpected(input->renamed(read.error()));

@@ -19,14 +19,16 @@ struct NominalArguments {
 /// --nominal-unit.
 void addNominalOptions(Command command, NominalArguments& arguments);
 
-/// Whether B is a nominal mesh: an .stl, or standard input with --from stl.
-[[nodiscard]] bool isNominal(const std::string& path, const ScanOptions& reading);
+/// Whether B is a nominal mesh: an .stl; or a .ply, which may be a scan as well, with --nominal-unit. Standard input by --from.
+[[nodiscard]] bool isNominal(const std::string& path, const ScanOptions& reading,
+                             const NominalArguments& arguments);
 
-/// engine::readNominal() of B. Warns of triangles without an area, of sides at which a mesh does not say what is outside, where
+/// engine::readNominal() of B; `from`: the format of standard input. Warns of triangles without an area, of sides at which a mesh does not say what is outside, where
 /// that is needed, of one whose size is another than the part's by a factor of 20, as a wrong unit makes it.
 enum class Sides : bool { kNotNeeded, kNeeded };
 [[nodiscard]] engine::Result<engine::NominalMesh> loadNominal(const std::string& path,
                                                               const NominalArguments& arguments,
+                                                              const std::string& from,
                                                               const engine::Grid& part, Sides sides,
                                                               engine::JobControl& job);
 

@@ -99,6 +99,21 @@ TEST(NominalCommand, MeasuresAPartWhereTheFilesPlaceIt) {
   EXPECT_EQ(away.out.find("null"), std::string::npos) << away.out;
 }
 
+// A PLY may be a scan: it is a nominal where its unit is stated, and measures as the same mesh in an STL does.
+TEST(NominalCommand, TakesThePlyOfAMeshWhoseUnitIsStated) {
+  const TempFolder folder;
+  const std::string part = folder.file("part.tif"), truth = folder.file("truth.tif"),
+                    stl = folder.file("n.stl"), ply = folder.file("n.ply"),
+                    points = folder.file("points.ply");
+  ASSERT_EQ(fettle({"synth", part, "--part", "steps", "--size", "90x70", "--truth", truth}).status, 0);
+  ASSERT_EQ(fettle({"convert", truth, stl}).status, 0);
+  ASSERT_EQ(fettle({"convert", truth, ply, "--mesh"}).status, 0);
+  ASSERT_EQ(fettle({"convert", truth, points}).status, 0);
+  EXPECT_EQ(fettleJson({"compare", part, ply, "--nominal-unit", "mm"}), fettleJson({"compare", part, stl}));
+  EXPECT_FALSE(fettleJson({"compare", part, ply}).contains("nominal")) << "a scan without";
+  expectRefused(fettle({"compare", part, points, "--nominal-unit", "mm"}), "it holds points and no faces");
+}
+
 TEST(NominalCommand, AlignsFirstWhereAsked) {
   const TempFolder folder;
   const std::string part = folder.file("part.asc"), nominal = folder.file("nominal.stl"),

@@ -8,9 +8,25 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/mesh/ply_mesh.h"
 #include "engine/io/mesh/stl_file.h"
 
 namespace fettle::engine {
+
+namespace {
+
+Result<TriangleMesh> wholeStl(const InputFile& file, const std::string& path, JobControl& job) {
+  Result<StlMesh> read = readStlMesh(file, job);
+  if (!read) return tl::unexpected(read.error());
+  if (read->not_counted > 0)
+    return inputError(
+        fmt::format("its header counts {} triangles, its bytes are those of {}", read->mesh.triangles.size(),
+                    read->mesh.triangles.size() + read->not_counted),
+        path, "export it again: a nominal with a part missing is none");
+  return std::move(read->mesh);
+}
+
+}  // namespace
 
 Result<NominalMesh> readNominal(const std::string& path, const LengthUnit& unit, JobControl& job) try {
   constexpr double kFarthest = 1e15;
@@ -18,19 +34,17 @@ Result<NominalMesh> readNominal(const std::string& path, const LengthUnit& unit,
   if (!file) return tl::unexpected(file.error());
   std::vector<TriangleCorners> triangles;
   {
-    const Result<StlMesh> read = readStlMesh(*file, job);
-    if (!read) return tl::unexpected(read.error());
-    const PointCloud& corners = read->mesh.corners;
-    if (read->not_counted > 0)
-      return inputError(
-          fmt::format("its header counts {} triangles, its bytes are those of {}",
-                      read->mesh.triangles.size(), read->mesh.triangles.size() + read->not_counted),
-          path, "export it again: a nominal with a part missing is none");
-    triangles.reserve(read->mesh.triangles.size());
-    for (std::size_t t = 0; t < read->mesh.triangles.size(); ++t) {
+    const Result<TriangleMesh> mesh = isPly(*file) ? readPlyMesh(*file, job) : wholeStl(*file, path, job);
+    if (!mesh) return tl::unexpected(mesh.error());
+    const PointCloud& corners = mesh->corners;
+    triangles.reserve(mesh->triangles.size());
+    for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
       TriangleCorners& triangle = triangles.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = read->mesh.triangles[t][k];
+        const std::size_t i = mesh->triangles[t][k];
+        if (i >= corners.x.size())
+          return inputError(fmt::format("triangle {} has a corner past the last vertex", t + 1), path,
+                            "the file is damaged: export it again");
         triangle[k] = unit.mm * glm::dvec3(corners.x[i], corners.y[i], corners.z[i]);
         for (int axis = 0; axis < 3; ++axis)
           if (!(std::abs(triangle[k][axis]) <= kFarthest))

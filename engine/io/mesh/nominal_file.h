@@ -9,8 +9,8 @@
 
 namespace fettle::engine {
 
-/// Reads the nominal of a part from an STL, whose numbers are in `unit`. Stricter than the import of an STL as a field: a
-/// triangle that is missing or damaged would be a deviation of the part. Errors (kInput): as readStlMesh; fewer triangles
+/// Reads the nominal of a part from an STL or the faces of a PLY, whose numbers are in `unit`. Stricter than the import as a field: a
+/// triangle that is missing or damaged would be a deviation of the part. Errors (kInput): as readStlMesh and readPlyMesh; fewer triangles
 /// counted in the header than the file holds; a corner that is not finite or over 1e15 mm away; as NominalMesh::create.
 /// kFailed without memory; kCancelled. Memory: some 240 bytes per triangle while it is read. Thread: any; a long job.
 [[nodiscard]] Result<NominalMesh> readNominal(const std::string& path, const LengthUnit& unit,

@@ -7,6 +7,7 @@
 #include "engine/io/format.h"
 #include "engine/io/mesh/mesh_sampling.h"
 #include "engine/io/mesh/ply_header.h"
+#include "engine/io/mesh/ply_mesh.h"
 #include "engine/io/points/range_grid.h"
 
 namespace fettle::engine {
@@ -383,6 +384,26 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
 }
 
 }  // namespace
+
+bool isPly(const InputFile& file) {
+  char head[5] = {};
+  const auto read = file.read(0, head, sizeof head);
+  return read && looksLikePly({head, *read}, {});
+}
+
+Result<TriangleMesh> readPlyMesh(const InputFile& file, JobControl& job) {
+  const Result<PlyHeader> header = readPlyHeader(file);
+  if (!header) return tl::unexpected(header.error());
+  job.begin("reading", file.size());
+  TriangleMesh mesh;
+  RangeGrid range;
+  if (Status status = PlyBody(file, *header, job).read(mesh, range); !status)
+    return tl::unexpected(status.error());
+  if (mesh.triangles.empty())
+    return inputError("it holds points and no faces", file.path(),
+                      "a nominal is a mesh: export it with its faces");
+  return mesh;
+}
 
 constexpr std::string_view kPlyExtensions[] = {".ply"};
 constexpr Format kPlyFormat{
