@@ -1,6 +1,7 @@
 #include "app/commands/recipe_of_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,8 +34,9 @@ std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
     if (!entry) continue;
     if (const auto* filter = std::get_if<haptic::journal::FilterBegun>(&*entry)) begun = filter->spec;
     if (const auto* step = std::get_if<haptic::journal::StepMade>(&*entry)) {
-      made[step->state] = {*step, step->kind == engine::StepKind::kFilter ? begun : std::nullopt};
-      if (step->kind == engine::StepKind::kFilter) begun.reset();
+      const bool filtered = step->kind == engine::StepKind::kFilter && !step->maker;
+      made[step->state] = {*step, filtered ? begun : std::nullopt};
+      if (filtered) begun.reset();
     }
   }
   return made;
@@ -107,6 +109,15 @@ Noted addNoted(const engine::Session& session, const std::map<std::int64_t, Made
 
 bool hasMarks(const engine::Version& field) {
   return field.reader().root().marked_children != 0;
+}
+
+RecipeFill recipeFillOf(const engine::FillOptions& fill) {
+  RecipeFill step;
+  step.what.method = fill.method == engine::FillMethod::kMembrane ? "membrane" : "curvature";
+  step.what.at_border = fill.at_border;
+  if (std::isfinite(fill.most_extent_mm)) step.what.most_extent = fmt::format("{}mm", fill.most_extent_mm);
+  if (std::isfinite(fill.most_area_mm2)) step.what.most_area = fill.most_area_mm2;
+  return step;
 }
 
 using Reason = tl::unexpected<const char*>;
@@ -188,6 +199,11 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
       step.choice.sensitivity = numbers.sensitivity;
       step.choice.thickness = numbers.thickness;
       recipe.steps.emplace_back(step);
+    } else if (entry != made.end() && entry->second.step.maker) {
+      if (const auto* fill = std::get_if<engine::FillOptions>(&*entry->second.step.maker))
+        recipe.steps.emplace_back(recipeFillOf(*fill));
+      else
+        leave("a recipe levels lines together with a form: fettle level --rows");
     } else if (info.kind != engine::StepKind::kFilter) {
       leave(info.kind == engine::StepKind::kImport ? "the session stores its result, not how it was made"
                                                    : "it belongs to this scan");

@@ -338,6 +338,18 @@ bool LoopClient::changeForm(FormChange& change) {
   return true;
 }
 
+bool LoopClient::changeHeights(const engine::Version& base, const engine::Version& changed, std::string name,
+                               const haptic::HeightsMaker& maker) {
+  catchUp();
+  keepStroke();
+  if (!(base == history().current())) return false;
+  StepKeeper::HandChange made;
+  made.maker = maker;
+  steps_.change(std::move(name), engine::StepKind::kFilter, changed, place_, std::move(made));
+  restore(changed);
+  return true;
+}
+
 void LoopClient::prepend(engine::Step step, const engine::Version& original) {
   originals_.add(original);
   steps_.prepend(std::move(step));

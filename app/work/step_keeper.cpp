@@ -165,6 +165,7 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   made.marks = kind == engine::StepKind::kMark;
   made.suggested = change->suggested;
   made.fitted = std::move(change->fitted);
+  made.maker = change->maker;
   journal_.commit(made, history_.step(state), std::move(change->data));
 }
 

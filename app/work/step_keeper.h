@@ -103,14 +103,15 @@ class StepKeeper {
   void endAdoption() noexcept { adopting_ = false; }
   [[nodiscard]] bool adopting() const noexcept { return adopting_; }
 
-  /// A change of marks, lines or the form that no tick made.
+  /// A change of marks, lines, the form or all heights that no tick made.
   struct HandChange {
     std::string data;  ///< as of haptic::packMarkChanges, haptic::packLineChange or engine::packForm
     std::optional<haptic::journal::EdgesSuggested> suggested;
     bool heights = false;                                    ///< of kForm: what was seen are the samples
     std::optional<haptic::journal::FormFitted> fitted = {};  ///< of kForm
+    std::optional<haptic::HeightsMaker> maker = {};  ///< of kFilter: the heights, made of those before
   };
-  /// Changes the marks (kMark), the edge lines and marks (kLines) or the form (kForm) of the newest step's field.
+  /// Changes the marks (kMark), the edge lines and marks (kLines) or the form (kForm), or by a maker the heights (kFilter), of the newest step's field.
   void change(std::string name, engine::StepKind kind, const engine::Version& field,
               const haptic::LoopPlace& at, HandChange change);
 

@@ -1,6 +1,8 @@
 #include "haptic/journal/journal.h"
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -98,6 +100,40 @@ std::optional<journal::FormFitted> fittedOf(const json& in) {
                              found->at("robust").get<bool>()};
 }
 
+constexpr std::array<std::string_view, 2> kFillMethods = {"membrane", "curvature"};
+constexpr std::array<std::string_view, 4> kLineMethods = {"median", "polynomial", "difference", "matching"};
+constexpr std::array<std::string_view, 2> kScanAxes = {"x", "y"};
+constexpr std::array<std::string_view, 3> kRegions = {"all", "marked", "unmarked"};
+
+// Limits that are infinite are left out.
+json jsonOf(const engine::FillOptions& fill) {
+  json out = {{"fill", kFillMethods[static_cast<std::size_t>(fill.method)]}, {"border", fill.at_border}};
+  if (std::isfinite(fill.most_extent_mm)) out["most_extent_mm"] = fill.most_extent_mm;
+  if (std::isfinite(fill.most_area_mm2)) out["most_area_mm2"] = fill.most_area_mm2;
+  return out;
+}
+json jsonOf(const engine::LineOptions& lines) {
+  return {{"lines", kLineMethods[static_cast<std::size_t>(lines.method)]},
+          {"degree", lines.degree},
+          {"axis", kScanAxes[static_cast<std::size_t>(lines.axis)]},
+          {"region", engine::wordOf(lines.region)},
+          {"robust", lines.robust}};
+}
+
+HeightsMaker makerOf(const json& in) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  if (in.contains("fill"))
+    return engine::FillOptions{.method = static_cast<engine::FillMethod>(wordOf(in.at("fill"), kFillMethods)),
+                               .most_extent_mm = in.value("most_extent_mm", kAny),
+                               .most_area_mm2 = in.value("most_area_mm2", kAny),
+                               .at_border = in.at("border").get<bool>()};
+  return engine::LineOptions{.method = static_cast<engine::LineMethod>(wordOf(in.at("lines"), kLineMethods)),
+                             .degree = in.at("degree").get<int>(),
+                             .axis = static_cast<engine::ScanAxis>(wordOf(in.at("axis"), kScanAxes)),
+                             .region = static_cast<engine::Region>(wordOf(in.at("region"), kRegions)),
+                             .robust = in.at("robust").get<bool>()};
+}
+
 journal::Entry entryOf(const json& in) {
   const auto& what = in.at("do").get_ref<const std::string&>();
   const auto id = [&] { return in.at("id").get<std::uint64_t>(); };
@@ -115,6 +151,11 @@ journal::Entry entryOf(const json& in) {
                              placeOf(in),     in.value("marks", false),         in.value("lines", false),
                              suggestedOf(in), in.value("form", false),          in.value("heights", false),
                              fittedOf(in)};
+  }
+  if (what == "computed") {
+    journal::StepMade step{state(), in.at("name").get<std::string>(), engine::StepKind::kFilter, placeOf(in)};
+    step.maker = makerOf(in.at("by"));
+    return step;
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
@@ -151,6 +192,12 @@ std::string journalText(const journal::Entry& entry) {
             put(out, e.at);
           },
           [&](const journal::StepMade& e) {
+            if (e.maker) {
+              out = {{"do", "computed"}, {"state", e.state}, {"name", e.name}};
+              out["by"] = std::visit([](const auto& by) { return jsonOf(by); }, *e.maker);
+              put(out, e.at);
+              return;
+            }
             out = {
                 {"do", "step"}, {"state", e.state}, {"name", e.name}, {"kind", engine::stepKindName(e.kind)}};
             if (e.marks) out["marks"] = true;

@@ -9,6 +9,7 @@
 #include "engine/filter/filter.h"
 #include "engine/history/history.h"
 #include "engine/session/session.h"
+#include "haptic/journal/computed_heights.h"
 #include "haptic/scene/scene.h"
 
 namespace fettle::haptic {
@@ -78,6 +79,9 @@ struct StepMade {
   bool form = false;
   bool heights = false;
   std::optional<FormFitted> fitted = {};
+  /// The heights are those of the state before as this makes them: kind kFilter. An action of its own in the text, "computed", which programs
+  /// without it refuse to replay.
+  std::optional<HeightsMaker> maker = {};
 };
 /// The restoring of state `state` was requested ...
 struct RestoreRequested {

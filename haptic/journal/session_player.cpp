@@ -183,7 +183,13 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::StepMade& step, const std::string& data) {
     Version state;
-    if (step.form || step.heights) {
+    if (step.maker) {
+      const auto before = states_.find(step.state - 1);
+      if (before == states_.end()) return mismatch("heights of a state that does not exist");
+      auto computed = computeHeights(before->second, *step.maker, own_);
+      if (!computed) return tl::unexpected(computed.error());
+      state = std::move(computed->field);
+    } else if (step.form || step.heights) {
       const auto before = states_.find(step.state - 1);
       if (before == states_.end()) return mismatch("a form over a state that does not exist");
       auto changed = underOtherForm(before->second, step, data);

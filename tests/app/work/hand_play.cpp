@@ -23,7 +23,10 @@ void HandPlay::wait(std::uint64_t ticks) {
     client_.poll();
     keeper_.poll();
     static_cast<void>(filters_.poll(client_, notices_));
-    if (!filters_.applying()) static_cast<void>(form_.poll(client_, notices_));
+    if (!filters_.applying()) {
+      static_cast<void>(form_.poll(client_, notices_));
+      static_cast<void>(heights_.poll(client_, notices_));
+    }
     // A window's frames look at the loop about as often while it draws.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -190,6 +193,35 @@ std::string HandPlay::form() {
   return what;
 }
 
+std::string HandPlay::heights() {
+  const bool fills = random_() % 2 == 0;
+  heights_.fill.method = random_() % 2 == 0 ? engine::FillMethod::kMembrane : engine::FillMethod::kCurvature;
+  heights_.lines.method = static_cast<engine::LineMethod>(random_() % 4);
+  heights_.lines.degree = heights_.lines.method == engine::LineMethod::kPolynomial ? 1 : 0;
+  heights_.lines.axis = random_() % 2 == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
+  if (fills)
+    heights_.fillHoles();
+  else
+    heights_.levelLines();
+  wait(1);
+  // A hand may work on meanwhile; what it left open would be waited for.
+  if (random_() % 2 == 0) static_cast<void>(stroke(true));
+  press(u_, v_, false);
+  while (heights_.busy()) wait(1);
+  return fills ? "holes filled" : "lines levelled";
+}
+
+void HandPlay::make(const haptic::HeightsMaker& maker) {
+  if (const auto* fill = std::get_if<engine::FillOptions>(&maker)) {
+    heights_.fill = *fill;
+    heights_.fillHoles();
+  } else {
+    heights_.lines = std::get<engine::LineOptions>(maker);
+    heights_.levelLines();
+  }
+  while (heights_.busy()) wait(1);
+}
+
 void HandPlay::takeOutPlane() {
   form_.options = {};
   form_.takeOut(client_);
@@ -203,6 +235,7 @@ void HandPlay::makeHeights() {
 
 std::string HandPlay::act() {
   if (random_() % 8 == 0) return form();
+  if (random_() % 12 == 0) return heights();
   const auto what = random_() % 16;
   if (what < 6) return stroke(true);
   if (what < 7) return stroke(false);

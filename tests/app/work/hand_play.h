@@ -7,6 +7,7 @@
 
 #include "app/work/filter_preview.h"
 #include "app/work/form_tool.h"
+#include "app/work/height_tool.h"
 #include "app/work/loop_client.h"
 #include "app/work/session_keeper.h"
 
@@ -16,7 +17,7 @@ namespace fettle::tests {
 [[nodiscard]] std::uint64_t storedHash(const engine::Version& state);
 
 /// A person at the window, without the window: random strokes with the mouse as stylus, undo and redo,
-/// filters applied during a stroke, marks, scenes, forms taken out and put back. On the real loop, in real time.
+/// filters applied during a stroke, marks, scenes, forms taken out and put back, holes filled, lines levelled. On the real loop, in real time.
 class HandPlay {
  public:
   HandPlay(app::LoopClient& client, app::SessionKeeper& keeper, std::uint64_t seed)
@@ -28,6 +29,8 @@ class HandPlay {
   void takeOutPlane();
   /// What is seen becomes the heights.
   void makeHeights();
+  /// Holes are filled, or lines levelled.
+  void make(const haptic::HeightsMaker& maker);
   /// This filter, applied during a stroke.
   void apply(const engine::FilterSpec& spec);
   /// Until nothing is under way: no stroke, no filter, every step handed over.
@@ -46,6 +49,7 @@ class HandPlay {
   std::string lines();
   std::string scene();
   std::string form();
+  std::string heights();
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
@@ -55,6 +59,7 @@ class HandPlay {
   std::mt19937_64 random_;
   app::FilterPreview filters_;
   app::FormTool form_;
+  app::HeightTool heights_;
   std::vector<app::Notice> notices_;
   double u_ = 0.5, v_ = 0.5;  // where the cursor is, in fractions of the field
 };

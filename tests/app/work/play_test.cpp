@@ -1,10 +1,12 @@
 // A person's work in real time, kept in a session as it goes, made again from the journal alone.
 
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
 
 #include "app/work/open_document.h"
+#include "engine/field/live_field.h"
 #include "engine/formats/formats.h"
 #include "haptic/journal/session_player.h"
 #include "tests/app/work/hand_play.h"
@@ -120,6 +122,63 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   const auto played = haptic::playSession(*session, job);
   ASSERT_TRUE(played) << played.error().line();
   EXPECT_EQ(played->filters, 2);
+  EXPECT_EQ(engine::contentHash(played->field), expected);
+}
+
+// Holes and lines under the hand: a step each, undone and made again, kept, and replayed from their numbers alone.
+TEST(SessionJournal, ReplaysFilledHolesAndLevelledLinesToTheSameBits) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  engine::LiveField holed(roughPart(), engine::Growth::kAllowed);
+  for (std::int32_t row = 30; row < 36; ++row)
+    for (std::int32_t column = 40; column < 49; ++column)
+      ASSERT_TRUE(holed.setHeight(column, row, std::numeric_limits<float>::quiet_NaN()));
+  Document document = fromField(holed.snapshot(), folder.file("scan.tif"));
+  const engine::History history = document.history;
+  SessionKeeper keeper(document);
+  keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
+  auto client = clientOf(document, history, keeper);
+  ASSERT_TRUE(client);
+  HandPlay play(*client, keeper, 5);
+  const std::int64_t holes = engine::summarize(client->field()).no_data;
+  ASSERT_GE(holes, 54);
+  engine::FillOptions fill;
+  fill.most_extent_mm = 20.0 * client->field().grid().spacingXMm();
+  play.make(fill);
+  play.settle();
+  EXPECT_EQ(client->history().number(), 1);
+  EXPECT_LE(engine::summarize(client->field()).no_data, holes - 54) << "others are as small";
+  engine::JobControl job;
+  const auto by_command = engine::fillHoles(history.current(), fill, job);
+  ASSERT_TRUE(by_command);
+  EXPECT_EQ(storedHash(client->history().current()), engine::contentHash(by_command->field));
+  engine::LineOptions lines;
+  lines.method = engine::LineMethod::kMatching;
+  play.make(lines);
+  play.settle();
+  EXPECT_EQ(client->history().number(), 2);
+  client->undo();
+  client->undo();
+  play.settle();
+  EXPECT_EQ(engine::summarize(client->field()).no_data, holes);
+  client->redo();
+  play.settle();
+  EXPECT_EQ(storedHash(client->history().current()), engine::contentHash(by_command->field));
+  client->redo();
+  play.settle();
+  for (const app::Notice& notice : play.notices()) ADD_FAILURE() << notice.what;
+  client->finish();
+  const std::uint64_t expected = storedHash(client->history().current());
+  ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
+
+  const auto session = engine::openSession(path, {}, engine::importField, job);
+  ASSERT_TRUE(session) << session.error().line();
+  EXPECT_EQ(engine::contentHash(session->history.current()), expected);
+  EXPECT_EQ(session->history.info(1).name, "Fill holes: curvature");
+  EXPECT_EQ(session->history.info(2).name, "Level rows: matching");
+  const auto played = haptic::playSession(*session, job);
+  ASSERT_TRUE(played) << played.error().line();
+  EXPECT_EQ(played->steps, 2);
   EXPECT_EQ(engine::contentHash(played->field), expected);
 }
 

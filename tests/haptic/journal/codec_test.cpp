@@ -136,6 +136,14 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   rolling.nesting_mm = 0.7;
   rolling.element = engine::Element::kSquare;
   const haptic::LoopPlace there{1234567890123, true}, before{7, false};
+  haptic::journal::StepMade filled{11, "Fill holes: curvature", engine::StepKind::kFilter, there},
+      levelled = filled;
+  engine::FillOptions fill;
+  fill.most_extent_mm = 1.0 / 3.0;
+  fill.at_border = true;
+  filled.maker = fill;
+  levelled.maker = engine::LineOptions{engine::LineMethod::kPolynomial, 2, engine::ScanAxis::kY,
+                                       engine::Region::kUnmarked, true};
   const std::vector<haptic::journal::Entry> all = {
       haptic::journal::Begin{3, anyScene(random)},
       haptic::journal::Ticks{17},
@@ -156,6 +164,8 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::Begin{3, anyScene(random), true},
       haptic::journal::StepMade{9, "Form out: plane", engine::StepKind::kForm, there, false, false, {}, true},
       haptic::journal::StepMade{10, "Heights", engine::StepKind::kForm, there, false, false, {}, false, true},
+      filled,
+      levelled,
       haptic::journal::FilterBegun{2, edge_preserving},
       haptic::journal::FilterBegun{3, rolling},
   };
@@ -179,6 +189,29 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.nesting_mm, edge_preserving.nesting_mm);
+}
+
+// Limits come back to the same bits, those that are infinite too; programs before them refuse the action, and do not replay something else.
+TEST(JournalText, OfComputedHeightsHasTheirNumbers) {
+  haptic::journal::StepMade step{4, "Fill holes: membrane", engine::StepKind::kFilter, {9, true}};
+  engine::FillOptions fill;
+  fill.method = engine::FillMethod::kMembrane;
+  fill.most_area_mm2 = 0.1;
+  step.maker = fill;
+  const std::string text = haptic::journalText(step);
+  EXPECT_NE(text.find("\"do\":\"computed\""), std::string::npos) << text;
+  const auto back = haptic::journalEntry(text);
+  ASSERT_TRUE(back) << back.error().line();
+  const auto& read = std::get<haptic::journal::StepMade>(*back);
+  ASSERT_TRUE(read.maker);
+  const auto& options = std::get<engine::FillOptions>(*read.maker);
+  EXPECT_EQ(options.method, engine::FillMethod::kMembrane);
+  EXPECT_EQ(options.most_area_mm2, 0.1);
+  EXPECT_TRUE(std::isinf(options.most_extent_mm));
+  EXPECT_EQ(read.kind, engine::StepKind::kFilter);
+  EXPECT_FALSE(haptic::journalEntry(
+      R"({"do":"computed","state":4,"name":"x","tick":1,"by":{"fill":"glue","border":false}})"));
+  EXPECT_FALSE(haptic::journalEntry(R"({"do":"computed","state":4,"name":"x","tick":1})"));
 }
 
 TEST(Journal, AStepOfBeforeHasNoNumbersOfASuggestionAndKeepsItsText) {

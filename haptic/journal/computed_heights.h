@@ -1,0 +1,29 @@
+#pragma once
+
+#include <variant>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/fill/fill.h"
+#include "engine/measure/line_offsets.h"
+
+namespace fettle::haptic {
+
+/// What makes the heights of a step anew from those before it, by its numbers alone: holes filled, lines levelled.
+using HeightsMaker = std::variant<engine::FillOptions, engine::LineOptions>;
+
+/// A field with other heights, and what was found.
+struct ComputedHeights {
+  engine::Version field;  ///< of the memory of the field before, sharing the tiles that stay
+  engine::Filled filled;  ///< of holes; its field is empty
+  double rows_rms = 0.0;  ///< of levelled lines [height_unit]
+};
+
+/// Makes them, as `fettle fill` and `fettle level --rows` do, and as a replay does again: bit-identical for any number of threads. Marks, edge
+/// lines, sign and form stay. Errors: those of engine::fillHoles and engine::findLineOffsets. Thread: any; a long job on all workers.
+[[nodiscard]] engine::Result<ComputedHeights> computeHeights(const engine::Version& before,
+                                                             const HeightsMaker& maker,
+                                                             engine::JobControl& job);
+
+}  // namespace fettle::haptic
