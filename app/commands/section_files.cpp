@@ -112,7 +112,7 @@ std::string sectionsPlot(const std::vector<DrawnSection>& sections) {
         fmt::format("$section{} << EOD\n{}EOD\n", s, plotRows(sections[s].section, length.size, height.size));
     curves += fmt::format("{}$section{} using 1:2 with lines lw 1.5 lc rgb '{}' title {}",
                           curves.empty() ? "plot " : ", ", s, colour, quoted(sections[s].name));
-    for (const DrawnMark& mark : sections[s].marks)
+    for (const SectionMark& mark : sections[s].marks)
       script += fmt::format(
           "set arrow from {0:.9g}, graph 0 to {0:.9g}, graph 1 nohead dt 3 lc rgb '{1}'\n"
           "set label '{2} ' at {0:.9g}, graph 1 right rotate by 90 offset character -0.6, 0 tc rgb '{1}'\n",

@@ -3,24 +3,19 @@
 #include <string>
 #include <vector>
 
+#include "app/work/section_report.h"
 #include "engine/base/error.h"
 #include "engine/measure/section.h"
 
 namespace fettle::app {
 
-/// A place along a line that a picture shows.
-struct DrawnMark {
-  double along_mm = 0.0;
-  std::string name;  ///< "edge"
-};
-
 /// A section of a scan and, with --compare, that of the other at the same places; what is drawn into it.
 struct DrawnSection {
   std::string name;  ///< "section 0"
   engine::Section section;
-  engine::Section other;         ///< no places: there is none
-  std::string other_name;        ///< empty: "NAME, other"
-  std::vector<DrawnMark> marks;  ///< at which a thin line stands, with its name
+  engine::Section other;           ///< no places: there is none
+  std::string other_name;          ///< empty: "NAME, other"
+  std::vector<SectionMark> marks;  ///< at which a thin line stands, with its name
 };
 
 /// A row per place: section, length, position, height, share of the lanes, height of the other, all in millimetres.

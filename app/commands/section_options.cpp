@@ -16,26 +16,6 @@ namespace {
 constexpr const char* kLineGroup = "The line";
 constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
 
-}  // namespace
-
-std::vector<double> numbersOf(std::string_view text, std::size_t count) {
-  std::vector<double> numbers;
-  while (numbers.size() < count) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !std::isfinite(value)) return {};
-    numbers.push_back(value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (numbers.size() < count) {
-      if (!text.starts_with(',')) return {};
-      text.remove_prefix(1);
-    }
-  }
-  return text.empty() ? numbers : std::vector<double>();
-}
-
-namespace {
-
 // An option that would have no effect beside the others, and what it needs.
 engine::Status checkEffects(const SectionArguments& options) {
   const auto needs = [](const char* option, const char* what) {
@@ -45,7 +25,8 @@ engine::Status checkEffects(const SectionArguments& options) {
   if (!options.within.empty() && options.step.empty() && options.groove.empty() && !options.cutoff)
     return needs("--within", "--step, --groove or --cutoff");
   if (options.probe_radius && options.probes.empty()) return needs("--probe-radius", "--probe");
-  if (!options.from.empty() || !options.to.empty() || !options.polylines.empty() || !options.lines.empty())
+  if (!options.from.empty() || !options.to.empty() || !options.polylines.empty() || !options.lines.empty() ||
+      options.kept)
     return {};
   for (const auto& [given, option] : {std::pair(options.width > 0.0, "--width"),
                                       {!options.compare.empty(), "--compare"},
@@ -114,6 +95,10 @@ void addLineOptions(Command command, SectionArguments& options) {
                 .to = &options.lines,
                 .text = "A section along each line of a file, GeoJSON too",
                 .kind = ValueKind::kLines},
+               {.name = "--kept",
+                .to = &options.kept,
+                .text = "The sections that the window kept with a session, each with its width and what is "
+                        "measured between its cursors"},
                {.name = "--width",
                 .to = &options.width,
                 .text = "Average across this width; 0: the line alone",

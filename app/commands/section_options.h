@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -11,12 +9,13 @@
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_options.h"
+#include "app/work/section_report.h"
 #include "engine/base/error.h"
 
 namespace fettle::app {
 
 /// What `fettle section` is asked for. Lengths and positions in millimetres.
-struct SectionArguments {
+struct SectionArguments : SectionWants {
   std::string scan;
   std::vector<double> from, to;
   std::vector<std::string> polylines;
@@ -26,10 +25,8 @@ struct SectionArguments {
   std::string region = "all";
   std::string marks;
   std::string compare;
-  // What is measured.
-  std::vector<double> within, cursors, line, angle, arc;
-  std::string step, groove;
-  std::optional<double> cutoff;
+  bool kept = false;  ///< those of the session, each with its own width and figures
+  // What is measured besides.
   std::vector<std::string> probes;
   std::optional<double> probe_radius;
   // Files.
@@ -44,9 +41,6 @@ void addFigureOptions(Command command, SectionArguments& options);
 
 /// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);
-
-/// Numbers with commas between them, exactly so many; none when the text is something else.
-[[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
 
 /// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
 [[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,

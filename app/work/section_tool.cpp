@@ -2,65 +2,158 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <glm/geometric.hpp>
+#include <limits>
 
 #include "engine/inspect/noise.h"
 
 namespace fettle::app {
 
+namespace {
+
+// A cut-off for roughness to begin with: the series of ISO 21920-3, of which five sampling lengths and two halves fit between the cursors.
+double firstCutoff(double length_mm) {
+  constexpr double kSeries_mm[] = {8.0, 2.5, 0.8, 0.25, 0.08, 0.025};
+  for (const double cutoff : kSeries_mm)
+    if (6.0 * cutoff <= length_mm) return cutoff;
+  return length_mm / 6.0;
+}
+
+void addSpanOf(const engine::Section& section, double& low, double& high) {
+  for (const double z : section.height)
+    if (!std::isnan(z)) {
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+}
+
+// Each figure, or why there is none.
+std::vector<SectionLine> linesOf(const SectionWants& wants, const engine::Section& section, double noise_mm,
+                                 const SectionUnits& units, Report& report) {
+  std::vector<SectionLine> lines;
+  std::vector<SectionMark> marks;
+  for (const std::string_view key : sectionFigureKeys()) {
+    if (!wantsFigure(wants, key)) continue;
+    auto figure = sectionFigure(key, wants, section, noise_mm, marks);
+    if (!figure) {
+      lines.push_back({std::string(key), figure.error().what});
+      continue;
+    }
+    Report one;
+    one[std::string(key)] = *figure;
+    for (SectionLine& line : sectionLines(one, units)) lines.push_back(std::move(line));
+    report[std::string(key)] = *std::move(figure);
+  }
+  return lines;
+}
+
+}  // namespace
+
 void SectionTool::setFrom(const glm::dvec2& mm) {
-  setLine({mm, line_ ? line_->to : mm});
+  KeptSection changed = section() != nullptr ? *section() : KeptSection{.to = mm};
+  changed.from = mm;
+  set(changed);
 }
 
 void SectionTool::setTo(const glm::dvec2& mm) {
-  setLine({line_ ? line_->from : mm, mm});
+  KeptSection changed = section() != nullptr ? *section() : KeptSection{.from = mm};
+  changed.to = mm;
+  set(changed);
 }
 
-void SectionTool::setLine(const Line& line) {
-  if (line_ == line) return;
-  line_ = line;
+void SectionTool::set(const KeptSection& section) {
+  if (chosen_ == sections_.size()) sections_.emplace_back();
+  KeptSection& kept = sections_[chosen_];
+  if (kept == section) return;
+  const bool line = kept.from != section.from || kept.to != section.to,
+             profile = kept.width_mm != section.width_mm;
+  kept = section;
+  const double length = kept.lengthMm();
+  // Until they are moved.
+  if (line) kept.cursors = {0.25 * length, 0.75 * length};
+  if (!(kept.cutoff_mm > 0.0) && length > 0.0) kept.cutoff_mm = firstCutoff(0.5 * length);
+  if (line || profile)
+    lineChanged();
+  else
+    figures_due_ = profiles_.has_value();
+}
+
+void SectionTool::lineChanged() {
+  const KeptSection* const now = section();
+  due_ = now != nullptr && now->lengthMm() > 0.0;
+  if (!due_) {
+    working_.cancel();
+    measuring_.cancel();
+    profiles_.reset();
+    figures_ = {};
+    figures_due_ = false;
+  }
+  ++revision_;
+}
+
+void SectionTool::beginNew() {
+  chosen_ = sections_.size();
   lineChanged();
 }
 
-void SectionTool::setWidth(double mm) {
-  if (width_mm_ == mm) return;
-  width_mm_ = mm;
-  if (line_) lineChanged();
+void SectionTool::next() {
+  if (!sections_.empty()) choose(chosen_ + 1 < sections_.size() ? chosen_ + 1 : 0);
 }
 
-// Cursors at a quarter and three quarters, until they are moved.
-void SectionTool::lineChanged() {
-  const double length = glm::distance(line_->from, line_->to);
-  cursors_ = {0.25 * length, 0.75 * length};
-  due_ = length > 0.0;
-  if (!due_) profiles_.reset();
-  ++revision_;
-}
-
-void SectionTool::clear() {
-  working_.cancel();
-  line_.reset();
+void SectionTool::choose(std::size_t section) {
+  if (section >= sections_.size() || section == chosen_) return;
+  chosen_ = section;
   profiles_.reset();
-  due_ = false;
-  ++revision_;
+  figures_ = {};
+  lineChanged();
+}
+
+void SectionTool::remove() {
+  if (section() == nullptr) return;
+  sections_.erase(sections_.begin() + static_cast<std::ptrdiff_t>(chosen_));
+  if (chosen_ > 0 && chosen_ == sections_.size()) --chosen_;
+  profiles_.reset();
+  figures_ = {};
+  lineChanged();
+}
+
+void SectionTool::restore(std::vector<KeptSection> sections) {
+  reset();
+  sections_ = taken_sections_ = std::move(sections);
+  lineChanged();
 }
 
 void SectionTool::reset() {
-  clear();
+  sections_.clear();
+  taken_sections_.clear();
+  chosen_ = 0;
+  lineChanged();
   taken_ = noise_of_ = {};
   noise_mm_.reset();
+}
+
+std::optional<std::size_t> SectionTool::chosen() const noexcept {
+  return chosen_ < sections_.size() ? std::optional(chosen_) : std::nullopt;
+}
+
+std::optional<std::string> SectionTool::takeKept() {
+  if (sections_ == taken_sections_) return std::nullopt;
+  taken_sections_ = sections_;
+  return sectionsText(sections_);
+}
+
+const KeptSection* SectionTool::section() const noexcept {
+  return chosen_ < sections_.size() ? &sections_[chosen_] : nullptr;
 }
 
 void SectionTool::start(const LoopClient& client) {
   due_ = false;
   taken_ = client.newest();
   const std::optional<double> known = noise_of_ == client.original() ? noise_mm_ : std::nullopt;
-  working_.start([field = taken_, scan = client.original(), line = *line_, width = width_mm_,
+  working_.start([field = taken_, scan = client.original(), kept = *section(),
                   known](engine::JobControl& job) -> engine::Result<Work> {
     engine::SectionOptions options;
-    options.width_mm = width;
-    const glm::dvec2 points[] = {line.from, line.to};
+    options.width_mm = kept.width_mm;
+    const glm::dvec2 points[] = {kept.from, kept.to};
     auto now = engine::sectionAlong(field, points, options, job);
     if (!now) return tl::unexpected(now.error());
     Work work{{*std::move(now), {}, known.value_or(0.0)}, scan};
@@ -79,6 +172,23 @@ void SectionTool::start(const LoopClient& client) {
   });
 }
 
+void SectionTool::startFigures() {
+  figures_due_ = false;
+  measuring_.start(
+      [profiles = *profiles_, wants = wantsOf(*section())](engine::JobControl&) -> engine::Result<Figures> {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        addSpanOf(profiles.now, low, high);
+        addSpanOf(profiles.before, low, high);
+        const SectionUnits units = sectionUnits(profiles.now.lengthMm(), low < high ? high - low : 0.0);
+        Figures figures;
+        Report unused;
+        figures.now = linesOf(wants, profiles.now, profiles.noise_mm, units, figures.report);
+        if (profiles.before.size() > 0)
+          figures.before = linesOf(wants, profiles.before, profiles.noise_mm, units, unused);
+        return figures;
+      });
+}
+
 bool SectionTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
   const bool dropped = working_.cancelling();
   bool changed = false;
@@ -88,12 +198,19 @@ bool SectionTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
       noise_of_ = std::move((*done)->scan);
       noise_mm_ = (*done)->profiles.noise_mm;
       profiles_ = std::move((*done)->profiles);
+      figures_due_ = true;
     } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
       profiles_.reset();
+      figures_ = {};
       notices.push_back({done->error().what, done->error().remedy});
     }
   }
-  if (!line_) return changed;
+  const bool unwanted = measuring_.cancelling();
+  if (auto done = measuring_.take()) {
+    changed = true;
+    if (!unwanted && *done) figures_ = **std::move(done);
+  }
+  if (section() == nullptr) return changed;
   if (!due_ && (profiles_ || working_.busy()) && !(client.newest() == taken_)) due_ = true;
   // One that runs is ended first: waiting for it here would take a frame.
   if (due_ && working_.busy()) {
@@ -101,29 +218,24 @@ bool SectionTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
   } else if (due_) {
     start(client);
   }
+  if (figures_due_ && profiles_ && !working_.busy()) {
+    if (measuring_.busy())
+      measuring_.cancel();
+    else
+      startFigures();
+  }
   return changed;
 }
 
 void SectionTool::moveCursor(double along_mm) {
-  if (!profiles_) return;
+  if (!profiles_ || section() == nullptr) return;
+  KeptSection moved = *section();
   const double at = std::clamp(along_mm, 0.0, profiles_->now.lengthMm());
-  double& nearer =
-      std::abs(at - cursors_.first) <= std::abs(at - cursors_.second) ? cursors_.first : cursors_.second;
+  double& nearer = std::abs(at - moved.cursors.first) <= std::abs(at - moved.cursors.second)
+                       ? moved.cursors.first
+                       : moved.cursors.second;
   nearer = at;
-}
-
-std::optional<engine::CursorFigures> SectionTool::between() const {
-  if (!profiles_) return std::nullopt;
-  const auto figures =
-      engine::cursorFigures(profiles_->now, cursors_.first, cursors_.second, profiles_->noise_mm);
-  return figures ? std::optional(*figures) : std::nullopt;
-}
-
-std::optional<engine::CursorFigures> SectionTool::betweenBefore() const {
-  if (!profiles_ || profiles_->before.size() == 0) return std::nullopt;
-  const auto figures =
-      engine::cursorFigures(profiles_->before, cursors_.first, cursors_.second, profiles_->noise_mm);
-  return figures ? std::optional(*figures) : std::nullopt;
+  set(moved);
 }
 
 }  // namespace fettle::app

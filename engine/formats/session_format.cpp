@@ -52,6 +52,8 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   if (const auto recipe = session->notes.find(kRecipeNote); recipe != session->notes.end())
     imported.recipe = recipe->second;
   imported.steps = stepsOfCommands(*session);
+  if (const auto sections = session->notes.find(kSectionsNote); sections != session->notes.end())
+    imported.sections = sections->second;
   imported.format = "Fettle";
   Grid grid = imported.field.grid();
   if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {

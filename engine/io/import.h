@@ -65,9 +65,10 @@ struct Imported {
   Version field;
   /// Of a session: the scan that it began with, with the grid and sign of `field`, seen under the same form.
   std::optional<Version> original;
-  std::string recipe = {};  ///< of a session: its note "recipe", as ExportOptions::recipe; may be empty
-  std::string steps = {};   ///< as ExportOptions::steps, where these led to `field`; else empty
-  std::string format;       ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
+  std::string recipe = {};    ///< of a session: its note "recipe", as ExportOptions::recipe; may be empty
+  std::string steps = {};     ///< as ExportOptions::steps, where these led to `field`; else empty
+  std::string sections = {};  ///< of a session: its note "sections", as the window keeps them; may be empty
+  std::string format;         ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only
   /// Heights that look like undeclared holes (lone_value.h); `warnings` name each.

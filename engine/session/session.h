@@ -57,6 +57,8 @@ inline constexpr const char* kRecipeNote = "recipe";
 /// name kByCommands, a form and an inversion after it. No entry of the journal is of these.
 inline constexpr const char* kStepsNote = "steps";
 inline constexpr const char* kByCommands = "By commands";
+/// Of the window's sections (app/work/kept_sections.h).
+inline constexpr const char* kSectionsNote = "sections";
 
 /// A session in memory.
 struct Session {

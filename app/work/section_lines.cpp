@@ -1,0 +1,106 @@
+#include "app/work/section_lines.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/work/estimate_text.h"
+
+namespace fettle::app {
+
+namespace {
+
+const ReadAs kDegrees{"degrees", 1.0};
+
+}  // namespace
+
+SectionUnits sectionUnits(double longest_mm, double span_mm) {
+  return {readLengthAs(longest_mm, 1.0, "mm"), readLengthAs(span_mm, 1.0, "mm")};
+}
+
+std::string shownLength(const Report& mm, const ReadAs& unit) {
+  return mm.is_null() ? "-" : fmt::format("{:.6g} {}", mm.get<double>() / unit.size, unit.name);
+}
+
+std::string shownHeight(const Report& mm, const ReadAs& unit) {
+  return mm.is_null() ? "-" : fmt::format("{:.9g} {}", mm.get<double>() / unit.size, unit.name);
+}
+
+std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& units) {
+  const ReadAs &along = units.along, &height = units.height;
+  std::vector<SectionLine> lines;
+  const auto row = [&](const char* name, std::string text) { lines.push_back({name, std::move(text)}); };
+  if (of.contains("cursors")) {
+    const Report& c = of["cursors"];
+    row("cursors", fmt::format("dx {}, dz {}, slope {} degrees, distance {}", shownLength(c["dx_mm"], along),
+                               shownEstimate(c, "dz", "mm", height), shownNumber(c["slope_deg"]),
+                               shownLength(c["distance_mm"], along)));
+  }
+  if (of.contains("line")) {
+    const Report& line = of["line"];
+    row("line",
+        fmt::format("inclination {}, height in the middle {}, rms {}",
+                    shownEstimate(line, "inclination", "deg", kDegrees),
+                    shownEstimate(line, "height", "mm", height), shownLength(line["rms_mm"], height)));
+  }
+  if (of.contains("step")) {
+    const Report& step = of["step"];
+    row("step", fmt::format("{}, edge at {}, rms {}", shownEstimate(step, "step", "mm", height),
+                            shownLength(step["edge_mm"], along), shownLength(step["rms_mm"], height)));
+  }
+  if (of.contains("groove")) {
+    const Report& groove = of["groove"];
+    row("groove",
+        fmt::format("depth {}, width {} from {} to {}, rms {}", shownEstimate(groove, "depth", "mm", height),
+                    shownLength(groove["width_mm"], along), shownLength(groove["edges"][0], along),
+                    shownLength(groove["edges"][1], along), shownLength(groove["rms_mm"], height)));
+  }
+  if (of.contains("angle")) {
+    const Report& angle = of["angle"];
+    row("angle", fmt::format("turn {}, included {} degrees, lines meet at {}, height {}",
+                             shownEstimate(angle, "turn", "deg", kDegrees),
+                             shownNumber(angle["included_deg"]), shownLength(angle["meet_along_mm"], along),
+                             shownHeight(angle["meet_height_mm"], height)));
+  }
+  if (of.contains("arc")) {
+    const Report& arc = of["arc"];
+    row("arc", fmt::format("radius {}, {}, centre at {}, height {}, rms {}",
+                           shownEstimate(arc, "radius", "mm", along),
+                           arc["hollow"].get<bool>() ? "hollow" : "raised",
+                           shownLength(arc["centre_along_mm"], along),
+                           shownHeight(arc["centre_height_mm"], along), shownLength(arc["rms_mm"], height)));
+  }
+  if (of.contains("roughness")) {
+    const Report& r = of["roughness"];
+    const ReadAs as = readLengthAs(r["ra_mm"].get<double>(), 1.0, "mm");
+    row("roughness", fmt::format("over {} cut-offs of {}; without noise +- standard error",
+                                 r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along)));
+    struct Kind {
+      const char* name;
+      const char* key;
+      const char* unit;
+      const ReadAs* as;
+    };
+    const ReadAs plain{"", 1.0};
+    for (const Kind& kind : {Kind{"Ra", "ra", "_mm", &as},
+                             {"Rq", "rq", "_mm", &as},
+                             {"Rz", "rz", "_mm", &as},
+                             {"RSm", "rsm", "_mm", &along},
+                             {"Rsk", "rsk", "", &plain},
+                             {"Rku", "rku", "", &plain}}) {
+      const Report &value = r[fmt::format("{}{}", kind.key, kind.unit)],
+                   &without = r[fmt::format("{}_without{}", kind.key, kind.unit)],
+                   &error = r[fmt::format("{}_error{}", kind.key, kind.unit)];
+      std::string text = shownLength(value, *kind.as);
+      if (!without.is_null()) {
+        const double by = error.get<double>() / kind.as->size;
+        text += fmt::format(", without noise {} +- {:.2g}",
+                            shownTo(without.get<double>() / kind.as->size, by), by);
+      }
+      row("", fmt::format("{:<4} {}", kind.name, text));
+    }
+  }
+  return lines;
+}
+
+}  // namespace fettle::app

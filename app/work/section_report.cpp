@@ -1,0 +1,251 @@
+#include "app/work/section_report.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/measure/roughness.h"
+#include "engine/uncertainty/roughness_noise.h"
+
+namespace fettle::app {
+
+namespace {
+
+using engine::Estimate;
+using engine::Section;
+using engine::Stretch;
+
+constexpr std::string_view kSectionKeys[] = {"cursors", "line", "step",     "groove",
+                                             "angle",   "arc",  "roughness"};
+
+Report lineReport(const engine::LineFigures& line) {
+  Report report;
+  addEstimate(report, "inclination", "deg", line.inclination_deg);
+  addEstimate(report, "height", "mm", line.height_mm);
+  report["rms_mm"] = line.rms_mm;
+  report["places"] = line.places;
+  return report;
+}
+
+Report stretchOf(const Stretch& stretch) {
+  return Report::array({stretch.from_mm, stretch.to_mm});
+}
+
+void addMarks(const std::vector<double>& along, const char* name, std::vector<SectionMark>& marks) {
+  for (const double at : along) marks.push_back({at, name});
+}
+
+// What was asked for, of one section. `marks`: places that a picture shows.
+class SectionMeasurement {
+  static constexpr int kRoughnessPairs = 32;  // of trials with noise
+
+ public:
+  SectionMeasurement(const SectionWants& options, double noise_mm) : options_(options), noise_mm_(noise_mm) {}
+
+  engine::Result<Report> of(std::string_view key, const Section& section,
+                            std::vector<SectionMark>& marks) const {
+    if (key == "cursors") return cursors(section, marks);
+    if (key == "line") return line(section, marks);
+    if (key == "step") return step(section, marks);
+    if (key == "groove") return groove(section, marks);
+    if (key == "angle") return angle(section, marks);
+    if (key == "arc") return arc(section, marks);
+    return roughness(section);
+  }
+
+ private:
+  // Whether an offset that was searched for is more than the largest that noise makes somewhere, and than what the
+  // rounding of heights to float does.
+  [[nodiscard]] static bool standsOut(const Section& section, const Estimate& offset) {
+    double most = 0.0;
+    for (const double z : section.height)
+      if (!std::isnan(z)) most = std::max(most, std::abs(z));
+    return std::abs(offset.value) > std::max(5.0 * offset.error, 1e-6 * most);
+  }
+
+  [[nodiscard]] Stretch within(const Section& section) const {
+    return options_.within.empty() ? Stretch{0.0, section.lengthMm()}
+                                   : Stretch{options_.within[0], options_.within[1]};
+  }
+
+  engine::Result<Report> cursors(const Section& section, std::vector<SectionMark>& marks) const {
+    const auto figures = engine::cursorFigures(section, options_.cursors[0], options_.cursors[1], noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    addMarks(options_.cursors, "cursor", marks);
+    Report report{{"dx_mm", figures->dx_mm}};
+    addEstimate(report, "dz", "mm", figures->dz_mm);
+    report.update({{"slope_deg", numberOrNull(figures->slope_deg)},
+                   {"distance_mm", figures->distance_mm},
+                   {"first_mm", figures->first_mm},
+                   {"second_mm", figures->second_mm}});
+    return report;
+  }
+  engine::Result<Report> line(const Section& section, std::vector<SectionMark>& marks) const {
+    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    addMarks(options_.line, "line", marks);
+    return lineReport(*figures);
+  }
+  engine::Result<Report> step(const Section& section, std::vector<SectionMark>& marks) const {
+    double edge = engine::edgeIn(section, within(section));
+    if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
+    if (std::isnan(edge))
+      return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
+    const auto figures = engine::stepFigures(section, edge, within(section), noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    if (options_.step == "auto" && !standsOut(section, figures->step_mm))
+      return engine::inputError("no step stands out from the noise of the section", "--step",
+                                "average over a --width, or give the edge's length");
+    addMarks({edge}, "step", marks);
+    Report report{{"edge_mm", edge}};
+    addEstimate(report, "step", "mm", figures->step_mm);
+    addEstimate(report, "inclination", "deg", figures->inclination_deg);
+    report.update({{"before", stretchOf(figures->before)},
+                   {"after", stretchOf(figures->edge_after)},
+                   {"rms_mm", figures->rms_mm},
+                   {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> groove(const Section& section, std::vector<SectionMark>& marks) const {
+    Stretch edges = engine::grooveIn(section, within(section));
+    if (options_.groove != "auto") {
+      const std::vector<double> typed = numbersOf(options_.groove, 2);
+      edges = {typed[0], typed[1]};
+    }
+    if (std::isnan(edges.from_mm))
+      return engine::inputError("no groove or ridge stands out in the section", "--groove",
+                                "give a longer line, or the lengths of both edges");
+    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
+      return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
+                                "average over a --width, or give the lengths of both edges");
+    addMarks({edges.from_mm, edges.to_mm}, "groove", marks);
+    Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
+    addEstimate(report, "depth", "mm", figures->step_mm);
+    addEstimate(report, "inclination", "deg", figures->inclination_deg);
+    report.update({{"before", stretchOf(figures->before)},
+                   {"inside", stretchOf(figures->edge_after)},
+                   {"behind", stretchOf(figures->behind)},
+                   {"rms_mm", figures->rms_mm},
+                   {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> angle(const Section& section, std::vector<SectionMark>& marks) const {
+    const auto figures = engine::angleFigures(section, {options_.angle[0], options_.angle[1]},
+                                              {options_.angle[2], options_.angle[3]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    addMarks(options_.angle, "angle", marks);
+    Report report;
+    addEstimate(report, "turn", "deg", figures->turn_deg);
+    report["included_deg"] = figures->included_deg.value;
+    report["meet_along_mm"] = numberOrNull(figures->meet_along_mm);
+    report["meet_height_mm"] = numberOrNull(figures->meet_height_mm);
+    report["first"] = lineReport(figures->first);
+    report["second"] = lineReport(figures->second);
+    return report;
+  }
+  engine::Result<Report> arc(const Section& section, std::vector<SectionMark>& marks) const {
+    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    addMarks(options_.arc, "arc", marks);
+    Report report;
+    addEstimate(report, "radius", "mm", figures->radius_mm);
+    addEstimate(report, "centre_along", "mm", figures->centre_along_mm);
+    addEstimate(report, "centre_height", "mm", figures->centre_height_mm);
+    report.update({{"hollow", figures->hollow}, {"rms_mm", figures->rms_mm}, {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> roughness(const Section& section) const {
+    const auto figures = engine::roughnessOf(section, within(section), *options_.cutoff);
+    if (!figures) return tl::unexpected(figures.error());
+    const auto noise = engine::roughnessNoise(section, within(section), *options_.cutoff, *figures, noise_mm_,
+                                              {.pairs = kRoughnessPairs});
+    if (!noise) return tl::unexpected(noise.error());
+    Report report{{"cutoff_mm", *options_.cutoff},
+                  {"evaluated", stretchOf(figures->evaluated)},
+                  {"lengths", figures->lengths}};
+    const auto add = [&report](const std::string& key, const char* unit, double value,
+                               const engine::NoiseEffect& effect) {
+      report[key + unit] = numberOrNull(value);
+      report[key + "_without" + unit] = numberOrNull(effect.without);
+      report[key + "_error" + unit] = numberOrNull(effect.error);
+    };
+    add("ra", "_mm", figures->ra, noise->ra);
+    add("rq", "_mm", figures->rq, noise->rq);
+    add("rz", "_mm", figures->rz, noise->rz);
+    add("rsk", "", figures->rsk, noise->rsk);
+    add("rku", "", figures->rku, noise->rku);
+    add("rsm", "_mm", figures->rsm, noise->rsm);
+    return report;
+  }
+
+  const SectionWants& options_;
+  double noise_mm_;
+};
+
+}  // namespace
+
+Report numberOrNull(double value) {
+  return std::isnan(value) ? Report() : Report(value);
+}
+
+void addEstimate(Report& report, const std::string& key, const std::string& unit, const Estimate& estimate) {
+  const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
+  report[key + ending] = numberOrNull(estimate.value);
+  report[key + "_error" + ending] = numberOrNull(estimate.error);
+}
+
+std::vector<double> numbersOf(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  while (numbers.size() < count) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) return {};
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (numbers.size() < count) {
+      if (!text.starts_with(',')) return {};
+      text.remove_prefix(1);
+    }
+  }
+  return text.empty() ? numbers : std::vector<double>();
+}
+
+std::span<const std::string_view> sectionFigureKeys() noexcept {
+  return kSectionKeys;
+}
+
+bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept {
+  if (key == "cursors") return !wants.cursors.empty();
+  if (key == "line") return !wants.line.empty();
+  if (key == "step") return !wants.step.empty();
+  if (key == "groove") return !wants.groove.empty();
+  if (key == "angle") return !wants.angle.empty();
+  if (key == "arc") return !wants.arc.empty();
+  return key == "roughness" && wants.cutoff.has_value();
+}
+
+engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants, const Section& section,
+                                     double noise_mm, std::vector<SectionMark>& marks) {
+  return SectionMeasurement(wants, noise_mm).of(key, section, marks);
+}
+
+engine::Result<Report> sectionFigures(const SectionWants& wants, const Section& section, double noise_mm,
+                                      std::vector<SectionMark>& marks) {
+  Report report = Report::object();
+  for (const std::string_view key : kSectionKeys) {
+    if (!wantsFigure(wants, key)) continue;
+    auto figure = sectionFigure(key, wants, section, noise_mm, marks);
+    if (!figure) return tl::unexpected(figure.error());
+    report[std::string(key)] = *std::move(figure);
+  }
+  return report;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/report.h"
+#include "engine/base/error.h"
+#include "engine/measure/section.h"
+#include "engine/measure/section_figures.h"
+
+namespace fettle::app {
+
+/// What is measured in a section: lengths along it in millimetres from its first point. Empty: not.
+struct SectionWants {
+  std::vector<double> within;   ///< A,B: of step, groove and roughness; empty: the whole line
+  std::vector<double> cursors;  ///< A,B
+  std::vector<double> line;     ///< A,B
+  std::vector<double> angle;    ///< A,B,C,D
+  std::vector<double> arc;      ///< A,B
+  std::string step;             ///< the edge's length, or "auto"
+  std::string groove;           ///< both edges' lengths A,B, or "auto"
+  std::optional<double> cutoff;
+};
+
+/// A place along a section that a picture shows.
+struct SectionMark {
+  double along_mm = 0.0;
+  std::string name;  ///< "edge"
+};
+
+/// Keys of the figures, in the order in which they are reported: cursors, line, step, groove, angle, arc, roughness.
+[[nodiscard]] std::span<const std::string_view> sectionFigureKeys() noexcept;
+[[nodiscard]] bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept;
+
+/// One figure as `fettle section` reports it, and the window with it. `noise_mm`: of a sample, NaN where it is not known. `marks`: places of it
+/// are added. Errors (kInput): what the heights do not determine, with the option to blame and a remedy.
+[[nodiscard]] engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants,
+                                                   const engine::Section& section, double noise_mm,
+                                                   std::vector<SectionMark>& marks);
+
+/// All that is wanted, a key each. Errors: the first of sectionFigure().
+[[nodiscard]] engine::Result<Report> sectionFigures(const SectionWants& wants, const engine::Section& section,
+                                                    double noise_mm, std::vector<SectionMark>& marks);
+
+/// Numbers with commas between them, exactly so many; none when the text is something else.
+[[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
+
+/// A number of a report; null for NaN.
+[[nodiscard]] Report numberOrNull(double value);
+/// KEY_UNIT and KEY_error_UNIT.
+void addEstimate(Report& report, const std::string& key, const std::string& unit,
+                 const engine::Estimate& estimate);
+
+}  // namespace fettle::app
