@@ -70,6 +70,7 @@ void addMeasure(Command root, Chosen& chosen);
 void addAlign(Command root, Chosen& chosen);
 void addMosaic(Command root, Chosen& chosen);
 void addFit(Command root, Chosen& chosen);
+void addFeatures(Command root, Chosen& chosen);
 void addSection(Command root, Chosen& chosen);
 void addReport(Command root, Chosen& chosen);
 void addMark(Command root, Chosen& chosen);

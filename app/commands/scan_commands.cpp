@@ -11,6 +11,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addTransform(root, chosen);
   addMeasure(root, chosen);
   addSection(root, chosen);
+  addFeatures(root, chosen);
   addFit(root, chosen);
   addReport(root, chosen);
   addMark(root, chosen);

@@ -70,6 +70,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,
        "--cursors", "1,9",      "--fit-line", "1,9",   "--step",   "auto",  "--groove",  "auto",
        "--angle",   "1,6,8,14", "--arc",      "30,50", "--cutoff", "8",     "--probe",   "5,5"});
+  run({"features", scan, "--csv", file("features.csv")});
   run({"fit", scan, "--at", "1,1", "--at", "60,50", "--shape", "plane", "--robust", "--between", "1,2",
        "--csv", file("fits.csv"), "--step", file("fits.step"), "--residuals", file("residuals.tif")});
   run({"align", scan, out, file("moved.tif"), "--moves", "level", "--csv", file("motion.csv")});
