@@ -124,6 +124,10 @@ inline void navigate(Parts& p) {
     p.form.cancel();
   else if (p.form.previewed())
     p.form.dropPreview();
+  else if (p.heights.busy())
+    p.heights.cancel();
+  else if (p.compare.busy())
+    p.compare.cancel();
   else if (p.measure.busy())
     p.measure.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
@@ -325,6 +329,19 @@ void sectionEnd(Parts& p) {
   p.settings.panels["Section"] = true;
   p.picture.requestRedraw();
 }
+template <void (HeightTool::*make)()>
+void computeHeights(Parts& p) {
+  (p.heights.*make)();
+}
+template <void (SectionTool::*act)()>
+void withSection(Parts& p) {
+  (p.section.*act)();
+  p.settings.panels["Section"] = true;
+  p.picture.requestRedraw();
+}
+inline bool hasSection(const Parts& p) {
+  return !p.section.sections().empty();
+}
 inline void formOut(Parts& p) {
   p.form.takeOut(clientOf(p));
 }
@@ -344,6 +361,15 @@ void toggle(Parts& p) {
 template <bool Display::*flag>
 bool isOn(const Parts& p) {
   return p.settings.display.*flag;
+}
+inline bool hasCompared(const Parts& p) {
+  return hasField(p) && p.compare.compared().has_value();
+}
+inline void compareWithScan(Parts& p) {
+  ask(p, Question::Kind::kCompare, hasCompared(p) ? p.compare.compared()->path : p.document.path());
+}
+inline void compareAgain(Parts& p) {
+  p.compare.again(clientOf(p));
 }
 inline void deviation(Parts& p) {
   toggle<&Display::deviation>(p);

@@ -61,6 +61,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
     return tl::unexpected(client.error());
   }
   loop_ = std::move(*client);
+  sections_.clear();
   path_ = document.path;
   // Recovered work is not saved yet.
   saved_ = document.recovered ? document.first : history.current();
@@ -69,6 +70,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
 
 engine::Status ActiveDocument::close(SessionKeeper::Afterwards afterwards) {
   loop_->finish();
+  noteSections();
   engine::Status closed = keeper_->close(afterwards);
   loop_.reset();
   keeper_.reset();
@@ -137,6 +139,11 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
   keeper_->setNote("camera", viewText(view));
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
   keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));
+  noteSections();
+}
+
+void ActiveDocument::noteSections() {
+  if (!sections_.empty()) keeper_->setNote(engine::kSectionsNote, sections_);
 }
 
 void ActiveDocument::undo() {

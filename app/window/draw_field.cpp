@@ -48,6 +48,8 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
   if (const auto& form = parts.form.previewed())
     shown.original = likeField(form->surface);
+  else if (parts.compare.shown && parts.compare.compared())
+    shown.original = likeField(parts.compare.compared()->other);
   else if (display.deviation)
     shown.original = likeField(client.original());
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;

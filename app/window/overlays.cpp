@@ -94,35 +94,39 @@ void SectionOverlay::append(const engine::Version& field, const SectionTool& sec
     revision_ = section.revision();
     mm_per_pixel_ = mm_per_pixel;
     pieces_.clear();
-    if (section.line()) {
-      const engine::FieldReader reader = field.reader();
-      const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
-      const SectionTool::Line& line = *section.line();
-      const double length = glm::distance(line.from, line.to);
-      constexpr double kMostPieces = 2000.0;
-      const double wanted = mm_per_pixel > 0.0 ? length / (3.0 * mm_per_pixel) : 1.0;
-      const int count = static_cast<int>(std::clamp(wanted, 1.0, kMostPieces));
-      const auto at = [&](int i) {
-        return aboveSurface(reader, (line.from + (line.to - line.from) * (i / double(count))) / spacing);
-      };
-      render::OverlayLine piece;
-      piece.depth = render::OverlayLine::Depth::kInScene;
-      piece.colour = {0.02F, 0.02F, 0.02F};
-      piece.width_px = 2.5F;
-      for (int i = 0; i < count; ++i) {
-        piece.from_mm = at(i);
-        piece.to_mm = at(i + 1);
-        pieces_.push_back(piece);
-      }
-      piece.depth = render::OverlayLine::Depth::kOnTop;
-      piece.width_px = 9.0F;
-      for (const int end : {0, count}) {
-        piece.from_mm = piece.to_mm = at(end);
-        pieces_.push_back(piece);
-      }
-    }
+    const engine::FieldReader reader = field.reader();
+    const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
+    for (std::size_t i = 0; i < section.sections().size(); ++i)
+      addSection(reader, spacing, section.sections()[i], section.chosen() == i);
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+}
+
+void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dvec2& spacing,
+                                const KeptSection& section, bool chosen) {
+  constexpr double kMostPieces = 2000.0;
+  const double wanted = mm_per_pixel_ > 0.0 ? section.lengthMm() / (3.0 * mm_per_pixel_) : 1.0;
+  const int count = static_cast<int>(std::clamp(wanted, 1.0, kMostPieces));
+  const auto at = [&](int i) {
+    return aboveSurface(reader, (section.from + (section.to - section.from) * (i / double(count))) / spacing);
+  };
+  render::OverlayLine piece;
+  piece.depth = render::OverlayLine::Depth::kInScene;
+  piece.colour = {0.02F, 0.02F, 0.02F};
+  piece.opacity = chosen ? 1.0F : 0.45F;
+  piece.width_px = 2.5F;
+  for (int i = 0; i < count; ++i) {
+    piece.from_mm = at(i);
+    piece.to_mm = at(i + 1);
+    pieces_.push_back(piece);
+  }
+  if (!chosen) return;
+  piece.depth = render::OverlayLine::Depth::kOnTop;
+  piece.width_px = 9.0F;
+  for (const int end : {0, count}) {
+    piece.from_mm = piece.to_mm = at(end);
+    pieces_.push_back(piece);
+  }
 }
 
 constexpr std::size_t kForces = 240;

@@ -29,7 +29,7 @@ class PlaceOverlay {
   std::vector<render::OverlayLine> pieces_;
 };
 
-/// The line of the section in the picture, with discs at its ends. Threading: main.
+/// The lines of the sections in the picture, the chosen one with discs at its ends. Threading: main.
 class SectionOverlay {
  public:
   /// Adds it to the overlays of the next frame, with pieces of about three pixels or longer.
@@ -37,6 +37,9 @@ class SectionOverlay {
               render::Overlays& overlays);
 
  private:
+  void addSection(const engine::FieldReader& reader, const glm::dvec2& spacing, const KeptSection& section,
+                  bool chosen);
+
   engine::Version of_;
   std::uint64_t revision_ = 0;
   double mm_per_pixel_ = 0.0;

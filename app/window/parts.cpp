@@ -1,5 +1,9 @@
 #include "app/window/parts.h"
 
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "app/terminal.h"
@@ -52,14 +56,25 @@ void Parts::dropCoarse() {
   line_drag.stop();
 }
 
+void Parts::writeTransformed() {
+  std::error_code none;
+  std::string path = document.suggestedPath("_transformed.fettle");
+  for (int n = 2; std::filesystem::exists(path, none); ++n)
+    path = document.suggestedPath(fmt::format("_transformed_{}.fettle", n).c_str());
+  transform.write(*document.client(), picture.seenRect(), std::move(path));
+}
+
 void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!document.isOpen()) return;
   releaseHands();
   feedback.questions.dropOfField();
   filters.finish(*document.client());
   form.clear();
+  heights.clear();
   measure.clear();
   section.reset();
+  transform.cancel();
+  compare.clear();
   marking.reset();
   change.cancel();
   costs.reset();

@@ -19,11 +19,14 @@
 #include "app/window/view_text.h"
 #include "app/window/window_picture.h"
 #include "app/work/choice_costs.h"
+#include "app/work/compare_tool.h"
 #include "app/work/filter_preview.h"
 #include "app/work/form_tool.h"
+#include "app/work/height_tool.h"
 #include "app/work/measure_tool.h"
 #include "app/work/recent_files.h"
 #include "app/work/section_tool.h"
+#include "app/work/transform_tool.h"
 #include "render/plan/number_text.h"
 
 namespace fettle::app {
@@ -62,8 +65,11 @@ struct Parts {
   LineDrag line_drag;
   FilterPreview filters;
   FormTool form;
+  HeightTool heights;
   MeasureTool measure;
   SectionTool section;
+  TransformTool transform;
+  CompareTool compare;
   ChangeFigures change;
   ChoiceCosts costs;
   render::FieldUnits units;  ///< in which the open document's quantities are shown
@@ -89,6 +95,8 @@ struct Parts {
   void leavePanels();
   /// Removes the coarse picture: it must not stay where the scan could not be read.
   void dropCoarse();
+  /// Writes what the transform panel says, to a session of a name that is free.
+  void writeTransformed();
   /// Closes the document, if one is open, with everything about it.
   void closeDocument(SessionKeeper::Afterwards afterwards);
 };

@@ -23,6 +23,7 @@ struct Afterwards {
 struct Question {
   enum class Kind : std::uint8_t {
     kOpen,
+    kCompare,
     kSaveAs,
     kExport,
     kUnsaved,
@@ -33,7 +34,7 @@ struct Question {
   };
   Kind kind = Kind::kMessage;
   std::string path =
-      {};  ///< kOpen, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kRecover: of the scan
+      {};  ///< kOpen, kCompare, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kRecover: of the scan
   Afterwards afterwards = {};  ///< kSaveAs, kUnsaved, kReplace
   bool stop_asking = false;    ///< kUnsaved: ticked so far
   Notice said = {};            ///< kMessage

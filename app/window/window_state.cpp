@@ -126,6 +126,8 @@ void addFilters(const Parts& p, Report& r) {
   const auto& preview = p.form.previewed();
   r["form_preview"] = preview ? Report(std::string(engine::infoOf(preview->options.kind).word)) : Report();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
+  r["computing_heights"] = p.heights.busy();
+  r["heights_found"] = p.heights.found();
   r["measuring"] = p.measure.busy();
   Report parameters = Report::object();
   if (const auto& figures = p.measure.figures())
@@ -134,11 +136,19 @@ void addFilters(const Parts& p, Report& r) {
   r["parameters_of"] = p.measure.figures() ? p.measure.figures()->samples : 0;
   r["parameters_outdated"] = p.measure.outdated();
   const auto& profiles = p.section.profiles();
+  r["comparing"] = p.compare.busy();
+  const auto& compared = p.compare.compared();
+  r["compared_rms_mm"] = compared ? Report(compared->rms_mm) : Report();
+  r["compared_rotation"] =
+      compared && compared->alignment ? Report(compared->alignment->angles.rotation_z) : Report();
   r["taking_section"] = p.section.busy();
   r["section_mm"] = profiles ? Report(rounded(profiles->now.lengthMm())) : Report();
   r["section_before"] = profiles && profiles->before.size() > 0;
-  const auto between = p.section.between();
-  r["section_dz_mm"] = between ? Report(between->dz_mm.value) : Report();
+  const Report& figures = p.section.figures().report;
+  r["section_dz_mm"] = figures.contains("cursors") ? figures["cursors"]["dz_mm"] : Report();
+  r["section_figures"] = figures;
+  r["sections"] = p.section.sections().size();
+  r["section"] = p.section.chosen() ? Report(*p.section.chosen() + 1) : Report();
   r["applying"] = filters.applying();
   r["filters_applied"] = filters.applied();
 }
@@ -175,7 +185,8 @@ bool fieldIsSettled(const Parts& p) {
   const LoopClient& client = *p.document.client();
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
   if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
-      p.measure.busy() || p.section.busy() || p.marking.busy() || p.picture.empty())
+      p.heights.busy() || p.compare.busy() || p.transform.busy() || p.measure.busy() || p.section.busy() ||
+      p.marking.busy() || p.picture.empty())
     return false;
   const render::Shown& shown = p.picture.shown();
   return shown.accepted.value_or(shown.versions.front()) == client.field() &&

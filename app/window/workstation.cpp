@@ -34,7 +34,8 @@ std::string settingsPath(const char* file) {
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
          p.filters.computing() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
-         p.section.busy() || (p.document.isOpen() && p.picture.refining());
+         p.section.busy() || p.heights.busy() || p.compare.busy() || p.transform.busy() ||
+         (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace
@@ -159,9 +160,18 @@ void Workstation::takeResults() {
   followForm();
   bool changed = p.filters.poll(client, notices);
   // An adoption ends first: its result belongs to the form under which it was computed.
-  if (!p.filters.applying()) changed |= p.form.poll(client, notices);
+  if (!p.filters.applying()) {
+    changed |= p.form.poll(client, notices);
+    changed |= p.heights.poll(client, notices);
+  }
   changed |= p.measure.poll(client, notices);
+  if (p.compare.poll(client, notices)) {
+    p.picture.refreshRanges();
+    changed = true;
+  }
+  if (const auto written = p.transform.poll(notices)) askToOpen(*written);
   changed |= p.section.poll(client, notices);
+  if (auto kept = p.section.takeKept()) p.document.keepSections(*std::move(kept));
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   // Under a hand that presses, and behind a question, the view stays where it is.
   const bool busy_hand =
@@ -247,6 +257,10 @@ void Workstation::carryOut(Answer answer) {
   switch (question.kind) {
     case Kind::kOpen:
       askToOpen(question.path);
+      break;
+    case Kind::kCompare:
+      p.compare.compareWith(*p.document.client(), question.path, options_.reading);
+      p.settings.panels["Compare"] = true;
       break;
     case Kind::kSaveAs:
     case Kind::kExport:
@@ -344,6 +358,7 @@ void Workstation::startDocument(Document document) {
   // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
+  restoreSections(document);
   p.picture.clear();
   p.chooseTool(std::nullopt);
   p.recent.add(p.document.path());
@@ -356,6 +371,16 @@ void Workstation::startDocument(Document document) {
                                   grid.width, grid.height, grid.spacing_x * p.units.length.per_unit,
                                   grid.spacing_y * p.units.length.per_unit, p.units.length.name);
   window_->setTitle(p.document.fileName() + " - Fettle");
+}
+
+void Workstation::restoreSections(const Document& document) {
+  const auto kept = document.notes.find(engine::kSectionsNote);
+  if (kept == document.notes.end()) return;
+  auto sections = sectionsOf(kept->second);
+  if (sections)
+    parts_.section.restore(*std::move(sections));
+  else
+    parts_.feedback.notices.push_back({sections.error().what, "the session is as it was otherwise"});
 }
 
 // Units and limits that fit the heights that are seen.

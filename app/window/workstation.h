@@ -61,6 +61,7 @@ class Workstation {
   void load(const std::string& path, Recovery recovery);
   void takeOpened();
   void startDocument(Document document);
+  void restoreSections(const Document& document);
   void noteHeights();
   void followForm();
   void resumeAfterSave(const Afterwards& afterwards);

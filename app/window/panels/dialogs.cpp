@@ -24,7 +24,7 @@ bool button(const char* name, Questions& questions, Key key) {
 }
 
 bool isPathKind(Kind kind) {
-  return kind == Kind::kOpen || kind == Kind::kSaveAs || kind == Kind::kExport;
+  return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport;
 }
 
 // The files in the folder of the path typed so far.
@@ -87,11 +87,12 @@ std::optional<Choice> pathDialog(Question& question, Parts& parts) {
   ImGui::SetNextItemWidth(-1.0F);
   bool confirmed = ImGui::InputText("##path", &question.path,
                                     ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
-  if (question.kind == Kind::kOpen)
+  const bool reads = question.kind == Kind::kOpen || question.kind == Kind::kCompare;
+  if (reads)
     fileList(question.path, static_cast<float>(parts.window.scale()));
   else
     formatHelp(question, parts.saving.embeds);
-  confirmed = button(question.kind == Kind::kOpen ? "Open" : "Write", questions, Key::kEnter) || confirmed;
+  confirmed = button(reads ? "Open" : "Write", questions, Key::kEnter) || confirmed;
   ImGui::SameLine();
   const bool left = button("Cancel", questions, Key::kEscape);
   if (confirmed && !question.path.empty()) return Choice::kConfirm;
@@ -180,6 +181,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
   const auto scale = static_cast<float>(parts.window.scale());
   switch (question.kind) {
     case Kind::kOpen:
+    case Kind::kCompare:
     case Kind::kSaveAs:
     case Kind::kExport:
       return pathDialog(question, parts);

@@ -29,10 +29,16 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
 /// The form that lies over the field, and the one that is to.
 void formPanel(const PanelContext& context, FormTool& form);
+/// Holes that are filled, lines that are levelled.
+void heightsPanel(const PanelContext& context, HeightTool& heights);
+/// Crop, mirror, turn, resample; true when the user asks for it.
+[[nodiscard]] bool transformPanel(const PanelContext& context, TransformTool& transform);
 /// Surface texture parameters; `picture`: what is visible.
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture);
 /// The section along a line, and its cursors.
 void sectionPanel(const PanelContext& context, SectionTool& section);
+/// Another scan brought onto the field, and the deviation from it.
+void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture);
 void historyPanel(const PanelContext& context, MarkEdit& edit);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,

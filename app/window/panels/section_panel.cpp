@@ -84,7 +84,7 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
   drawProfile(frame, profiles.now,
               profiles.before.size() > 0 ? IM_COL32(213, 94, 0, 255) : IM_COL32(0, 114, 178, 255),
               0.1F * font);
-  for (const double at : {tool.cursors().first, tool.cursors().second}) {
+  for (const double at : {tool.section()->cursors.first, tool.section()->cursors.second}) {
     const float x = frame.at(at, low).x;
     list.AddLine(ImVec2(x, corner.y), ImVec2(x, corner.y + size.y), IM_COL32(60, 60, 60, 200), 0.1F * font);
   }
@@ -93,23 +93,55 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
                               frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
 }
 
-std::string withError(const engine::Estimate& estimate, const render::ShownUnit& unit) {
-  const std::string value = lengthText(estimate.value, unit, 5);
-  return std::isfinite(estimate.error) ? fmt::format("{} +- {}", value, lengthText(estimate.error, unit, 2))
-                                       : value;
+// Figures one below the other: of the field, and in a lighter shade those of the scan.
+void figureLines(const SectionTool::Figures& figures) {
+  const auto write = [](const std::vector<SectionLine>& lines) {
+    for (const SectionLine& line : lines) {
+      ImGui::PushTextWrapPos(0.0F);
+      ImGui::TextUnformatted((line.name.empty() ? "  " + line.text : line.name + " " + line.text).c_str());
+      ImGui::PopTextWrapPos();
+    }
+  };
+  write(figures.now);
+  if (figures.before.empty()) return;
+  ImGui::Separator();
+  ImGui::TextUnformatted("the same of the scan");
+  write(figures.before);
 }
 
-void cursorFigures(const SectionTool& tool, const render::ShownUnit& length,
-                   const render::ShownUnit& height) {
-  const auto now = tool.between();
-  if (!now) {
-    ImGui::TextUnformatted("a cursor is where there is no height");
-    return;
+// What is measured between the cursors.
+void figureChoice(KeptSection& section, const render::ShownUnit& length) {
+  ImGui::TextUnformatted("between the cursors:");
+  ImGui::Checkbox("line##section", &section.line);
+  for (const auto& [name, id, wanted] : {std::tuple("step", "step##section", &section.step),
+                                         {"groove", "groove##section", &section.groove},
+                                         {"arc", "arc##section", &section.arc},
+                                         {"roughness", "roughness##section", &section.roughness}}) {
+    sameLineIfFits(name, ItemKind::kTick);
+    ImGui::Checkbox(id, wanted);
   }
-  figure("dx", lengthText(now->dx_mm, length, 5));
-  figure("dz", withError(now->dz_mm, height));
-  if (const auto before = tool.betweenBefore()) figure("dz of the scan", withError(before->dz_mm, height));
-  if (!std::isnan(now->slope_deg)) figure("slope", fmt::format("{:.4g} degrees", now->slope_deg));
+  if (!section.roughness) return;
+  beginFields();
+  (void)field("cut-off",
+              [&] { return typeLength("##section cutoff", section.cutoff_mm, 1e-9, 1e9, length); });
+  endFields();
+}
+
+// Which of several, and another one.
+void sectionChoice(const PanelContext& context, SectionTool& tool) {
+  const std::size_t count = tool.sections().size();
+  const std::string which = tool.chosen() ? fmt::format("section {} of {}", *tool.chosen() + 1, count)
+                                          : fmt::format("a new section, {} kept", count);
+  if (count > 0) ImGui::TextUnformatted(which.c_str());
+  if (count > 1 || (count > 0 && !tool.chosen())) {
+    actionButton("Next##section", Action::kSectionNext, context.act);
+    sameLineIfFits("New");
+  }
+  if (tool.chosen()) {
+    actionButton("New##section", Action::kSectionNew, context.act);
+    sameLineIfFits("Remove");
+    if (ImGui::Button("Remove##section")) tool.remove();
+  }
 }
 
 }  // namespace
@@ -118,40 +150,36 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
   const render::ShownUnit height = ofMillimetres(context.units.height, grid.height_unit.mm);
-  if (!tool.line()) {
+  sectionChoice(context, tool);
+  if (tool.section() == nullptr) {
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted("a line over the surface: point at its ends and press Q and Shift+Q");
     ImGui::PopTextWrapPos();
     if (ImGui::Button("Along the middle row")) {
       const double y = 0.5 * (grid.height - 1) * grid.spacingYMm();
-      tool.setLine({{0.0, y}, {(grid.width - 1) * grid.spacingXMm(), y}});
+      tool.set({.from = {0.0, y}, .to = {(grid.width - 1) * grid.spacingXMm(), y}});
     }
     return;
   }
-  SectionTool::Line line = *tool.line();
+  KeptSection section = *tool.section();
   constexpr double kFar = 1e12;
-  bool typed = false;
   beginFields();
-  for (const auto& [name, id, value] : {std::tuple("from x", "##section from x", &line.from.x),
-                                        {"from y", "##section from y", &line.from.y},
-                                        {"to x", "##section to x", &line.to.x},
-                                        {"to y", "##section to y", &line.to.y}})
-    typed |= field(name, [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
-  double width = tool.widthMm();
-  if (field("mean across", [&] { return typeLength("##section width", width, 0.0, kFar, length); }))
-    tool.setWidth(width);
+  for (const auto& [name, id, value] : {std::tuple("from x", "##section from x", &section.from.x),
+                                        {"from y", "##section from y", &section.from.y},
+                                        {"to x", "##section to x", &section.to.x},
+                                        {"to y", "##section to y", &section.to.y}})
+    (void)field(name, [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
+  (void)field("mean across",
+              [&] { return typeLength("##section width", section.width_mm, 0.0, kFar, length); });
   endFields();
-  if (typed) tool.setLine(line);
-  if (ImGui::Button("Remove##section")) {
-    tool.clear();
-    return;
-  }
+  figureChoice(section, length);
+  tool.set(section);
   if (!tool.profiles()) {
     ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
     return;
   }
   profilePlot(tool, *tool.profiles(), length, height);
-  cursorFigures(tool, length, height);
+  figureLines(tool.figures());
 }
 
 }  // namespace fettle::app

@@ -210,6 +210,7 @@ class MonkeyTest : public WindowTest {
                             {"unmark", {"Escape", "u"}}, {"free", {"Escape", "l"}},
                             {"box", {"Escape", "b"}}};
   std::vector<Reach> dialogs_{{"open", {"Escape", "ctrl+o"}},
+                              {"compare", {"Escape", "alt+b"}},
                               {"save as", {"Escape", "ctrl+shift+s"}},
                               {"export", {"Escape", "ctrl+e"}},
                               {"unsaved", {"Escape", "ctrl+i", "drop " + second_}},
@@ -218,8 +219,8 @@ class MonkeyTest : public WindowTest {
                               {"message", {"Escape", "drop " + broken_, "d"}}};
   std::vector<Reach> panels_ = [] {
     std::vector<Reach> panels;
-    for (const std::string panel :
-         {"Tool", "Edges", "Filters", "Steps", "Change since the scan", "Display", "Status", "Haptics"})
+    for (const std::string panel : {"Tool", "Edges", "Filters", "Holes and lines", "Steps",
+                                    "Change since the scan", "Display", "Status", "Haptics"})
       panels.push_back({panel, {"Escape", "panel " + panel, "panel " + panel, "panel " + panel}});
     return panels;
   }();

@@ -1,0 +1,69 @@
+#include <filesystem>
+#include <iterator>
+#include <string>
+
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+void writeLine(const std::string& text) {
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace
+
+void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture) {
+  if (compare.busy()) {
+    workBar(compare.progress(), -ImGui::GetFontSize() * 5.0F, "aligning");
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel##compare")) compare.cancel();
+    return;
+  }
+  beginFields();
+  (void)field("it is moved", [&] {
+    constexpr const char* kMoves[] = {"shift, rotation, tilt", "shift, rotation", "shift", "height and tilt",
+                                      "not"};
+    int moves = static_cast<int>(compare.options.moves);
+    const bool changed = ImGui::Combo("##compare moves", &moves, kMoves, std::size(kMoves));
+    if (changed) compare.options.moves = static_cast<CompareTool::Moves>(moves);
+    return changed;
+  });
+  (void)field("by", [&] {
+    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+    constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
+                                      engine::Region::kUnmarked};
+    int of = 0;
+    for (int i = 0; i < 3; ++i)
+      if (compare.options.region == kOf[i]) of = i;
+    const bool changed = ImGui::Combo("##compare by", &of, kSamples, std::size(kSamples));
+    if (changed) compare.options.region = kOf[of];
+    return changed;
+  });
+  endFields();
+  actionButton("Choose a scan", Action::kCompare, context.act);
+  const auto& compared = compare.compared();
+  if (!compared) return;
+  sameLineIfFits("Again");
+  actionButton("Again##compare", Action::kCompareAgain, context.act);
+  sameLineIfFits("Remove");
+  if (ImGui::Button("Remove##compare")) {
+    compare.clear();
+    picture.refreshRanges();
+    picture.requestRedraw();
+    return;
+  }
+  if (ImGui::Checkbox("colours show the deviation from it", &compare.shown)) {
+    picture.refreshRanges();
+    picture.requestRedraw();
+  }
+  writeLine(std::filesystem::path(compared->path).filename().string());
+  for (const std::string& line : compare.lines()) writeLine(line);
+  if (compare.outdated()) writeLine("the field has changed since: Again");
+}
+
+}  // namespace fettle::app

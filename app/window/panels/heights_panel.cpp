@@ -1,0 +1,102 @@
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+// A limit in millimetres that may be infinite: ticked where it counts.
+void extentField(engine::FillOptions& fill, const render::ShownUnit& length, double first_mm) {
+  bool limited = std::isfinite(fill.most_extent_mm);
+  if (ImGui::Checkbox("only holes up to a size", &limited))
+    fill.most_extent_mm = limited ? first_mm : std::numeric_limits<double>::infinity();
+  if (!limited) return;
+  beginFields();
+  (void)field("longest side",
+              [&] { return typeLength("##most extent", fill.most_extent_mm, 1e-12, 1e12, length); });
+  endFields();
+}
+
+void linesFields(engine::LineOptions& lines) {
+  struct Row {
+    const char* name;
+    engine::LineMethod method;
+    int degree;
+  };
+  constexpr Row kRows[] = {{"median", engine::LineMethod::kMedian, 0},
+                           {"mean", engine::LineMethod::kPolynomial, 0},
+                           {"straight line", engine::LineMethod::kPolynomial, 1},
+                           {"polynomial 2", engine::LineMethod::kPolynomial, 2},
+                           {"polynomial 3", engine::LineMethod::kPolynomial, 3},
+                           {"difference", engine::LineMethod::kDifference, 0},
+                           {"matching", engine::LineMethod::kMatching, 0}};
+  int chosen = 0;
+  for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
+    if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
+  beginFields();
+  (void)field("by", [&] {
+    if (!ImGui::BeginCombo("##lines by", kRows[chosen].name)) return false;
+    for (const Row& row : kRows)
+      if (ImGui::Selectable(row.name, &row == &kRows[chosen])) {
+        lines.method = row.method;
+        lines.degree = row.degree;
+      }
+    ImGui::EndCombo();
+    return true;
+  });
+  (void)field("lines are", [&] {
+    int axis = lines.axis == engine::ScanAxis::kX ? 0 : 1;
+    constexpr const char* kAxes[] = {"rows", "columns"};
+    const bool changed = ImGui::Combo("##scan axis", &axis, kAxes, std::size(kAxes));
+    if (changed) lines.axis = axis == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
+    return changed;
+  });
+  (void)field("found in", [&] {
+    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+    constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
+                                      engine::Region::kUnmarked};
+    int of = 0;
+    for (int i = 0; i < 3; ++i)
+      if (lines.region == kOf[i]) of = i;
+    const bool changed = ImGui::Combo("##lines of", &of, kSamples, std::size(kSamples));
+    if (changed) lines.region = kOf[of];
+    return changed;
+  });
+  endFields();
+}
+
+}  // namespace
+
+void heightsPanel(const PanelContext& context, HeightTool& heights) {
+  const engine::Grid& grid = context.client.field().grid();
+  const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
+  if (heights.busy()) {
+    workBar(heights.progress(), -ImGui::GetFontSize() * 5.0F, "computing heights");
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel##heights")) heights.cancel();
+    return;
+  }
+  int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
+  constexpr const char* kMethods[] = {"least curvature", "membrane"};
+  beginFields();
+  if (field("holes by", [&] { return ImGui::Combo("##fill", &method, kMethods, std::size(kMethods)); }))
+    heights.fill.method = method == 0 ? engine::FillMethod::kCurvature : engine::FillMethod::kMembrane;
+  endFields();
+  extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
+  ImGui::Checkbox("at the border too", &heights.fill.at_border);
+  actionButton("Fill holes", Action::kFillHoles, context.act);
+  ImGui::Separator();
+  linesFields(heights.lines);
+  actionButton("Level lines", Action::kLevelLines, context.act);
+  if (heights.found().empty()) return;
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(heights.found().c_str());
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/work/background.h"
+#include "app/work/loop_client.h"
+#include "app/work/scan_reading.h"
+#include "engine/measure/align.h"
+
+namespace fettle::app {
+
+/// Another scan beside the field that is worked on: brought onto it, as `fettle align` does, and what the field deviates from it. The field stays
+/// as it is, so that this is no step; it is worked out in the background while the hand goes on. Threading: main.
+class CompareTool {
+ public:
+  /// How the other scan may be moved.
+  enum class Moves : std::uint8_t { kAll, kInPlane, kShift, kLevel, kNone };
+  /// Edited by the panel.
+  struct Options {
+    Moves moves = Moves::kAll;
+    engine::Region region = engine::Region::kAll;  ///< samples of the field that count
+  };
+  Options options;
+  bool shown = true;  ///< colours are the deviation from it
+
+  struct Compared {
+    std::string path;
+    engine::Version other;  ///< at the samples of the field; a hole where it has no height
+    std::optional<engine::Alignment> alignment;         ///< none: it was not moved
+    double rms_mm = 0.0, mean_mm = 0.0, most_mm = 0.0;  ///< of the field less the other
+    std::int64_t samples = 0;                           ///< that both have
+  };
+
+  /// Reads a scan and brings it onto the newest field. One of which nothing lies over the field is refused by a notice of poll().
+  void compareWith(const LoopClient& client, std::string path, const ScanOptions& reading);
+  /// The same scan with the newest field.
+  void again(const LoopClient& client) {
+    if (compared_) compareWith(client, compared_->path, reading_);
+  }
+  void cancel() noexcept { working_.cancel(); }
+  /// Takes over results. True when something visible changed.
+  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
+
+  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  [[nodiscard]] const std::optional<Compared>& compared() const noexcept { return compared_; }
+  /// Whether the field has changed since.
+  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  /// Lines of what was found, as `fettle align` prints them.
+  [[nodiscard]] const std::vector<std::string>& lines() const noexcept { return lines_; }
+  /// Forgets the other scan.
+  void clear();
+
+ private:
+  struct Work {
+    engine::Version field;
+    Compared compared;
+  };
+  std::optional<Compared> compared_;
+  ScanOptions reading_;
+  std::vector<std::string> lines_;
+  engine::Version of_;  // that it was compared with
+  bool outdated_ = false;
+  Background<Work> working_;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,70 @@
+#include "app/work/transform_tool.h"
+
+#include <utility>
+
+#include "engine/field/seen_field.h"
+#include "engine/formats/formats.h"
+
+namespace fettle::app {
+
+namespace {
+
+engine::Result<engine::Version> transformedBy(const engine::Version& field,
+                                              const TransformTool::Options& options,
+                                              const engine::SampleRect& seen, engine::JobControl& job) {
+  engine::Version now = field;
+  if (options.crop) {
+    auto piece = engine::cropped(now, seen, job);
+    if (!piece) return piece;
+    now = *std::move(piece);
+  }
+  if (!options.turning.none()) {
+    auto turned = engine::turned(now, options.turning, job);
+    if (!turned) return turned;
+    now = *std::move(turned);
+  }
+  if (options.angle_deg == 0.0 && !options.resample) return now;
+  const engine::Grid& grid = now.grid();
+  engine::ResampleOptions resampling;
+  resampling.method = options.method;
+  resampling.angle_deg = options.angle_deg;
+  const double spacing = options.spacing_mm / grid.lateral_unit.mm;
+  resampling.spacing_x = options.resample ? spacing : grid.spacing_x;
+  resampling.spacing_y = options.resample ? spacing : grid.spacing_y;
+  return engine::resampled(now, resampling, job);
+}
+
+}  // namespace
+
+void TransformTool::write(const LoopClient& client, const engine::SampleRect& seen, std::string path) {
+  working_.start([field = client.newest(), scan = client.scan(), what = options, seen,
+                  path = std::move(path)](engine::JobControl& job) -> engine::Result<std::string> {
+    if (what.none())
+      return engine::inputError("nothing is to be done", "", "choose a crop, a turn or a spacing");
+    if (what.crop && (seen.columns <= 0 || seen.rows <= 0))
+      return engine::inputError("nothing of the field is visible", "", "move the view to it");
+    // Without a form over it: that has the place of the samples before.
+    const auto samples = engine::withoutLayer(field, job);
+    if (!samples) return tl::unexpected(samples.error());
+    const auto made = transformedBy(*samples, what, seen, job);
+    if (!made) return tl::unexpected(made.error());
+    auto original = transformedBy(scan, what, seen, job);
+    if (!original) return tl::unexpected(original.error());
+    engine::ExportOptions writing;
+    writing.original = *std::move(original);
+    if (auto done = engine::exportField(*made, path, writing, job); !done)
+      return tl::unexpected(done.error());
+    return path;
+  });
+}
+
+std::optional<std::string> TransformTool::poll(std::vector<Notice>& notices) {
+  auto done = working_.take();
+  if (!done) return std::nullopt;
+  if (*done) return **std::move(done);
+  if (done->error().kind != engine::ErrorKind::kCancelled)
+    notices.push_back({done->error().line(), done->error().remedy});
+  return std::nullopt;
+}
+
+}  // namespace fettle::app

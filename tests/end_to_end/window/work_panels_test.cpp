@@ -1,0 +1,168 @@
+// Panels that work on the whole scan: sections kept with the session, holes and lines as steps, another scan to compare with, transforms.
+#include <csignal>
+#include <fstream>
+#include <string>
+
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+// Only these panels are open.
+void openPanels(const TempFolder& folder, const std::vector<std::string>& names) {
+  State panels;
+  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+    panels[other] = false;
+  for (const std::string& name : names) panels[name] = true;
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};
+}
+
+State settledWith(ViewProgram& program, const char* what, const std::function<bool(const State&)>& is) {
+  return program.until(what, [&](const State& s) { return s["settled"] == true && is(s); });
+}
+
+State jsonOf(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {FETTLE_PROGRAM};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  all.insert(all.end(), {"--json", "--quiet"});
+  const Outcome outcome = runProcess(all);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return outcome.status == 0 ? State::parse(outcome.out) : State::object();
+}
+
+TEST_F(WindowTest, sections_are_measured_as_by_the_command_and_kept_with_the_session) {
+  openPanels(folder, {"Section"});
+  const std::string work = folder.file("work.fettle");
+  State figures;
+  {
+    const auto program = start({scan});
+    User user(display, *program, "sections");
+    (void)opened(*program);
+    (void)user.key("7");
+    user.at({220, 332});
+    (void)user.key("q");
+    user.at({560, 332});
+    (void)user.key("shift+q");
+    (void)user.click("step");
+    (void)user.click("roughness");
+    const State one = settledWith(*program, "figures", [](const State& s) {
+      return s["taking_section"] == false && s["section_figures"].contains("roughness");
+    });
+    EXPECT_EQ(one["sections"], 1);
+    EXPECT_TRUE(one["section_figures"].contains("cursors"));
+    EXPECT_TRUE(user.reads("between the cursors:"));
+    (void)user.key("alt+q");
+    user.at({300, 250});
+    (void)user.key("q");
+    user.at({420, 420});
+    (void)user.key("shift+q");
+    const State two = settledWith(*program, "another", [](const State& s) {
+      return s["sections"] == 2 && s["section"] == 2 && s["section_mm"].is_number() &&
+             s["taking_section"] == false;
+    });
+    EXPECT_FALSE(two["section_figures"].contains("roughness")) << "each has its own";
+    user.at({20, 790});
+    (void)user.look("two sections");
+    (void)user.key("ctrl+shift+q");
+    figures = settledWith(*program, "the first again", [](const State& s) {
+      return s["section"] == 1 && s["taking_section"] == false && s["section_figures"].contains("roughness");
+    })["section_figures"];
+    saveAs(user, work);
+    (void)quit(user);
+  }
+  const State kept = jsonOf({"section", work, "--kept"});
+  ASSERT_EQ(kept["sections"].size(), 2U) << kept.dump();
+  for (const auto& [key, value] : figures.items()) EXPECT_EQ(kept["sections"][0][key], value) << key;
+  const auto program = start({work});
+  User user(display, *program, "sections again");
+  (void)opened(*program);
+  const State again = settledWith(*program, "kept sections", [](const State& s) {
+    return s["sections"] == 2 && s["taking_section"] == false && s["section_figures"].contains("roughness");
+  });
+  EXPECT_EQ(again["section_figures"], figures);
+  (void)user.click("Remove");
+  EXPECT_EQ(settledWith(*program, "one", [](const State& s) { return s["sections"] == 1; })["section"], 1);
+  (void)quit(user);
+  EXPECT_EQ(jsonOf({"section", work, "--kept"})["sections"].size(), 1U);
+}
+
+TEST_F(WindowTest, holes_are_filled_and_lines_levelled_as_steps) {
+  openPanels(folder, {"Holes and lines"});
+  const Outcome made =
+      runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "300x200", "--dropouts", "0.002"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string work = folder.file("work.fettle"), filled = folder.file("filled.tif");
+  const auto program = start({scan});
+  User user(display, *program, "heights");
+  (void)opened(*program);
+  const State after = user.click("Fill holes");
+  EXPECT_EQ(after["steps"], 1) << after["notices"].dump();
+  EXPECT_NE(after["heights_found"].get<std::string>().find("holes filled"), std::string::npos);
+  EXPECT_EQ(user.key("alt+r")["steps"], 2);
+  (void)user.key("ctrl+z");
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  (void)user.key("ctrl+shift+z");
+  saveAs(user, work);
+  user.at({20, 790});
+  (void)user.look("filled");
+  (void)quit(user);
+  const State by_command = jsonOf({"fill", scan, filled});
+  const State in_session = jsonOf({"info", work});
+  EXPECT_EQ(in_session["no_data"], by_command["no_data"]);
+  EXPECT_EQ(in_session["filled"], by_command["filled"]);
+  const State replayed = jsonOf({"replay", work, folder.file("again.tif")});
+  EXPECT_EQ(jsonOf({"compare", folder.file("again.tif"), filled})["max_abs"], 0.0);
+}
+
+TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {
+  openPanels(folder, {"Compare"});
+  const std::string turned = folder.file("turned.tif");
+  (void)jsonOf({"transform", scan, turned, "--angle", "1.5"});
+  const auto program = start({scan});
+  User user(display, *program, "compare");
+  (void)opened(*program);
+  (void)user.key("7");
+  user.at({20, 790});
+  const Screen before = user.look("alone");
+  (void)user.click("Choose a scan");
+  user.type(turned);
+  (void)user.press("Return");
+  const State found = settledWith(*program, "compared", [](const State& s) {
+    return s["comparing"] == false && (s["compared_rms_mm"].is_number() || !s["notices"].empty());
+  });
+  ASSERT_TRUE(found["compared_rotation"].is_number()) << found["notices"].dump();
+  EXPECT_NEAR(found["compared_rotation"].get<double>(), -1.5, 0.05);
+  user.at({20, 790});
+  (void)user.changed("deviation", before);
+  EXPECT_TRUE(user.reads("rotation z"));
+  EXPECT_EQ(found["steps"], 0);
+  (void)user.click("Remove");
+  EXPECT_TRUE(settledWith(*program, "alone", [](const State& s) {
+                return s["compared_rms_mm"].is_null();
+              }).is_object());
+  (void)quit(user);
+}
+
+TEST_F(WindowTest, a_transformed_scan_is_a_session_beside_it) {
+  openPanels(folder, {"Transform"});
+  const auto program = start({scan});
+  User user(display, *program, "transform");
+  (void)opened(*program);
+  (void)user.click("left and right change places");
+  (void)user.click("Make a session of it");
+  const std::string beside = (folder.path() / "part_transformed.fettle").string();
+  (void)program->until("opened", [&](const State& s) {
+    return s["settled"] == true &&
+           s["status"].get<std::string>().find("part_transformed.fettle") != std::string::npos;
+  });
+  (void)quit(user);
+  const std::string mirrored = folder.file("mirrored.tif");
+  (void)jsonOf({"transform", scan, mirrored, "--mirror", "x"});
+  EXPECT_EQ(jsonOf({"compare", beside, mirrored})["max_abs"], 0.0);
+}
+
+}  // namespace
+}  // namespace fettle::tests
