@@ -36,8 +36,10 @@ EdgeLines linesOfPiece(const std::vector<EdgeLine>& lines, const SampleRect& pie
   return kept;
 }
 
-Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std::int32_t columns,
-                std::int32_t rows) {
+namespace {
+
+Version cutOut(const Version& field, const SampleRect& rect, double origin_x, double origin_y) {
+  const auto [column, row, columns, rows] = rect;
   const std::size_t samples = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<float> heights(samples);
   std::vector<std::uint8_t> marks(samples);
@@ -46,10 +48,24 @@ Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std
   Grid grid = field.grid();
   grid.width = columns;
   grid.height = rows;
+  grid.origin_x = origin_x;
+  grid.origin_y = origin_y;
   const Version piece = makeField(grid, heights, marks);
   return field.lines() == nullptr
              ? piece
              : piece.withLines(linesOfPiece(*field.lines(), {column, row, columns, rows}));
+}
+
+}  // namespace
+
+Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std::int32_t columns,
+                std::int32_t rows) {
+  return cutOut(field, {column, row, columns, rows}, field.grid().origin_x, field.grid().origin_y);
+}
+
+Version rowsOf(const Version& field, std::int32_t first, std::int32_t count) {
+  const Grid& grid = field.grid();
+  return cutOut(field, {0, first, grid.width, count}, grid.origin_x, grid.origin_y + first * grid.spacing_y);
 }
 
 }  // namespace fettle::engine

@@ -15,6 +15,10 @@ namespace fettle::engine {
 [[nodiscard]] Version pieceOf(const Version& field, std::int32_t column, std::int32_t row,
                               std::int32_t columns, std::int32_t rows);
 
+/// Rows [first, first + count) of a field as pieceOf() has them, at their place: the origin is that of the first one. Throws
+/// std::bad_alloc.
+[[nodiscard]] Version rowsOf(const Version& field, std::int32_t first, std::int32_t count);
+
 /// Edge lines in the coordinates of a piece of their field: their points in and near it, and for each run of these a line.
 /// Throws std::bad_alloc.
 [[nodiscard]] EdgeLines linesOfPiece(const std::vector<EdgeLine>& lines, const SampleRect& piece);

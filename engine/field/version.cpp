@@ -1,10 +1,10 @@
 #include "engine/field/version.h"
 
+#include "engine/field/content_hash.h"
 #include "engine/field/line_cuts.h"
 #include "engine/field/nominal_form.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -191,30 +191,16 @@ FieldSummary summarize(const Version& version) {
 }
 
 std::uint64_t contentHash(const Version& version) {
-  constexpr std::uint64_t kPrime = 0x100000001b3;
-  std::uint64_t hash = 0xcbf29ce484222325;
-  // Word by word where FNV takes bytes: one multiplication per sample. The shift mixes the high half into the
-  // low bits, which a multiplication alone would not do.
-  const auto mix = [&hash](std::uint32_t word) {
-    hash = (hash ^ word) * kPrime;
-    hash ^= hash >> 32;
-  };
   const FieldReader reader = version.reader();
-  mix(static_cast<std::uint32_t>(reader.width()));
-  mix(static_cast<std::uint32_t>(reader.height()));
+  ContentHash hash(reader.width(), reader.height());
   std::vector<float> heights(static_cast<std::size_t>(reader.width()));
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(reader.width()));
   for (std::int32_t row = 0; row < reader.height(); ++row) {
     reader.readHeights(0, row, reader.width(), 1, heights.data(), reader.width());
     reader.readMarks(0, row, reader.width(), 1, marks.data(), reader.width());
-    for (const float z : heights) mix(std::isnan(z) ? 0x7fc00000U : std::bit_cast<std::uint32_t>(z));
-    std::uint32_t word = 0;
-    for (std::size_t c = 0; c < marks.size(); ++c) {
-      word = word << 1 | marks[c];
-      if (c % 32 == 31 || c + 1 == marks.size()) mix(std::exchange(word, 0U));
-    }
+    hash.addRow(heights.data(), marks.data());
   }
-  return hash;
+  return hash.value();
 }
 
 }  // namespace fettle::engine

@@ -221,18 +221,26 @@ std::int32_t reachOf(const FilterSpec& spec) noexcept {
       std::min<std::int64_t>(std::int64_t{spec.passes} * filterOf(spec.kind).reach(spec), Grid::kMaxSide));
 }
 
-std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept {
+std::int32_t reachOf(const FilterSpec& spec, const Grid& grid, bool lines) noexcept {
   const Filter& filter = filterOf(spec.kind);
   if (filter.reach_on != nullptr)
-    return static_cast<std::int32_t>(std::min<std::int64_t>(
-        std::int64_t{spec.passes} * filter.reach_on(spec, input.grid()), Grid::kMaxSide));
-  const bool ends_at_lines = filter.knows_lines && filter.window.exists() && input.lines() != nullptr;
+    return static_cast<std::int32_t>(
+        std::min<std::int64_t>(std::int64_t{spec.passes} * filter.reach_on(spec, grid), Grid::kMaxSide));
+  const bool ends_at_lines = filter.knows_lines && filter.window.exists() && lines;
   return reachOf(spec) + (ends_at_lines ? spec.passes * kLineReach : 0);
 }
 
-std::int32_t pieceGridOf(const FilterSpec& spec, const Version& input) noexcept {
+std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept {
+  return reachOf(spec, input.grid(), input.lines() != nullptr);
+}
+
+bool needsWholeField(const Filter& filter) noexcept {
+  return filter.reach_on == nullptr && filter.reach == anywhere;
+}
+
+std::int32_t pieceGridOf(const FilterSpec& spec, const Grid& grid) noexcept {
   const Filter& filter = filterOf(spec.kind);
-  return filter.grid_on != nullptr ? filter.grid_on(spec, input.grid()) : filter.grid;
+  return filter.grid_on != nullptr ? filter.grid_on(spec, grid) : filter.grid;
 }
 
 bool separatesScales(const Filter& filter) noexcept {

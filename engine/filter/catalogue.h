@@ -105,9 +105,14 @@ struct Filter {
 [[nodiscard]] std::int32_t reachOf(const FilterSpec& spec) noexcept;
 /// The same in a field: with edge lines a window that ends at them looks farther (kLineReach).
 [[nodiscard]] std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept;
+/// The same in a field of this grid, with or without edge lines.
+[[nodiscard]] std::int32_t reachOf(const FilterSpec& spec, const Grid& grid, bool lines) noexcept;
+
+/// Whether a result depends on the whole field, whatever its size: no piece of it has the field's results.
+[[nodiscard]] bool needsWholeField(const Filter& filter) noexcept;
 
 /// At what multiples pieces of a field begin that have the field's results: Filter::grid, or by grid_on [samples].
-[[nodiscard]] std::int32_t pieceGridOf(const FilterSpec& spec, const Version& input) noexcept;
+[[nodiscard]] std::int32_t pieceGridOf(const FilterSpec& spec, const Grid& grid) noexcept;
 
 /// Filter::keeps_edges, for filterWords.
 [[nodiscard]] bool keepsEdges(const Filter& filter) noexcept;

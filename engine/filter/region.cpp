@@ -32,7 +32,7 @@ Result<Version> filterRange(const Version& input, const Version& original, const
   const std::int32_t tr1 = std::min(range.row + range.rows, all.rows);
   if (tc0 >= tc1 || tr0 >= tr1) return onto;
   const std::int64_t reach = reachOf(spec, input);
-  const std::int64_t aligned = pieceGridOf(spec, input);
+  const std::int64_t aligned = pieceGridOf(spec, grid);
   // A reach may be half a million samples: cut in 64 bits.
   const auto low = [&](std::int32_t tile) {
     const std::int64_t first = std::max<std::int64_t>(std::int64_t{tile} * kTileSide - reach, 0);

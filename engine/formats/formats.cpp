@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
 #include "engine/io/format.h"
 #include "engine/io/points/perspective.h"
@@ -139,6 +140,48 @@ Result<std::optional<Preview>> importPreview(const std::string& path, const Impo
   if (!format) return tl::unexpected(format.error());
   if (*format == nullptr || (*format)->preview == nullptr) return std::nullopt;
   return (*format)->preview(*file, options, max_samples, job);
+} catch (const std::bad_alloc&) {
+  return inputError("the file needs more memory than is free", path, "cut the scan into parts");
+}
+
+Result<std::optional<Grid>> importGrid(const std::string& path, const ImportOptions& options) try {
+  if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
+  if (options.depth_camera) return std::nullopt;
+  const Result<InputFile> file = InputFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  const Result<const Format*> format = recognised(*file);
+  if (!format) return tl::unexpected(format.error());
+  if (*format == nullptr || (*format)->grid == nullptr) return std::nullopt;
+  return (*format)->grid(*file, options);
+} catch (const std::bad_alloc&) {
+  return inputError("the file needs more memory than is free", path, "cut the scan into parts");
+}
+
+Result<Imported> importRows(const std::string& path, const ImportOptions& options, std::int32_t first,
+                            std::int32_t count, JobControl& job) try {
+  const Result<std::optional<Grid>> grid = importGrid(path, options);
+  if (!grid) return tl::unexpected(grid.error());
+  const auto outside = [&](const Grid& whole) {
+    return first < 0 || count < 1 || first > whole.height - count;
+  };
+  const auto refused = [&](const Grid& whole) {
+    return inputError(fmt::format("the scan has {} rows, not {} from row {} on", whole.height, count, first),
+                      path, "the file was changed since the work was planned");
+  };
+  if (*grid) {
+    if (outside(**grid)) return refused(**grid);
+    const Result<InputFile> file = InputFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    const Result<const Format*> format = recognised(*file);
+    if (!format) return tl::unexpected(format.error());
+    return (*format)->read_rows(*file, options, {first, count}, job);
+  }
+  Result<Imported> whole = importField(path, options, job);
+  if (!whole) return whole;
+  if (outside(whole->field.grid())) return refused(whole->field.grid());
+  whole->field = rowsOf(whole->field, first, count);
+  if (whole->original) whole->original = rowsOf(*whole->original, first, count);
+  return whole;
 } catch (const std::bad_alloc&) {
   return inputError("the file needs more memory than is free", path, "cut the scan into parts");
 }

@@ -45,6 +45,18 @@ namespace fettle::engine {
                                                            const ImportOptions& options,
                                                            std::int64_t max_samples, JobControl& job);
 
+/// The grid that importField gives, from the header alone; nothing where only a full import tells it, and importRows() then reads
+/// all. Errors: as importField, for the header. The size is not held against the memory. Thread: any.
+[[nodiscard]] Result<std::optional<Grid>> importGrid(const std::string& path, const ImportOptions& options);
+
+/// Rows [first, first + count) of the field that importField gives, bit by bit, as a field of their own: grid and origin are
+/// those of the rows. A TIFF's other rows are not read and take no memory; of every other format the whole is read and the
+/// rows are cut out of it, edge lines and original included. Warnings are those of these rows: none of what only the whole
+/// field shows (lone values, doubtful units), and rows without a height are no error. Rows outside the field are
+/// kInput. Errors, threads, progress otherwise as importField.
+[[nodiscard]] Result<Imported> importRows(const std::string& path, const ImportOptions& options,
+                                          std::int32_t first, std::int32_t count, JobControl& job);
+
 /// Writes a field, its sign applied, in the format that the extension of `path` names (any case). What a
 /// format stores is stated at its writer and, for the user, in docs/formats.md.
 ///

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/row_span.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
@@ -35,5 +37,13 @@ struct NoiseEstimate {
 /// ones); bit-identical for any number of threads. Errors: kCancelled. Thread: any; a long job, on all
 /// workers of the calling arena.
 [[nodiscard]] Result<NoiseEstimate> estimateNoise(const Version& field, JobControl& job);
+
+/// Gives rows of a field as a field of their own.
+using RowsSource = std::function<Result<Version>(RowSpan rows, JobControl& job)>;
+
+/// The same, bit by bit, of a field of which no more than `rows_at_once` rows (a multiple of kTileSide) and two more are in
+/// memory. Each row is asked for kSelectPasses times. Errors: of the source; kCancelled.
+[[nodiscard]] Result<NoiseEstimate> estimateNoiseByRows(const Grid& grid, const RowsSource& source,
+                                                        std::int32_t rows_at_once, JobControl& job);
 
 }  // namespace fettle::engine

@@ -9,8 +9,7 @@
 
 namespace fettle::engine {
 
-Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
-                      const std::string& path) {
+Status checkFieldSides(std::uint64_t width, std::uint64_t height, const std::string& path) {
   constexpr std::uint64_t kMaxSide = Grid::kMaxSide;
   if (width == 0 || height == 0)
     return inputError(fmt::format("the header states {} x {} samples", width, height), path,
@@ -18,6 +17,12 @@ Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t e
   if (width > kMaxSide || height > kMaxSide)
     return inputError(fmt::format("{} x {} samples are too many", width, height), path,
                       fmt::format("a side may have {} at most: cut the scan into parts", kMaxSide));
+  return {};
+}
+
+Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
+                      const std::string& path) {
+  if (Status sides = checkFieldSides(width, height, path); !sides) return sides;
   if (const auto place = placeOf(width, height, extra_bytes, path); !place)
     return tl::unexpected(place.error());
   return {};

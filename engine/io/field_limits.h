@@ -9,6 +9,9 @@
 
 namespace fettle::engine {
 
+/// Refuses sides of 0 or above Grid::kMaxSide.
+[[nodiscard]] Status checkFieldSides(std::uint64_t width, std::uint64_t height, const std::string& path);
+
 /// Refuses a field whose size in the header is impossible: sides of 0 or above Grid::kMaxSide, more than fits
 /// in memory next to `extra_bytes` and on the disk of a store (tile_store.h). Call before anything is
 /// allocated.

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/field/row_span.h"
 #include "engine/io/export.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/import.h"
@@ -22,6 +23,14 @@ using FormatReader = Result<Imported>(const InputFile& file, const ImportOptions
 using FormatPreviewer = Result<std::optional<Preview>>(const InputFile& file, const ImportOptions& options,
                                                        std::int64_t max_samples, JobControl& job);
 
+/// Reads some rows as a field of their own, and of the file little more than these; `rows` is not empty and lies in the field.
+/// May throw std::bad_alloc. Contract: importRows.
+using FormatRowsReader = Result<Imported>(const InputFile& file, const ImportOptions& options, RowSpan rows,
+                                          JobControl& job);
+
+/// What the header says: the grid that a full import has. Contract: importGrid.
+using FormatGridReader = Result<Grid>(const InputFile& file, const ImportOptions& options);
+
 /// Writes the file completely or not at all (AtomicFile). May throw std::bad_alloc. Contract: exportField.
 using FormatWriter = Result<Exported>(const Version& field, const std::string& path,
                                       const ExportOptions& options, JobControl& job);
@@ -33,11 +42,13 @@ struct Format {
   FormatReader* read = nullptr;
   FormatWriter* write = nullptr;
   FormatPreviewer* preview = nullptr;  ///< null where a preview would cost as much as the full import
-  bool picture = false;                ///< samples may be distances: ImportOptions::depth_camera
-  bool mesh = false;                   ///< ExportOptions::mesh and max_error
-  bool tiff = false;                   ///< ExportOptions::cloud_optimised and tiff_compression
-  bool ascii = false;                  ///< ExportOptions::ascii
-  bool units_certain = false;          ///< units are certain: they were determined at an earlier import
+  FormatGridReader* grid = nullptr;    ///< null where only a full import tells it, and `read_rows` with it
+  FormatRowsReader* read_rows = nullptr;
+  bool picture = false;        ///< samples may be distances: ImportOptions::depth_camera
+  bool mesh = false;           ///< ExportOptions::mesh and max_error
+  bool tiff = false;           ///< ExportOptions::cloud_optimised and tiff_compression
+  bool ascii = false;          ///< ExportOptions::ascii
+  bool units_certain = false;  ///< units are certain: they were determined at an earlier import
 
   static constexpr std::size_t kHeadBytes = 4096;
 };

@@ -179,7 +179,7 @@ engine::Result<engine::Version> filterTiles(const engine::Version& input, const 
                                             const engine::FilterSpec& spec,
                                             const std::vector<TileSpot>& spots, engine::JobControl& job) {
   const std::int32_t reach = engine::reachOf(spec, input);
-  const std::int32_t aligned = engine::pieceGridOf(spec, input);
+  const std::int32_t aligned = engine::pieceGridOf(spec, input.grid());
   const engine::Grid& grid = input.grid();
   engine::LiveField out(input, engine::Growth::kAllowed);
   std::vector<float> heights(engine::kTileSamples);

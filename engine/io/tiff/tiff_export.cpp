@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,7 +20,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gdal.h>
-#include <ogr_srs_api.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tiffio.h>
@@ -30,92 +27,16 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/format.h"
-#include "engine/io/geo/geo_reference.h"
 #include "engine/io/tiff/block_packer.h"
-#include "engine/io/tiff/tiff_metadata.h"
+#include "engine/io/tiff/tiff_header.h"
 
 namespace fettle::engine {
 
 namespace {
 
-constexpr std::int32_t kTiffBlock = 256;
-constexpr std::int32_t kPlainStripBytes = 1 << 20;  // of an uncompressed strip, or one row
-
-// The properties of a compression in the header and in the blocks.
-struct Coding {
-  std::string_view name;
-  const char* gdal;       // COMPRESS of its driver
-  const char* predictor;  // tag 317; null: none
-  bool tiles;             // where the field is larger than one
-};
-
-// By TiffCompression. Programs with few decoders, Gwyddion 2.62 among them, support neither tiles nor
-// predictors.
-constexpr std::array<Coding, 4> kCodings{{{"none", "NONE", nullptr, false},
-                                          {"lzw", "LZW", nullptr, false},
-                                          {"deflate", "DEFLATE", "3", true},
-                                          {"zstd", "ZSTD", "3", true}}};
-
-const Coding& codingOf(TiffCompression compression) {
-  return kCodings[static_cast<std::size_t>(compression)];
-}
-
-struct FreeList {
-  void operator()(char** list) const noexcept { CSLDestroy(list); }
-};
 struct CloseTiff {
   void operator()(TIFF* file) const noexcept { TIFFClose(file); }
 };
-
-// Division of the samples of a file. Fields smaller than a tile use strips of their own width.
-struct Blocks {
-  Blocks(const Grid& grid, TiffCompression compression)
-      : tiled(codingOf(compression).tiles && grid.width > kTiffBlock && grid.height > kTiffBlock),
-        columns(tiled ? kTiffBlock : grid.width),
-        rows(codingOf(compression).tiles
-                 ? kTiffBlock
-                 : std::clamp(kPlainStripBytes / (4 * grid.width), std::int32_t{1}, kTiffBlock)),
-        across((grid.width + columns - 1) / columns),
-        down((grid.height + rows - 1) / rows) {}
-
-  bool tiled;
-  std::int32_t columns, rows;  // of a block; the last strip has the remaining rows
-  std::int32_t across, down;   // blocks
-};
-
-// The unit that the coordinate system states.
-std::optional<LengthUnit> unitOfCrs(const Grid& grid) {
-  if (grid.crs_wkt.empty()) return std::nullopt;
-  StatedUnits units;
-  std::vector<std::string> ignored;
-  unitsOfCrs(grid.crs_wkt, grid.origin_y, units, ignored);
-  return units.lateral;
-}
-
-tl::unexpected<Error> cannotWrite(const GdalSession& gdal, const std::string& path) {
-  if (gdal.diskError() != 0) return writeError(path, gdal.diskError());
-  return failure("the file cannot be written: " + gdal.reason("the library gives no reason"), path,
-                 "check the disk or choose another folder");
-}
-
-Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal, const std::string& path) {
-  GeoTransform gt = geoTransformOf(grid);
-  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-  bool done = GDALSetGeoTransform(dataset, gt.data()) == CE_None;
-  if (done && !grid.crs_wkt.empty()) {
-    OGRSpatialReferenceH crs = OSRNewSpatialReference(grid.crs_wkt.c_str());
-    if (crs != nullptr) {
-      OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
-      done = GDALSetSpatialRef(dataset, crs) == CE_None;
-      OSRDestroySpatialReference(crs);
-    }
-  }
-  done = done && GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None &&
-         GDALSetRasterUnitType(band, grid.height_unit.name.c_str()) == CE_None;
-  if (done) writeOwnMetadata(dataset, grid, unitOfCrs(grid));
-  if (!done || gdal.failed()) return cannotWrite(gdal, path);
-  return {};
-}
 
 // Compresses the blocks of a file, on all cores, and writes them in their order, so that the bytes do not
 // depend on the number of threads.
@@ -212,7 +133,7 @@ class BlockWriter {
                                ? TIFFWriteEncodedStrip(file, number, bytes, size)
                            : blocks_.tiled ? TIFFWriteRawTile(file, number, bytes, size)
                                            : TIFFWriteRawStrip(file, number, bytes, size);
-    if (wrote != size) return cannotWrite(messages, path_);
+    if (wrote != size) return cannotWriteTiff(messages, path_);
     // Starts writing to the disk now, not only at the final flush. A hint: its failure has no effect.
     unflushed_ += wrote;
     if (unflushed_ >= kFlush) {
@@ -229,48 +150,21 @@ class BlockWriter {
   JobControl& job_;
   const std::int32_t height_;
   const TiffCompression compression_;
-  const Blocks blocks_;
+  const TiffBlocks blocks_;
   std::vector<Slot> slots_;
   tmsize_t unflushed_ = 0;
   std::atomic<bool> failed_{false};
 };
 
-// All but the samples, by GDAL.
-Status writeHeader(const Grid& grid, TiffCompression compression, const std::string& temporary,
-                   const std::string& path) {
-  const GdalSession gdal;
-  const Coding& coding = codingOf(compression);
-  const Blocks blocks(grid, compression);
-  const std::string columns = fmt::format("{}", blocks.columns), rows = fmt::format("{}", blocks.rows);
-  std::unique_ptr<char*, FreeList> creation;
-  const auto set = [&](const char* key, const char* value) {
-    creation.reset(CSLSetNameValue(creation.release(), key, value));
-  };
-  set("COMPRESS", coding.gdal);
-  if (coding.predictor != nullptr) set("PREDICTOR", coding.predictor);
-  set("BIGTIFF", "IF_SAFER");
-  set("SPARSE_OK", "TRUE");
-  set("TILED", blocks.tiled ? "YES" : "NO");
-  set("BLOCKYSIZE", rows.c_str());
-  if (blocks.tiled) set("BLOCKXSIZE", columns.c_str());
-  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), temporary.c_str(), grid.width, grid.height, 1,
-                                GDT_Float32, creation.get()));
-  if (!dataset) return cannotWrite(gdal, path);
-  if (Status status = describe(dataset.get(), grid, gdal, path); !status) return status;
-  dataset.reset();
-  if (gdal.failed()) return cannotWrite(gdal, path);
-  return {};
-}
-
 Status writePlain(const Version& field, TiffCompression compression, const std::string& temporary,
                   const std::string& path, JobControl& job) {
-  if (Status status = writeHeader(field.grid(), compression, temporary, path); !status) return status;
+  if (Status status = writeTiffHeader(field.grid(), compression, temporary, path); !status) return status;
   const GdalSession gdal;
   const std::unique_ptr<TIFF, CloseTiff> file(TIFFOpen(temporary.c_str(), "r+"));
-  if (!file) return cannotWrite(gdal, path);
+  if (!file) return cannotWriteTiff(gdal, path);
   if (Status status = BlockWriter(field, compression, path, job).write(file.get()); !status) return status;
   if (TIFFFlush(file.get()) != 1 || gdal.failed())
-    return cannotWrite(gdal, path);  // the positions of the blocks
+    return cannotWriteTiff(gdal, path);  // the positions of the blocks
   return {};
 }
 
@@ -281,11 +175,11 @@ Status writeCloudOptimised(const std::string& from, const std::string& to, TiffC
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const DatasetPtr source(
       GDALOpenEx(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
-  if (!source) return cannotWrite(gdal, path);
-  std::unique_ptr<char*, FreeList> creation;
+  if (!source) return cannotWriteTiff(gdal, path);
+  std::unique_ptr<char*, FreeCslList> creation;
   for (const auto& [key, value] :
-       {std::pair{"COMPRESS", codingOf(compression).gdal},
-        {"PREDICTOR", codingOf(compression).predictor != nullptr ? "FLOATING_POINT" : "NO"},
+       {std::pair{"COMPRESS", tiffCodingOf(compression).gdal},
+        {"PREDICTOR", tiffCodingOf(compression).predictor != nullptr ? "FLOATING_POINT" : "NO"},
         {"BLOCKSIZE", "256"},
         {"OVERVIEWS", "IGNORE_EXISTING"},
         {"OVERVIEW_RESAMPLING", "AVERAGE"},
@@ -308,17 +202,11 @@ Status writeCloudOptimised(const std::string& from, const std::string& to, TiffC
   const DatasetPtr copy(GDALCreateCopy(GDALGetDriverByName("COG"), to.c_str(), source.get(), FALSE,
                                        creation.get(), progress, &target));
   if (job.cancelled()) return cancelled();
-  if (!copy || gdal.failed()) return cannotWrite(gdal, path);
+  if (!copy || gdal.failed()) return cannotWriteTiff(gdal, path);
   return {};
 }
 
 }  // namespace
-
-std::optional<TiffCompression> tiffCompressionFromName(std::string_view name) {
-  for (std::size_t i = 0; i < kCodings.size(); ++i)
-    if (kCodings[i].name == name) return static_cast<TiffCompression>(i);
-  return std::nullopt;
-}
 
 // GeoTIFF, float32, compressed without loss if requested, geo-reference, CRS, units, holes = NaN, declared.
 Result<Exported> writeTiff(const Version& field, const std::string& path, const ExportOptions& options,

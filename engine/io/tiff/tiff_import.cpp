@@ -82,6 +82,69 @@ Status readSamples(const TiffScan& scan, TiffSamples& samples, FieldBuilder& bui
   return status;
 }
 
+// The rows of a piece that are among `rows` of the field, to their place in a field of these.
+template <class T>
+void placeSpan(const TiffScan& scan, const TiffPiece& piece, RowSpan rows, FieldBuilder& builder,
+               std::vector<float>& row, HeightTally& tally) {
+  const TiffWindow& w = piece.window;
+  const std::int32_t first = scan.right_to_left ? scan.grid.width - w.column - w.columns : w.column;
+  row.resize(static_cast<std::size_t>(w.columns));
+  for (std::int32_t r = 0; r < w.rows; ++r) {
+    const std::int32_t to = scan.top_down ? scan.grid.height - 1 - (w.row + r) : w.row + r;
+    if (to < rows.first || to >= rows.end()) continue;
+    const T* numbers = static_cast<const T*>(piece.numbers) + std::ptrdiff_t{r} * piece.stride;
+    scan.rule.convert(numbers, row.data(), row.size(), tally);
+    for (std::size_t k = 0; piece.mask != nullptr && k < row.size(); ++k)
+      if (piece.mask[static_cast<std::size_t>(r) * row.size() + k] == 0)
+        row[k] = std::numeric_limits<float>::quiet_NaN();
+    if (scan.right_to_left) std::reverse(row.begin(), row.end());
+    builder.writeHeights(first, to - rows.first, w.columns, 1, row.data(), w.columns);
+  }
+}
+
+Result<Grid> gridOfTiff(const InputFile& file, const ImportOptions& options) {
+  GdalSession gdal;
+  Result<TiffScan> scan = openTiffScan(file, options, gdal, TiffExtent::kPart);
+  if (!scan) return tl::unexpected(scan.error());
+  return std::move(scan->grid);
+}
+
+Result<Imported> readTiffRows(const InputFile& file, const ImportOptions& options, RowSpan rows,
+                              JobControl& job) {
+  GdalSession gdal;
+  const Result<TiffScan> scan = openTiffScan(file, options, gdal, TiffExtent::kPart);
+  if (!scan) return tl::unexpected(scan.error());
+  const std::int32_t top = scan->top_down ? scan->grid.height - rows.end() : rows.first;
+  TiffSamples samples(file, *scan, top, top + rows.count);
+  Grid grid = scan->grid;
+  grid.height = rows.count;
+  grid.origin_y += rows.first * grid.spacing_y;
+  Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), file.path());
+  if (!builder) return tl::unexpected(builder.error());
+  struct Worker {
+    std::vector<float> row;
+    HeightTally tally;
+  };
+  tbb::enumerable_thread_specific<Worker> workers;
+  Status status;
+  const bool known = withSampleType(*scan, [&](auto zero) {
+    status = samples.readAll(job, [&](const TiffPiece& piece) {
+      Worker& worker = workers.local();
+      placeSpan<decltype(zero)>(*scan, piece, rows, *builder, worker.row, worker.tally);
+    });
+  });
+  if (!known) return inputError("the samples are of a type that cannot be heights", file.path());
+  if (!status) return tl::unexpected(status.error());
+  HeightTally tally;
+  for (const Worker& worker : workers) tally.merge(worker.tally);
+  Imported imported;
+  imported.warnings = scan->warnings;
+  describeTally(tally, scan->grid.height_unit.name, imported.warnings);
+  imported.field = std::move(*builder).build();
+  imported.format = "GTiff";
+  return imported;
+}
+
 bool looksLikeTiff(std::string_view head, std::string_view) {
   using namespace std::string_view_literals;
   return head.starts_with("II*\0"sv) || head.starts_with("MM\0*"sv) || head.starts_with("II+\0"sv) ||
@@ -117,6 +180,8 @@ constexpr Format kTiffFormat{
     .read = readTiff,
     .write = writeTiff,
     .preview = previewTiff,
+    .grid = gridOfTiff,
+    .read_rows = readTiffRows,
     .picture = true,
     .tiff = true,
 };

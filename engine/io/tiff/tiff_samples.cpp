@@ -63,10 +63,16 @@ struct TiffSamples::Worker {
 };
 
 TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan)
+    : TiffSamples(file, scan, 0, GDALGetRasterYSize(scan.dataset.get())) {}
+
+TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan, std::int32_t first_row,
+                         std::int32_t end_row)
     : file_(file),
       scan_(scan),
       width_(GDALGetRasterXSize(scan.dataset.get())),
       height_(GDALGetRasterYSize(scan.dataset.get())),
+      first_row_(first_row),
+      end_row_(end_row),
       number_bytes_(static_cast<std::size_t>(GDALGetDataTypeSizeBytes(scan.type))) {
   GDALGetBlockSize(scan.band, &block_columns_, &block_rows_);
   across_ = (width_ + block_columns_ - 1) / block_columns_;
@@ -97,6 +103,11 @@ bool TiffSamples::findBlocks(bool plain) {
   sizes_.clear();
   for (int r = 0; r < down_; ++r)
     for (int c = 0; c < across_; ++c) {
+      if ((r + 1) * block_rows_ <= first_row_ || r * block_rows_ >= end_row_) {
+        offsets_.push_back(0);
+        sizes_.push_back(0);
+        continue;
+      }
       const auto offset = numberOf(scan_.band, "BLOCK_OFFSET", c, r);
       const auto bytes = numberOf(scan_.band, "BLOCK_SIZE", c, r);
       const int rows = strips ? std::min(block_rows_, height_ - r * block_rows_) : block_rows_;
@@ -147,13 +158,13 @@ std::vector<TiffWindow> TiffSamples::windows() const {
              kWindowBytes)
     rows = (rows + 1) / 2;
   std::vector<TiffWindow> all;
-  for (std::int32_t row = 0; row < height_;) {
+  for (std::int32_t row = blocks ? first_row_ / block_rows_ * block_rows_ : first_row_; row < end_row_;) {
     // Parts of a block end with the block; uncompressed ones so that the field's tiles are complete.
     const std::int32_t limit = blocks ? (row / block_rows_ + 1) * block_rows_
                                : strategy_ == ReadStrategy::kPlain && scan_.top_down
                                    ? height_ - (height_ - row - 1) / rows * rows
                                    : height_;
-    const std::int32_t end = std::min({row + rows, limit, height_});
+    const std::int32_t end = std::min({row + rows, limit, blocks ? height_ : end_row_});
     for (std::int32_t column = 0; column < width_; column += columns)
       all.push_back({column, row, std::min(columns, width_ - column), end - row});
     row = end;

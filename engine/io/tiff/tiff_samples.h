@@ -43,6 +43,8 @@ class TiffSamples {
 
   /// `file` and `scan` outlive this.
   TiffSamples(const InputFile& file, const TiffScan& scan);
+  /// Of rows [first, end) of the file alone, counted from its top: readAll() then gives these and others of their blocks.
+  TiffSamples(const InputFile& file, const TiffScan& scan, std::int32_t first_row, std::int32_t end_row);
 
   /// Passes every sample of the band to `take`. Errors (kInput): the samples cannot be read; kCancelled.
   /// Counts windows in `job`. Memory: at most 8 MB per core for 16 cores, and GDAL's 64 MB.
@@ -74,10 +76,12 @@ class TiffSamples {
   const TiffScan& scan_;
   std::int32_t width_ = 0, height_ = 0;
   int block_columns_ = 0, block_rows_ = 0;
+  std::int32_t first_row_ = 0, end_row_ = 0;
   std::int32_t across_ = 0, down_ = 0;  // blocks
   std::size_t number_bytes_ = 0;
   ReadStrategy strategy_ = ReadStrategy::kRows;
-  // Of each block, row-major: of uncompressed ones, and of those decompressed without GDAL; else empty.
+  // Of each block, row-major: of uncompressed ones, and of those decompressed without GDAL; else empty. 0 of those outside
+  // the rows.
   std::vector<std::uint64_t> offsets_, sizes_;
 };
 

@@ -85,13 +85,16 @@ void readGeoReference(GDALDatasetH dataset, const TiffDirectory& directory,
 
 }  // namespace
 
-Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options, GdalSession& gdal) {
+Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options, GdalSession& gdal,
+                              TiffExtent extent) {
   const std::string& path = file.path();
+  const auto checkSize = [&](std::uint64_t across, std::uint64_t down, std::uint64_t extra_bytes) {
+    return extent == TiffExtent::kWhole ? checkFieldSize(across, down, extra_bytes, path)
+                                        : checkFieldSides(across, down, path);
+  };
   const Result<TiffDirectory> directory = readTiffDirectory(file);
   if (!directory) return tl::unexpected(directory.error());
-  if (Status s =
-          checkFieldSize(directory->width, directory->height, TiffSamples::extraBytes(*directory), path);
-      !s)
+  if (Status s = checkSize(directory->width, directory->height, TiffSamples::extraBytes(*directory)); !s)
     return tl::unexpected(s.error());
   if (Status s =
           checkPromise(directory->rawBytes(), directory->stored_bytes, directory->largestRatio(), path);
@@ -109,9 +112,7 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   if (!band) return tl::unexpected(band.error());
   const int width = GDALGetRasterXSize(dataset.get());
   const int height = GDALGetRasterYSize(dataset.get());
-  if (Status s =
-          checkFieldSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 0, path);
-      !s)
+  if (Status s = checkSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 0); !s)
     return tl::unexpected(s.error());
   if (char** pages = GDALGetMetadata(dataset.get(), "SUBDATASETS"); pages != nullptr && pages[0] != nullptr)
     warnings.emplace_back("the file holds several pictures, the first was read");

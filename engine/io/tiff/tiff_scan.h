@@ -30,10 +30,16 @@ struct TiffScan {
   std::vector<std::string> warnings;
 };
 
+/// How much of a file's samples will be held.
+enum class TiffExtent : std::uint8_t {
+  kWhole,
+  kPart,  ///< rows of a field that may be larger than memory and disk
+};
+
 /// Opens a TIFF and refuses what is not a height field, before memory is allocated for it. Errors: as
 /// importField. `gdal` must exist as long as the scan is used.
 [[nodiscard]] Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options,
-                                            GdalSession& gdal);
+                                            GdalSession& gdal, TiffExtent extent = TiffExtent::kWhole);
 
 /// Calls `use` with a zero of the type of the scan's samples; false for types that are not heights.
 bool withSampleType(const TiffScan& scan, auto&& use) {
