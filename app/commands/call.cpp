@@ -17,6 +17,7 @@ engine::Result<Report> callCommand(const std::vector<std::string>& arguments,
   CommandLine line("fettle", "", "");
   line.root().requireSubcommand();
   Chosen chosen;
+  chosen.arguments = words;
   add_commands(line.root(), chosen);
   const auto text = line.parse(words);
   if (!text) return tl::unexpected(usageError(text.error(), help));

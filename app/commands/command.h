@@ -34,6 +34,7 @@ struct Chosen {
   std::string schema;                        ///< of the report (schemaName)
   Progress progress = Progress::kLine;
   Printing printing = Printing::kReport;
+  std::vector<std::string> arguments;  ///< the whole command line, the program's name first
   bool json = false;
   bool quiet = false;  ///< prints only errors
 };
@@ -83,6 +84,10 @@ void addRecord(Command root, Chosen& chosen);
 void addRender(Command root, Chosen& chosen);
 void addCompare(Command root, Chosen& chosen);
 void addConvert(Command root, Chosen& chosen);
+void addPlan(Command root, Chosen& chosen);
+void addGather(Command root, Chosen& chosen);
+void addStatus(Command root, Chosen& chosen);
+void addSubmit(Command root, Chosen& chosen);
 void addDevices(Command root, Chosen& chosen);
 void addView(Command root, Chosen& chosen);
 void addAccuracy(Command root, Chosen& chosen);

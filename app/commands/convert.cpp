@@ -7,6 +7,9 @@
 #include "app/commands/known_steps.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/shards/band_work.h"
+#include "app/commands/shards/list_shard.h"
+#include "app/commands/shards/plan.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
@@ -23,6 +26,7 @@ struct ConvertArguments {
   engine::ExportOptions writing;
   std::string max_error;
   bool estimate = false;
+  ShardOptions shards;
 };
 
 engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTask& task,
@@ -71,24 +75,53 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
                 {"warnings", written->warnings}};
 }
 
-engine::Result<Report> convert(const ConvertArguments& options, engine::JobControl& job) {
+// What a band of one scan is told; options that are of a whole scan are refused.
+engine::Result<BandWork> convertedBandOf(const ConvertArguments& options) {
+  if (options.files.many() || options.files.files.size() != 2)
+    return engine::inputError("one scan is divided into bands", "IN OUT", "give a scan and a file to write");
+  if (options.estimate)
+    return engine::inputError("--estimate is not divided into shards", "--estimate",
+                              "fettle plan says what a shard will take");
+  if (!options.max_error.empty() || options.writing.mesh)
+    return engine::inputError("a mesh is made of the whole field", "--mesh", "leave shards out");
+  const std::vector<BatchTask> task{
+      {options.files.files[0], options.files.files[1], options.files.extension}};
+  if (auto status = checkCompress(options.writing, task); !status) return tl::unexpected(status.error());
+  return BandWork{.command = "convert",
+                  .reading = options.reading,
+                  .writing = options.writing,
+                  .in = options.files.files[0],
+                  .out = options.files.files[1]};
+}
+
+engine::Result<Report> convert(const ConvertArguments& options, const std::vector<std::string>& arguments,
+                               engine::JobControl& job) {
+  if (auto status = checkShardOptions(options.shards); !status) return tl::unexpected(status.error());
+  if (options.shards.in_turn || (!options.shards.shard.empty() && !options.files.many())) {
+    const auto work = convertedBandOf(options);
+    if (!work) return tl::unexpected(work.error());
+    const ProgressLine progress(job);
+    return options.shards.in_turn ? runBandsInTurn(*work, options.shards, arguments, job)
+                                  : runBand(*work, options.shards.shard, job);
+  }
   const auto tasks = batchTasks(options.files, {}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) { return convertOne(options, task, j); };
-  if (options.files.many()) return runBatch(*tasks, job, one);
+  if (options.files.many()) {
+    const auto mine = tasksOfShard(*tasks, options.shards.shard);
+    if (!mine) return tl::unexpected(mine.error());
+    auto report = runBatch(*mine, job, one);
+    if (!options.shards.shard.empty() && report && !options.estimate)
+      if (auto status = keepListReport(options.files.out_dir, options.shards.shard, *report); !status)
+        return tl::unexpected(status.error());
+    return report;
+  }
   const ProgressLine progress(job);
   return one(tasks->front(), job);
 }
 
-}  // namespace
-
-void addConvert(Command root, Chosen& chosen) {
-  auto options = std::make_shared<ConvertArguments>();
-  Command command = addCommand(
-      root, chosen, "convert", "Write scans in another format, named by the extension",
-      [options](engine::JobControl& job) { return convert(*options, job); }, printBatch, Progress::kOwn,
-      batchStatus);
+void addConvertRows(Command command, const std::shared_ptr<ConvertArguments>& options) {
   addBatchOptions(command, options->files);
   command.add(
       {
@@ -105,13 +138,42 @@ void addConvert(Command root, Chosen& chosen) {
            .text = "TIFF: laid out for reading parts over a network, with overviews"},
       },
       kWriting);
-  addEstimateOption(command, options->estimate);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
+}
+
+}  // namespace
+
+void addConvert(Command root, Chosen& chosen) {
+  auto options = std::make_shared<ConvertArguments>();
+  Command command = addCommand(
+      root, chosen, "convert", "Write scans in another format, named by the extension",
+      [options, &chosen](engine::JobControl& job) { return convert(*options, chosen.arguments, job); },
+      printBatch, Progress::kOwn, batchStatus);
+  addConvertRows(command, options);
+  addEstimateOption(command, options->estimate);
+  addShardOptions(command, options->shards);
   command.examples({{"fettle convert scan.tif scan.stl --max-error 10um",
                      "A mesh with as few triangles as that error allows"},
                     {"fettle convert scan.tif other.tif --out-dir packed --to tif --compress zstd",
                      "Several scans, packed, into a folder"}});
+}
+
+void addPlanConvert(Command plan, Chosen& chosen) {
+  auto options = std::make_shared<ConvertArguments>();
+  auto shards = std::make_shared<PlanOptions>();
+  Command command = addCommand(
+      plan, chosen, "convert", "Plan writing one scan in another format in shards",
+      [options, shards, &chosen](engine::JobControl& job) -> engine::Result<Report> {
+        const auto work = convertedBandOf(*options);
+        if (!work) return tl::unexpected(work.error());
+        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), 0, job);
+        if (!planned) return tl::unexpected(planned.error());
+        return reportOf(*planned);
+      },
+      printPlan);
+  addPlanOptions(command, *shards);
+  addConvertRows(command, options);
 }
 
 }  // namespace fettle::app

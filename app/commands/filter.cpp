@@ -23,6 +23,9 @@
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/shards/band_work.h"
+#include "app/commands/shards/list_shard.h"
+#include "app/commands/shards/plan.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
@@ -63,6 +66,7 @@ struct FilterArguments {
   int places = 0;
   ResumeOptions resume;
   bool estimate = false;
+  ShardOptions shards;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -468,7 +472,47 @@ void printSuggestion(const Report& report) {
                figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "");
 }
 
-engine::Result<Report> filter(const FilterArguments& options, engine::JobControl& job) {
+// What a band of one scan is told; options that are of a whole scan are refused.
+engine::Result<BandWork> bandWorkOf(const FilterArguments& options) {
+  const auto refused = [](const char* option, const char* why) {
+    return engine::inputError(fmt::format("{} is not divided into shards", option), option, why);
+  };
+  if (options.suggest) return refused("--suggest", "pieces of the scan are enough for it: leave shards out");
+  if (options.filter.empty()) return engine::inputError("no filter is named", "--filter", "give one");
+  if (options.places != 0 || !options.tolerance.empty() || options.budget)
+    return refused("--suggest", "leave --places, --tolerance and --budget out");
+  if (options.files.many())
+    return refused("--out-dir", "a list is shared out without a plan: --out-dir DIR --shard K/N");
+  if (options.files.files.size() != 2)
+    return engine::inputError("one scan is divided into bands", "IN OUT", "give a scan and a file to write");
+  if (!options.residual.empty())
+    return refused("--residual", "give IN, OUT and less of it by fettle compare --deviation");
+  if (options.resume.resume) return refused("--resume", "a shard is not done twice anyway: leave it out");
+  if (options.estimate) return refused("--estimate", "fettle plan says what a shard will take");
+  if (options.compute == "gpu")
+    return refused("--compute gpu", "machines may differ in it, and results with it: leave it out");
+  const auto spec = specOf(options);
+  if (!spec) return tl::unexpected(spec.error());
+  const std::string& out = options.files.files[1];
+  if (auto status = checkOriginal(options.original, !options.max_change.empty(), out); !status)
+    return tl::unexpected(status.error());
+  const std::vector<BatchTask> task{{options.files.files[0], out, options.files.extension}};
+  if (auto status = checkCompress(options.writing, task); !status) return tl::unexpected(status.error());
+  return BandWork{.command = "filter",
+                  .spec = *spec,
+                  .range_sigma = options.range_sigma,
+                  .max_change = options.max_change,
+                  .keep = options.keep,
+                  .only = options.only,
+                  .lines = options.lines,
+                  .original = options.original,
+                  .reading = options.reading,
+                  .writing = options.writing,
+                  .in = options.files.files[0],
+                  .out = out};
+}
+
+engine::Result<Report> filterAll(const FilterArguments& options, engine::JobControl& job) {
   if (options.suggest) return suggest(options, job);
   if (options.filter.empty())
     return engine::inputError("no filter is named", "--filter", "give one, or use --suggest");
@@ -507,12 +551,30 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
     return done;
   };
   if (options.files.many()) {
-    auto report = runBatch(*tasks, job, one);
-    if (report && !options.estimate) FinishedScans(options.resume.resume).end(*tasks, *report);
+    const auto mine = tasksOfShard(*tasks, options.shards.shard);
+    if (!mine) return tl::unexpected(mine.error());
+    auto report = runBatch(*mine, job, one);
+    if (report && !options.estimate) FinishedScans(options.resume.resume).end(*mine, *report);
+    if (!options.shards.shard.empty() && report && !options.estimate)
+      if (auto status = keepListReport(options.files.out_dir, options.shards.shard, *report); !status)
+        return tl::unexpected(status.error());
     return report;
   }
   const ProgressLine progress(job);
   return one(tasks->front(), job);
+}
+
+engine::Result<Report> filter(const FilterArguments& options, const std::vector<std::string>& arguments,
+                              engine::JobControl& job) {
+  if (auto status = checkShardOptions(options.shards); !status) return tl::unexpected(status.error());
+  if (options.shards.in_turn || (!options.shards.shard.empty() && !options.files.many())) {
+    const auto work = bandWorkOf(options);
+    if (!work) return tl::unexpected(work.error());
+    const ProgressLine progress(job);
+    return options.shards.in_turn ? runBandsInTurn(*work, options.shards, arguments, job)
+                                  : runBand(*work, options.shards.shard, job);
+  }
+  return filterAll(options, job);
 }
 
 void printFilter(const Report& report) {
@@ -524,14 +586,7 @@ void printFilter(const Report& report) {
   if (!suggested && !places) printBatch(report);
 }
 
-}  // namespace
-
-void addFilter(Command root, Chosen& chosen) {
-  auto options = std::make_shared<FilterArguments>();
-  Command command = addCommand(
-      root, chosen, "filter", "Filter whole scans, except marked samples",
-      [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
-      batchStatus);
+void addFilterRows(Command command, const std::shared_ptr<FilterArguments>& options) {
   addBatchOptions(command, options->files);
   std::vector<Word> filters;
   std::vector<std::string> sigmas, ranges;
@@ -640,10 +695,22 @@ void addFilter(Command root, Chosen& chosen) {
            .otherwise = "none"},
       },
       "Suggesting a filter");
-  addEstimateOption(command, options->estimate);
-  addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
+}
+
+}  // namespace
+
+void addFilter(Command root, Chosen& chosen) {
+  auto options = std::make_shared<FilterArguments>();
+  Command command = addCommand(
+      root, chosen, "filter", "Filter whole scans, except marked samples",
+      [options, &chosen](engine::JobControl& job) { return filter(*options, chosen.arguments, job); },
+      printFilter, Progress::kOwn, batchStatus);
+  addFilterRows(command, options);
+  addEstimateOption(command, options->estimate);
+  addResumeOptions(command, options->resume);
+  addShardOptions(command, options->shards);
   command.examples(
       {{"fettle filter scan.tif clean.tif --filter tgv", "The best without a hand"},
        {"fettle filter scan.tif clean.tif --filter median --window 5 --keep marks.png --max-change 50um",
@@ -653,6 +720,25 @@ void addFilter(Command root, Chosen& chosen) {
        {"fettle filter scan.tif clean.tif --filter closing --radius 0.5",
         "What a ball of 0.5 mm touches from above: pits and grooves narrower than it are filled"},
        {"fettle filter scan.tif --suggest --tolerance 12um", "Which filter is good enough, and why"}});
+}
+
+void addPlanFilter(Command plan, Chosen& chosen) {
+  auto options = std::make_shared<FilterArguments>();
+  auto shards = std::make_shared<PlanOptions>();
+  Command command = addCommand(
+      plan, chosen, "filter", "Plan filtering one scan in shards",
+      [options, shards, &chosen](engine::JobControl& job) -> engine::Result<Report> {
+        const auto work = bandWorkOf(*options);
+        if (!work) return tl::unexpected(work.error());
+        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), 0, job);
+        if (!planned) return tl::unexpected(planned.error());
+        return reportOf(*planned);
+      },
+      printPlan);
+  addPlanOptions(command, *shards);
+  addFilterRows(command, options);
+  command.examples({{"fettle plan filter scan.tif planned.tif --filter tgv --shards 2",
+                     "Finds the noise, and makes the file that two shards write to"}});
 }
 
 }  // namespace fettle::app

@@ -16,6 +16,7 @@
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/shards/list_shard.h"
 #include "app/commands/surface_curves.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
@@ -40,6 +41,7 @@ struct MeasureArguments {
   CurveFiles curves;
   int noise_trials = kUsualTrials;
   bool estimate = false;
+  std::string shard, shard_folder;
   ScanOptions reading;
 };
 
@@ -158,16 +160,22 @@ engine::Status writeCsv(const MeasureArguments& options, const Report& report, e
 }
 
 engine::Result<Report> measureAll(const MeasureArguments& options, engine::JobControl& job) {
-  if (options.scans.size() == 1) {
+  if (options.scans.size() == 1 && options.shard.empty()) {
     const ProgressLine progress(job);
     return measureOne(options, options.scans.front(), job);
   }
   std::vector<BatchTask> tasks;
   tasks.reserve(options.scans.size());
   for (const std::string& scan : options.scans) tasks.push_back({scan, {}, {}});
-  return runBatch(tasks, job, [&](const BatchTask& task, engine::JobControl& j) {
+  const auto mine = tasksOfShard(tasks, options.shard);
+  if (!mine) return tl::unexpected(mine.error());
+  auto report = runBatch(*mine, job, [&](const BatchTask& task, engine::JobControl& j) {
     return measureOne(options, task.in, j);
   });
+  if (report && !options.shard.empty())
+    if (auto status = keepListReport(options.shard_folder, options.shard, *report); !status)
+      return tl::unexpected(status.error());
+  return report;
 }
 
 engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
@@ -178,6 +186,10 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
     return engine::inputError("no material ratios are measured without the functional parameters",
                               options.at_heights.empty() ? "--at-ratio" : "--at-height",
                               "add functional to --only");
+  if (options.shard.empty() != options.shard_folder.empty())
+    return engine::inputError("a share of the scans has a report of its own",
+                              options.shard.empty() ? "--shard" : "--shard-dir",
+                              "give both --shard K/N and --shard-dir FOLDER");
   // Two inputs cannot both be standard input.
   std::vector<std::string> inputs = options.scans;
   inputs.push_back(options.form.marks);
@@ -261,6 +273,18 @@ void addMeasure(Command root, Chosen& chosen) {
   addCurveOptions(command, options->curves);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
+  command.add(
+      {{.name = "--shard",
+        .to = &options->shard,
+        .text =
+            "Of several scans measure one of N shares alone, K of N from 1 on. auto: as Slurm's array, srun "
+            "or mpirun says",
+        .shown = "K/N"},
+       {.name = "--shard-dir",
+        .to = &options->shard_folder,
+        .text = "With --shard: where its report goes, for fettle gather",
+        .kind = ValueKind::kFolder}},
+      "Shards");
   addScanOptions(command, options->reading);
   command.notes(
       "No S- or L-filter is applied unless named. At borders and holes their weights are normalised. Ratios "

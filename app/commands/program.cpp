@@ -100,6 +100,7 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   Command root = line.root();
   root.requireSubcommand();
   Chosen chosen;
+  chosen.arguments = arguments;
   addOutputFlags(root, chosen);
   add_commands(root, chosen);
   // Replaced by takeHelpForOption() before it can be chosen.

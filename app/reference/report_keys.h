@@ -27,6 +27,11 @@ using Keys = std::vector<ReportKey>;
 /// The forms of --estimate.
 [[nodiscard]] ReportForm estimateAlone();
 [[nodiscard]] ReportForm noEstimate();
+/// Of commands whose work can be divided: one shard's, and all of them after each other.
+[[nodiscard]] ReportForm shardDone();
+[[nodiscard]] ReportForm bandsInTurn();
+/// Of all shards together.
+[[nodiscard]] Keys gathered();
 /// What is taken out of a surface before it is measured.
 [[nodiscard]] Keys form();
 [[nodiscard]] Keys formFigures();
@@ -35,6 +40,8 @@ using Keys = std::vector<ReportKey>;
 [[nodiscard]] std::vector<ReportSchema> inspecting();
 /// Of filter, convert, level, fill, transform, report, apply, mark, synth, replay, record.
 [[nodiscard]] std::vector<ReportSchema> changing();
+/// Of plan, gather, status, submit.
+[[nodiscard]] std::vector<ReportSchema> sharing();
 /// Of render, view, demo, accuracy, reference.
 [[nodiscard]] std::vector<ReportSchema> showing();
 /// Of the benchmarks.

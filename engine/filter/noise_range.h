@@ -4,6 +4,7 @@
 #include "engine/base/job.h"
 #include "engine/field/version.h"
 #include "engine/filter/filter.h"
+#include "engine/inspect/noise.h"
 
 namespace fettle::engine {
 
@@ -13,5 +14,8 @@ namespace fettle::engine {
 /// estimateNoise otherwise.
 [[nodiscard]] Result<FilterSpec> withMeasuredRange(const FilterSpec& spec, const Version& field,
                                                    JobControl& job);
+
+/// The same from noise that was estimated before; `spec` needs a range and has none. Errors: as above.
+[[nodiscard]] Result<FilterSpec> withRangeOf(const FilterSpec& spec, const NoiseEstimate& noise);
 
 }  // namespace fettle::engine

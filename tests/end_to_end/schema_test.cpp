@@ -55,6 +55,14 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"level", scan, file("layer.fettle"), "--layer", "put"});
   run({"info", file("layer.fettle")});
   run({"level", file("layer.fettle"), file("level.tif"), "--layer", "bake"});
+  run({"plan", "convert", scan, file("shared.tif"), "--shards", "1"});
+  run({"convert", scan, file("shared.tif"), "--shard", "1"});
+  run({"gather", file("shared.tif")});
+  run({"plan", "filter", scan, file("shared.tif"), "--filter", "tgv", "--shards", "1", "--result", "files"});
+  run({"status", file("shared.tif")});
+  run({"filter", scan, file("shared.tif"), "--filter", "tgv", "--shard", "1"});
+  run({"submit", file("shared.tif"), "--engine", "slurm"});
+  run({"filter", scan, file("turn.tif"), "--filter", "box", "--shards-in-turn"});
   run({"synth", file("die.tif"), "--part", "die", "--size", "96x80"});
   run({"level", file("die.tif"), file("level.tif"), "--form", "sphere"});
   run({"measure", file("die.tif"), "--form", "sphere", "--only", "height"});

@@ -152,6 +152,21 @@ Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path) {
   return layout;
 }
 
+Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t width, std::int32_t height) {
+  const GdalSession gdal;
+  const std::unique_ptr<TIFF, CloseOutline> file(TIFFOpen(path.c_str(), "rm"));
+  struct stat found {};
+  std::uint32_t columns = 0, rows = 0;
+  if (!file || fstat(TIFFFileno(file.get()), &found) != 0 ||
+      TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &columns) != 1 ||
+      TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &rows) != 1 ||
+      columns != static_cast<std::uint32_t>(width) || rows != static_cast<std::uint32_t>(height))
+    return inputError("this is not the file of a shard", path, "do the shard again");
+  const PlainLayout layout{width, height, TIFFGetStrileOffset(file.get(), 0),
+                           static_cast<std::uint64_t>(found.st_size)};
+  return layout;
+}
+
 Result<PlainRows> PlainRows::open(const std::string& path, const PlainLayout& layout) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0)

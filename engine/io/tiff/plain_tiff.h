@@ -31,6 +31,10 @@ struct PlainLayout {
 /// known before anything is computed. A file of this path is replaced. Errors as exportField; nothing is left then.
 [[nodiscard]] Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path);
 
+/// The layout of a file that createPlainTiff() made for a field of these sides. Errors (kInput): another file.
+[[nodiscard]] Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t width,
+                                                    std::int32_t height);
+
 /// Writes rows of such a file. Threading: one thread at a time; other objects, in other processes on other machines too, may
 /// write other rows meanwhile where the file system keeps bytes that do not overlap apart (keepsBytesApart).
 class PlainRows {
