@@ -1,8 +1,10 @@
 // The compiled part of the package fettle: scans, calls of commands, sessions. The package itself is written in Python
 // (python/fettle), where its signatures and documentation are.
 
+#include <cstdint>
 #include <new>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "engine/base/job.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/version.h"
+#include "engine/filter/catalogue.h"
 #include "engine/formats/formats.h"
 #include "engine/io/geo/geo_reference.h"
 #include "engine/io/geo/named_crs.h"
@@ -60,6 +63,32 @@ std::string hashOf(const Scan& scan) {
   const auto stored = engine::restored(scan.data.field, job);
   if (!stored) throw std::bad_alloc();
   return fmt::format("{:016x}", engine::contentHash(*stored));
+}
+
+// How far a filter reaches, at what multiples pieces begin that have the field's results [samples], and its range in
+// standard deviations of the noise where it has one, else 0. Reach -1: as far as the whole field.
+std::tuple<std::int32_t, std::int32_t, double> reachOf(const std::string& word, double window, double passes,
+                                                       double cutoff, double radius, double spacing_x,
+                                                       double spacing_y, const std::string& unit,
+                                                       std::int32_t columns, std::int32_t rows) {
+  const engine::Filter* const filter = engine::filterNamed(word);
+  if (filter == nullptr || engine::needsWholeField(*filter)) {
+    // An unknown word is refused by the filter itself.
+    return {filter == nullptr ? 0 : -1, 1, 0.0};
+  }
+  engine::FilterSpec spec;
+  spec.kind = filter->kind;
+  if (filter->window.exists() && window > 0.0) spec.window = static_cast<int>(window);
+  spec.passes = static_cast<int>(passes);
+  if (filter->nesting.exists()) spec.nesting_mm = filter->nesting_word == "radius" ? radius : cutoff;
+  engine::Grid grid;
+  grid.width = columns;
+  grid.height = rows;
+  grid.spacing_x = spacing_x;
+  grid.spacing_y = spacing_y;
+  if (const auto known = engine::lengthUnitFromName(unit)) grid.lateral_unit = *known;
+  return {engine::reachOf(spec, grid, false), engine::pieceGridOf(spec, grid),
+          filter->range_sigma.exists() ? filter->noises : 0.0};
 }
 
 void addScan(py::module_& module) {
@@ -156,6 +185,7 @@ PYBIND11_MODULE(_fettle, module) {
   addScan(module);
   addSession(module);
   module.def("formats", formats);
+  module.def("reach", reachOf);
   module.def("unit_of_crs", unitOfCrs);
   module.def("tables", commandTables);
   module.def("call", callCommand);

@@ -22,7 +22,7 @@ _FILTER = Command(
     "filter",
     "filter",
     first=("filter",),
-    hidden=("suggest", "out-dir", "to", "force", "estimate", "resume", "resume-every"),
+    hidden=("suggest", "out-dir", "to", "force", "estimate", "resume", "resume-every", "shard", "shards-in-turn", "memory"),
     hides=(READING, WRITING, "Suggesting a filter"),
 )
 _SUGGEST = Command(
@@ -51,7 +51,7 @@ _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 _WRITE = Command(
     "write",
     "convert",
-    hidden=("out-dir", "to", "estimate"),
+    hidden=("out-dir", "to", "estimate", "shard", "shards-in-turn", "memory"),
     hides=(READING,),
     summary="Write the field to a file; its extension names the format",
 )
@@ -524,7 +524,7 @@ def method_of(name):
     command writes a scan, else what the command reports."""
     parameters = TABLES[name]["parameters"]
     batch = any(row["name"] == "--out-dir" for row in parameters)
-    hidden = ("out-dir", "to", "force", "estimate")
+    hidden = ("out-dir", "to", "force", "estimate", "shard", "shard-dir")
     command = Command(name, name, hidden=hidden, hides=(READING, WRITING) if batch else (READING,))
     scan, *others = command.positional
     out = batch or (others and others[-1]["kind"] == "output")

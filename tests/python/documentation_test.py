@@ -26,7 +26,7 @@ SOURCE = os.environ["FETTLE_SOURCE"]
 
 # Rows without a meaning in Python: standard input and output have no format to be named, a method has one scan, and fields
 # of a whole process are stored where its first one says.
-NOT_HERE = {"from", "to", "out-dir", "force", "store", "suggest", "estimate", "resume", "resume-every"}
+NOT_HERE = {"shard", "shard-dir", "shards-in-turn", "memory", "from", "to", "out-dir", "force", "store", "suggest", "estimate", "resume", "resume-every"}
 FUNCTIONS = [fettle.read, fettle.synth, fettle.mosaic, fettle.replay]
 FUNCTIONS += [member for member in vars(fettle.Field).values() if hasattr(member, "_command")]
 
