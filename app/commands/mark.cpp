@@ -34,6 +34,7 @@
 #include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/marks/edge_traces.h"
