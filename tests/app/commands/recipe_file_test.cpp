@@ -228,9 +228,13 @@ TEST(Recipe, LeavesOutFormsThatBelongToTheScanAndWhatIsDoneToThem) {
 }
 
 TEST(Recipe, OfACommandsLayerIsThatOfItsNoteWhileItIsAStep) {
-  const std::string put = recipeTextWith("", RecipeForm{"put", {"poly2", true, "all", {}}});
+  const auto noteOf = [](std::vector<RecipeStep> steps) {
+    return recipeText(Recipe{.steps = std::move(steps), .left_out = {}});
+  };
+  const RecipeForm poly{"put", {"poly2", true, "all", {}}}, by_marks{"put", {"plane", false, "marked", {}}};
+  const std::string put = noteOf({poly});
   EXPECT_TRUE(putsForm(put));
-  EXPECT_FALSE(putsForm(recipeTextWith(put, RecipeForm{"remove", {}})));
+  EXPECT_FALSE(putsForm(noteOf({poly, RecipeForm{"remove", {}}})));
   EXPECT_FALSE(putsForm(""));
   Work work(scan());
   work.noted(put);
@@ -243,10 +247,9 @@ TEST(Recipe, OfACommandsLayerIsThatOfItsNoteWhileItIsAStep) {
   work.undo();
   EXPECT_TRUE(work.recipe().steps.empty());
   // What was baked is among the heights of step 0, and by marks it is not repeated.
-  work.noted(recipeTextWith(put, RecipeForm{"bake", {}}));
+  work.noted(noteOf({poly, RecipeForm{"bake", {}}}));
   EXPECT_EQ(work.recipe().steps.size(), 2U);
-  work.noted(recipeTextWith(recipeTextWith("", RecipeForm{"put", {"plane", false, "marked", {}}}),
-                            RecipeForm{"bake", {}}));
+  work.noted(noteOf({by_marks, RecipeForm{"bake", {}}}));
   EXPECT_TRUE(work.recipe().steps.empty());
   EXPECT_EQ(work.recipe().left_out.size(), 2U);
 }
