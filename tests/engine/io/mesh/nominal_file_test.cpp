@@ -95,7 +95,7 @@ TEST(NominalFile, RefusesDamagedFilesByWhatIsWrong) {
       {textStl("ten"), "corner 1 does not hold three numbers"},
       {textStl("0", ""), "ends before its endsolid"},
       {"solid nothing\nendsolid nothing\n", "no triangle that has an area"},
-      {"ply\nformat ascii 1.0\n", "too short"},
+      {"ply\nformat ascii 1.0\n", "the PLY header has no end"},
   };
   int number = 0;
   for (const auto& one : cases) {

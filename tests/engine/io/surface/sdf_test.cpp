@@ -161,7 +161,13 @@ TEST_F(Sdf, LyingHeadersAndCutFilesAreRefused) {
   EXPECT_NE(refused(textSdf("aISO-1.0", 9, "1 2 3 4 5 6")).find("type 9"), std::string::npos);
   EXPECT_NE(refused("aISO-1.0\nNumPoints = 3\n*\n1 2 3\n*\n").find("lacks"), std::string::npos);
   EXPECT_NE(refused("aISO-1.0\nNumPoints = three\n*\n1 2 3\n*\n").find("three"), std::string::npos);
-  EXPECT_NE(refused(textSdf("aISO-1.0", 7, "BAD BAD BAD BAD BAD BAD ")).find("height"), std::string::npos);
+}
+
+TEST_F(Sdf, HolesAloneOpenWithAWarning) {
+  const auto scan = read(textSdf("aISO-1.0", 7, "BAD BAD BAD BAD BAD BAD "));
+  ASSERT_TRUE(scan) << scan.error().line();
+  EXPECT_TRUE(std::isnan(stored(scan->field, 1, 2)));
+  EXPECT_TRUE(warned(scan->warnings, "height"));
 }
 
 TEST_F(Sdf, MoreThanTheHeaderStatesAndAMissingEndAreWarnedOf) {
