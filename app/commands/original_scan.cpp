@@ -86,8 +86,12 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
 bool isWorkedOn(const engine::Imported& imported) {
   // The form is a step that the recipe may name.
   if (imported.field.seenOf() != nullptr && !putsForm(imported.recipe)) return true;
-  return imported.original && (imported.original->lines() != imported.field.lines() ||
-                               !engine::tilesThatDiffer(*imported.original, imported.field).empty());
+  if (!imported.original) return false;
+  // In Python a field may have come from one of another size.
+  const engine::Grid &before = imported.original->grid(), &now = imported.field.grid();
+  if (before.width != now.width || before.height != now.height) return true;
+  return (imported.original->lines() != imported.field.lines() ||
+          !engine::tilesThatDiffer(*imported.original, imported.field).empty());
 }
 
 engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {

@@ -131,6 +131,8 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
        "1"});
   run({"bench", "render", "--side", "64", "--frames", "10"});
 
+  run({"--version"});
+
   std::set<std::string> expected = schemaNames();
   expected.erase("fettle.error/1");   // below
   expected.erase("fettle.view/1");    // tests/end_to_end/window
@@ -148,6 +150,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   };
   visit(tables["program"]);
   commands.insert("fettle.error/1");
+  commands.insert("fettle.version/1");
   EXPECT_EQ(commands, schemaNames());
 }
 

@@ -180,7 +180,7 @@ TEST(Fit, DistancesAndTheirSlopesAreThoseOfThePlainTwin) {
 }
 
 // Simulated scans of each shape under 5 um of noise: how often the truth lies within one, two and three standard errors.
-// The table of 1,000 is printed: FETTLE_SEEDS=1000 build/release/tests/engine/measure/measure_test
+// The table of 1,000 is printed: FETTLE_TRIALS=1000 build/release/tests/engine/measure/measure_test
 // --gtest_filter='FitUncertainty*'
 TEST(FitUncertainty, CoversAtOneTwoAndThreeTimes) {
   struct Figure {

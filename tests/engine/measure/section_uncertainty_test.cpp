@@ -1,5 +1,5 @@
 // What the standard errors of a section are worth: simulated scans of a step of 50 um, a radius of 2 mm and an angle of 30
-// degrees. The table of 1,000 is printed: FETTLE_SEEDS=1000 build/release/tests/engine/measure/measure_test
+// degrees. The table of 1,000 is printed: FETTLE_TRIALS=1000 build/release/tests/engine/measure/measure_test
 // --gtest_filter='SectionUncertainty*'
 
 #include <cmath>
