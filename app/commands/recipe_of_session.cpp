@@ -14,6 +14,7 @@
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "haptic/journal/journal.h"
+#include "haptic/journal/session_player.h"
 
 namespace fettle::app {
 
@@ -61,7 +62,9 @@ std::int64_t statesOfCommands(const engine::Session& session, const std::map<std
     if (!by_commands && info.kind != engine::StepKind::kForm && info.kind != engine::StepKind::kInvert) break;
     states = k;
   }
-  return states;
+  // An undo in the window left some of them out: the note has more than is there.
+  const std::int64_t written = session.journal.empty() ? history.last() : haptic::journalStart(session);
+  return states < written ? 0 : states;
 }
 
 // What commands did before the first step of the journal.

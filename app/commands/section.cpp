@@ -190,11 +190,12 @@ engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArgumen
                                                             const ReadScan& scan, engine::JobControl& job) {
   std::vector<PlannedSection> planned;
   if (options.kept) {
-    if (scan.sections.empty())
+    engine::Result<std::vector<KeptSection>> kept;
+    if (!scan.sections.empty()) kept = sectionsOf(scan.sections);
+    if (!kept) return tl::unexpected(kept.error());
+    if (kept->empty())
       return engine::inputError("no sections are kept in it", shownInput(options.scan),
                                 "draw some in the window, Q and Shift+Q, and save a session");
-    const auto kept = sectionsOf(scan.sections);
-    if (!kept) return tl::unexpected(kept.error());
     for (const KeptSection& section : *kept)
       planned.push_back({{section.from, section.to}, section.width_mm, wantsOf(section)});
   }

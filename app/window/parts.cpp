@@ -72,6 +72,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   form.clear();
   heights.clear();
   measure.clear();
+  if (auto kept = section.takeKept()) document.keepSections(*std::move(kept));
   section.reset();
   transform.cancel();
   compare.clear();

@@ -1,5 +1,6 @@
 #include "app/work/transform_tool.h"
 
+#include <cmath>
 #include <utility>
 
 #include "engine/field/seen_field.h"
@@ -18,12 +19,17 @@ engine::Result<engine::Version> transformedBy(const engine::Version& field,
     if (!piece) return piece;
     now = *std::move(piece);
   }
-  if (!options.turning.none()) {
-    auto turned = engine::turned(now, options.turning, job);
+  // Whole quarters need no new height.
+  const bool resamples = options.resample || std::fmod(options.angle_deg, 90.0) != 0.0;
+  engine::Turning turning = options.turning;
+  if (!resamples)
+    turning.quarters = ((turning.quarters + static_cast<int>(options.angle_deg / 90.0)) % 4 + 4) % 4;
+  if (!turning.none()) {
+    auto turned = engine::turned(now, turning, job);
     if (!turned) return turned;
     now = *std::move(turned);
   }
-  if (options.angle_deg == 0.0 && !options.resample) return now;
+  if (!resamples) return now;
   const engine::Grid& grid = now.grid();
   engine::ResampleOptions resampling;
   resampling.method = options.method;
@@ -52,6 +58,8 @@ void TransformTool::write(const LoopClient& client, const engine::SampleRect& se
     if (!original) return tl::unexpected(original.error());
     engine::ExportOptions writing;
     writing.original = *std::move(original);
+    writing.recipe = writing.steps =
+        "recipe = 1\n# Left out: what made the scan of step 0: the window transformed it\n";
     if (auto done = engine::exportField(*made, path, writing, job); !done)
       return tl::unexpected(done.error());
     return path;

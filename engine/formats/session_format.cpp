@@ -30,7 +30,8 @@ bool looksLikeSession(std::string_view head, std::string_view extension) {
 std::string stepsOfCommands(const Session& session) {
   const History& history = session.history;
   const auto steps = session.notes.find(kStepsNote);
-  if (steps == session.notes.end() || history.number() != 1 || history.first() != 0) return {};
+  if (steps == session.notes.end() || history.number() != 1 || history.last() != 1 || history.first() != 0)
+    return {};
   const StepInfo& only = history.info(1);
   return only.kind == StepKind::kImport && only.name == kByCommands ? steps->second : std::string();
 }

@@ -28,8 +28,8 @@ struct Shard {
 [[nodiscard]] RowSpan rowsRead(const Grid& grid, const RowSpan& own, const std::optional<FilterSpec>& filter,
                                bool lines) noexcept;
 
-/// Memory that a shard with such a band takes at its most, of the whole process [bytes]: an upper bound, which tests hold
-/// against processes of every filter. `threads` > 0.
+/// Memory that a shard with such a band takes at its most, of the whole process [bytes]: meant as an upper
+/// bound; a test holds it against a process that filters by a box. `threads` > 0.
 [[nodiscard]] std::uint64_t bandMemory(const Grid& grid, const RowSpan& own, const RowSpan& read,
                                        const std::optional<FilterSpec>& filter, int threads) noexcept;
 

@@ -74,11 +74,15 @@ def noise(array):
     return _SIGMA_OF_MEDIAN * float(np.array([prefix], np.uint64).view(np.float64)[0]) / _SIGMA_OF_MASK
 
 
-def _aligned(chunks, multiple):
-    """Sides of chunks of about the same size that begin at multiples."""
-    size = max(multiple, -(-max(chunks) // multiple) * multiple)
+def _aligned(chunks, multiple, least):
+    """Sides of chunks of about the same size that begin at multiples, none smaller than `least`, a multiple, but an only one."""
+    size = max(multiple, least, -(-max(chunks) // multiple) * multiple)
     total = sum(chunks)
-    return tuple(min(size, total - at) for at in range(0, total, size))
+    starts = list(range(0, total, size))
+    # Dask would move samples into a last chunk that is smaller, which then began elsewhere.
+    if len(starts) > 1 and total - starts[-1] < least:
+        starts.pop()
+    return tuple(end - start for start, end in zip(starts, [*starts[1:], total]))
 
 
 def filter(array, filter, *, spacing=1.0, unit="mm", height_unit=None, **options):
@@ -116,7 +120,7 @@ def filter(array, filter, *, spacing=1.0, unit="mm", height_unit=None, **options
     around = -(-reach // grid) * grid
     # Along an axis that is no longer than what lies around a chunk there is one chunk.
     depth = {axis: 0 if around >= side else around for axis, side in enumerate(array.shape)}
-    chunks = tuple(_aligned(array.chunks[axis], grid) if depth[axis] else (array.shape[axis],) for axis in (0, 1))
+    chunks = tuple(_aligned(array.chunks[axis], grid, depth[axis]) if depth[axis] else (array.shape[axis],) for axis in (0, 1))
     array = array.rechunk(chunks)
 
     def one(block):
@@ -125,7 +129,6 @@ def filter(array, filter, *, spacing=1.0, unit="mm", height_unit=None, **options
         field = _field.Field(block, spacing=(x, y), unit=unit, height_unit=height_unit or unit)
         return np.asarray(field.filter(filter, **options))
 
-    # A last chunk may be smaller than the depth: Dask then joins it to the one before.
     return da.overlap.map_overlap(
-        one, array, depth=depth, boundary="none", dtype=np.float32, meta=np.empty((0, 0), np.float32), allow_rechunk=True
+        one, array, depth=depth, boundary="none", dtype=np.float32, meta=np.empty((0, 0), np.float32), allow_rechunk=False
     )

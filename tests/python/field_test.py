@@ -11,6 +11,7 @@ import warnings
 import numpy as np
 
 import fettle
+import fettle.dask
 
 
 def hash_of(field):
@@ -435,6 +436,18 @@ class Suggested(unittest.TestCase):
         self.assertFalse(found["met"])
         with self.assertWarns(fettle.FettleWarning):
             found.apply()
+
+
+class Chunks(unittest.TestCase):
+    def test_begin_at_multiples_and_none_is_smaller_than_what_lies_around(self):
+        for chunks, multiple, least, expected in (
+            ((1024, 1024, 100), 256, 512, (1024, 1124)),
+            ((100,), 256, 512, (100,)),
+            ((300, 300, 300), 256, 512, (900,)),
+            ((1000, 1000), 256, 256, (1024, 976)),
+            ((5, 5, 1), 1, 1, (5, 5, 1)),
+        ):
+            self.assertEqual(fettle.dask._aligned(chunks, multiple, least), expected)
 
 
 if __name__ == "__main__":

@@ -126,6 +126,7 @@ Report settingsOf(const BandWork& work) {
     settings["reading"] = reading;
   if (work.writing.tiff_compression) settings["compress"] = static_cast<int>(*work.writing.tiff_compression);
   if (work.writing.cloud_optimised) settings["cloud-optimised"] = true;
+  if (work.writing.ascii) settings["ascii"] = true;
   return settings;
 }
 
@@ -482,8 +483,10 @@ engine::Result<ShardPlan> planBands(const BandWork& work, const PlanOptions& opt
     auto earlier = readPlan(folder.plan());
     if (earlier)
       plan->one_file = one_file == earlier->one_file.has_value() ? earlier->one_file : std::nullopt;
-    if (earlier && earlier->id() == plan->id()) return earlier;
-    if (!options.again)
+    const bool same = earlier && earlier->id() == plan->id();
+    // Once gathered the file that the shards wrote into is gone: the same plan begins again.
+    if (same && (!earlier->one_file || std::filesystem::exists(folder.whole(), error))) return earlier;
+    if (!same && !options.again)
       return engine::inputError("there is another plan for this output", folder.plan(),
                                 "gather its shards, remove the folder, or give --again");
     std::filesystem::remove_all(folder.path(), error);

@@ -168,9 +168,10 @@ engine::Result<engine::Grid> gridOf(const ShardFolder& folder, const ShardPlan& 
   return engine::failure("the plan has no rows", folder.plan());
 }
 
-// OUT of the shards' files; returns the hash.
-engine::Result<std::uint64_t> assemble(const ShardFolder& folder, const ShardPlan& plan,
-                                       const std::vector<Report>& shards, engine::JobControl& job) {
+// `out` of the shards' files: by its path from here, the plan's is that from where it was made. Returns the hash.
+engine::Result<std::uint64_t> assemble(const std::string& out, const ShardFolder& folder,
+                                       const ShardPlan& plan, const std::vector<Report>& shards,
+                                       engine::JobControl& job) {
   const auto grid = gridOf(folder, plan);
   if (!grid) return tl::unexpected(grid.error());
   if (writesPlainTiff(plan)) {
@@ -185,7 +186,7 @@ engine::Result<std::uint64_t> assemble(const ShardFolder& folder, const ShardPla
         },
         job);
     engine::Status done = hash ? rows->flush() : engine::Status(tl::unexpected(hash.error()));
-    if (done) done = moveOnto(folder.whole(), plan.out);
+    if (done) done = moveOnto(folder.whole(), out);
     std::error_code ignored;
     if (!done) {
       std::filesystem::remove(folder.whole(), ignored);
@@ -193,7 +194,7 @@ engine::Result<std::uint64_t> assemble(const ShardFolder& folder, const ShardPla
     }
     return hash;
   }
-  auto builder = engine::FieldBuilder::create(*grid, plan.out);
+  auto builder = engine::FieldBuilder::create(*grid, out);
   if (!builder) return tl::unexpected(builder.error());
   const auto hash = readAll(
       folder, plan, shards,
@@ -207,7 +208,8 @@ engine::Result<std::uint64_t> assemble(const ShardFolder& folder, const ShardPla
   if (plan.settings.contains("compress"))
     writing.tiff_compression = static_cast<engine::TiffCompression>(plan.settings["compress"].get<int>());
   writing.cloud_optimised = plan.settings.contains("cloud-optimised");
-  if (auto status = saveField(std::move(*builder).build(), plan.out, job, writing); !status)
+  writing.ascii = plan.settings.contains("ascii");
+  if (auto status = saveField(std::move(*builder).build(), out, job, writing); !status)
     return tl::unexpected(status.error());
   return hash;
 }
@@ -290,9 +292,6 @@ engine::Result<Report> gatherBands(const std::string& out, const GatherOptions& 
     return engine::failure(fmt::format("{} of {} shards {} not done: {}", missing.size(), plan->shards,
                                        missing.size() == 1 ? "is" : "are", numbersText(missing)),
                            folder.path(), remedyFor(*plan, missing));
-  if (total.samples == 0)
-    return engine::inputError("the file holds no valid height, every sample is no-data", plan->in,
-                              "check the file and --no-data");
   engine::Result<std::uint64_t> hash;
   if (!options.vrt.empty()) {
     hash = readAll(folder, *plan, shards, {}, job);
@@ -303,7 +302,7 @@ engine::Result<Report> gatherBands(const std::string& out, const GatherOptions& 
     if (hash)
       if (auto status = moveOnto(folder.whole(), out); !status) return tl::unexpected(status.error());
   } else {
-    hash = assemble(folder, *plan, shards, job);
+    hash = assemble(out, folder, *plan, shards, job);
   }
   if (!hash) return tl::unexpected(hash.error());
   if (options.vrt.empty() && !options.keep) {
@@ -316,7 +315,8 @@ engine::Result<Report> gatherBands(const std::string& out, const GatherOptions& 
   report.update({{"unit", plan->unit},
                  {"changed", total.changed},
                  {"max_change", total.max_change},
-                 {"rms_change", std::sqrt(total.squares / static_cast<double>(total.samples))},
+                 {"rms_change",
+                  total.samples > 0 ? std::sqrt(total.squares / static_cast<double>(total.samples)) : 0.0},
                  {"no_data", total.holes},
                  {"shard_seconds", total.seconds},
                  {"out", options.vrt.empty() ? out : options.vrt},
