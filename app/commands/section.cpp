@@ -201,7 +201,8 @@ engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArgumen
   }
   auto paths = pathsOf(options, scan.field, !planned.empty(), job);
   if (!paths) return tl::unexpected(paths.error());
-  for (Points& points : *paths) planned.push_back({std::move(points), options.width, options});
+  for (Points& points : *paths)
+    planned.push_back({std::move(points), options.width, static_cast<const SectionWants&>(options)});
   return planned;
 }
 

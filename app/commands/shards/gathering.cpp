@@ -179,7 +179,7 @@ engine::Result<std::uint64_t> assemble(const std::string& out, const ShardFolder
     if (!layout) return tl::unexpected(layout.error());
     auto rows = engine::PlainRows::open(folder.whole(), *layout);
     if (!rows) return tl::unexpected(rows.error());
-    const auto hash = readAll(
+    auto hash = readAll(
         folder, plan, shards,
         [&](std::int32_t row, std::int32_t count, const float* heights) {
           return rows->write(row, count, heights);
@@ -196,7 +196,7 @@ engine::Result<std::uint64_t> assemble(const std::string& out, const ShardFolder
   }
   auto builder = engine::FieldBuilder::create(*grid, out);
   if (!builder) return tl::unexpected(builder.error());
-  const auto hash = readAll(
+  auto hash = readAll(
       folder, plan, shards,
       [&](std::int32_t row, std::int32_t count, const float* heights) -> engine::Status {
         builder->writeHeights(0, row, plan.width, count, heights, plan.width);
