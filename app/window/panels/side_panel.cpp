@@ -49,13 +49,13 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
   if (section(settings, "Form", false)) formPanel(context, parts.form);
-  if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
-  if (section(settings, "Transform", false) && transformPanel(context, parts.transform))
-    parts.writeTransformed();
   if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(settings, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
   if (section(settings, "Section", false)) sectionPanel(context, parts.section);
+  if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
+  if (section(settings, "Transform", false) && transformPanel(context, parts.transform))
+    parts.writeTransformed();
   if (section(settings, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
   if (section(settings, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);

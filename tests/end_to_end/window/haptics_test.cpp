@@ -144,14 +144,15 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
     (void)user.click(header);
   (void)user.click("Haptics");
   EXPECT_EQ(program->now()["stiffness_n_per_mm"], 1.0);
-  EXPECT_TRUE(user.reads("6 N/mm at most")) << "next to the field";
+  EXPECT_TRUE(user.readsScrolled("6 N/mm at most")) << "next to the field";
   const State refused = user.enter("stiffness", "99999");
   EXPECT_EQ(refused["stiffness_n_per_mm"], 1.0) << "what was there stays";
   ASSERT_EQ(refused["notices"].size(), 1U) << refused["notices"];
   const std::string said = refused["notices"][0];
   EXPECT_NE(said.find("more than the simulated hand holds at 1000 Hz"), std::string::npos) << said;
   EXPECT_NE(said.find("99999 N/mm"), std::string::npos) << said;
-  EXPECT_TRUE(user.reads("at most 6")) << program->now()["texts"].dump();
+  EXPECT_TRUE(user.readsScrolled("simulated hand holds at 1000 Hz: at most 6"))
+      << program->now()["texts"].dump();
   user.tap("Understood");
   program->until("the panels without it", [](const State& s) {
     return s["notices"].empty() && s["texts"].dump().find("Understood") == std::string::npos;

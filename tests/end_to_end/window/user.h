@@ -48,6 +48,8 @@ class User {
   State rest(const std::string& what = "rest");
   /// Whether a text is on the panels.
   [[nodiscard]] bool reads(const std::string& text);
+  /// The same, after scrolling the panels as far as that takes.
+  [[nodiscard]] bool readsScrolled(const std::string& text) { return scrolledTo(text).has_value(); }
 
   /// The surface of the picture without the colour bar and the status line.
   [[nodiscard]] Part surface();
