@@ -21,6 +21,13 @@ Recipe noted(const std::string& note) {
   return unknown;
 }
 
+// With as much of the history as a session is opened with; what is older is named as left out.
+engine::Result<Recipe> recipeStored(const std::string& file, engine::JobControl& job) {
+  const auto session = loadSession(file, {}, job);
+  if (!session) return tl::unexpected(session.error());
+  return recipeOf(*session, job);
+}
+
 }  // namespace
 
 engine::Result<KnownSteps> KnownSteps::of(const engine::Imported& imported, const BatchTask& task,
@@ -33,13 +40,15 @@ engine::Result<KnownSteps> KnownSteps::of(const engine::Imported& imported, cons
   if (!imported.steps.empty()) {
     known.whole_ = noted(imported.steps);
   } else if (imported.format == "Fettle" && !isStream(task.in) && !in_memory && writesSession(task)) {
-    engine::SessionOpenOptions open;
-    open.history_bytes = engine::History::kNoBound;
-    const auto session = loadSession(task.in, open, job);
-    if (!session) return tl::unexpected(session.error());
-    auto recipe = recipeOf(*session, job);
-    if (!recipe) return tl::unexpected(recipe.error());
-    known.whole_ = *std::move(recipe);
+    auto recipe = recipeStored(task.in, job);
+    if (recipe) {
+      known.whole_ = *std::move(recipe);
+    } else if (recipe.error().kind == engine::ErrorKind::kCancelled) {
+      return tl::unexpected(recipe.error());
+    } else {
+      // The field was read, and the work on it does not need to know what was done before.
+      known.whole_.left_out.push_back("what was done before the last commands: " + recipe.error().line());
+    }
   } else {
     known.whole_.left_out.emplace_back(
         "what was done before the last commands: their input stored its result");

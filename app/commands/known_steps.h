@@ -17,7 +17,7 @@ class KnownSteps {
  public:
   /// Of a scan as it was read. A session on which the window worked is opened once more with its journal, where a session
   /// is to be written; of one from standard input or memory only what commands noted is known, and that the rest is
-  /// missing. Errors: those of loadSession, cancelled.
+  /// missing, and where history or journal cannot be read, this. Errors: cancelled.
   [[nodiscard]] static engine::Result<KnownSteps> of(const engine::Imported& imported, const BatchTask& task,
                                                      engine::JobControl& job);
 

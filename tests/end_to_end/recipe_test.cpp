@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -437,6 +438,66 @@ TEST(Recipes, StepsOfTheWindowFollowThoseOfCommands) {
         fettleJson({"apply", folder.file("next.toml"), scan, folder.file("o.fettle"), "--force"})["hash"],
         filled["hash"]);
   }
+}
+
+// A form that a command laid over a scan, and that the window took back, is no step of what came after.
+TEST(Recipes, AnUndoneFormOfACommandIsNoStep) {
+  const TempFolder folder;
+  const std::string session = folder.file("form.fettle"), worked = folder.file("undone.fettle");
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "96x80"}).status, 0);
+  ASSERT_EQ(fettle({"level", folder.file("s.tif"), session, "--layer", "put"}).status, 0);
+  EXPECT_EQ(fettleJson({"recipe", session})["steps"], 1);
+  engine::JobControl job;
+  auto made = engine::openSession(session, {}, engine::importField, job);
+  ASSERT_TRUE(made) << made.error().line();
+  ASSERT_TRUE(made->history.undo());
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kMedian;
+  spec.window = 5;
+  const auto filtered = engine::applyFilter(made->history.current(), made->original, spec, job);
+  ASSERT_TRUE(filtered);
+  addStep(*made, engine::StepKind::kFilter, filtered->field,
+          {R"({"do":"filter","id":1,"filter":"median","window":5,"passes":1,"marks":"keep"})",
+           R"({"do":"step","kind":"filter","name":"Median","state":1,"tick":9})"});
+  ASSERT_TRUE(engine::saveSession(*made, worked, job));
+  const auto recipe = fettleJson({"recipe", worked});
+  EXPECT_EQ(recipe["steps"], 1) << recipe;
+  EXPECT_EQ(recipe["recipe"].get<std::string>().find("layer"), std::string::npos) << recipe;
+}
+
+// A history that cannot be read costs what is known of it, not the work of a command.
+TEST(Recipes, ADamagedJournalIsSaidToBeMissingAndRefusesNoFilter) {
+  const TempFolder folder;
+  const std::string session = folder.file("s.fettle"), out = folder.file("o.fettle");
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "96x80"}).status, 0);
+  ASSERT_EQ(fettle({"convert", folder.file("s.tif"), session}).status, 0);
+  engine::JobControl job;
+  {
+    auto made = engine::openSession(session, {}, engine::importField, job);
+    ASSERT_TRUE(made) << made.error().line();
+    engine::FilterSpec spec;
+    spec.window = 3;
+    const auto filtered = engine::applyFilter(made->history.current(), made->original, spec, job);
+    ASSERT_TRUE(filtered);
+    addStep(*made, engine::StepKind::kFilter, filtered->field,
+            {R"({"do":"filter","id":1,"filter":"box","window":3,"passes":1,"marks":"keep"})",
+             R"({"do":"step","kind":"filter","name":"Box","state":1,"tick":9})"});
+    ASSERT_TRUE(engine::saveSession(*made, session, job));
+  }
+  std::fstream file(session, std::ios::in | std::ios::out | std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string row = R"("filter":"box","window":3)";
+  const std::size_t at = bytes.find(row);
+  ASSERT_NE(at, std::string::npos);
+  file.seekp(static_cast<std::streamoff>(at + row.size() - 1));
+  file.put('5');
+  file.close();
+  const Outcome filtered = fettle({"filter", session, out, "--filter", "median"});
+  ASSERT_EQ(filtered.status, 0) << filtered.err;
+  const auto recipe = fettleJson({"recipe", out});
+  EXPECT_EQ(recipe["steps"], 1) << recipe;
+  ASSERT_EQ(recipe["left_out"].size(), 1U) << recipe;
+  EXPECT_NE(recipe["left_out"][0].get<std::string>().find("what was done before"), std::string::npos);
 }
 
 TEST(Recipes, AWrongRecipeIsRefusedBeforeAScanIsRead) {
