@@ -111,6 +111,9 @@ class ScanReport {
   engine::Result<Report> write() {
     const auto extension = extensionOf();
     if (!extension) return tl::unexpected(extension.error());
+    // Before the work that the page would be lost with.
+    if (*extension == kPdf)
+      if (auto status = pdfIsPossible(); !status) return tl::unexpected(status.error());
     if (auto status = checkForm(options_.form); !status) return tl::unexpected(status.error());
     if (auto status =
             checkOutputs({{options_.out, OutputKind::kPage, *extension}},

@@ -14,7 +14,10 @@ class LoadedLibrary {
  public:
   LoadedLibrary(const char* file, const char* package)
       : file_(file), package_(package), handle_(dlopen(file, RTLD_NOW | RTLD_LOCAL)) {
-    if (handle_ == nullptr) missing_ = file;
+    // Also where the file is there and a library that it needs is not: the loader says which.
+    if (handle_ != nullptr) return;
+    const char* why = dlerror();
+    missing_ = why != nullptr ? why : fmt::format("{}: cannot be loaded", file);
   }
 
   // Also of the libraries that it needs itself.
@@ -22,11 +25,11 @@ class LoadedLibrary {
   void find(const char* name, Call& call) {
     if (handle_ == nullptr) return;
     call = reinterpret_cast<Call>(dlsym(handle_, name));
-    if (call == nullptr && missing_.empty()) missing_ = fmt::format("{} of {}", name, file_);
+    if (call == nullptr && missing_.empty()) missing_ = fmt::format("{}: it has no {}", file_, name);
   }
   [[nodiscard]] engine::Status status() const {
     if (missing_.empty()) return {};
-    return engine::failure(fmt::format("{} is missing, which a PDF is drawn with", missing_), "PDF",
+    return engine::failure(fmt::format("a PDF cannot be drawn: {}", missing_), "PDF",
                            fmt::format("install the package {}, or write .html", package_));
   }
 

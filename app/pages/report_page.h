@@ -50,4 +50,8 @@ struct ReportPage {
 /// Errors (kFailed): a picture or plot that cannot be read, no memory; a library that is not installed (cairo_calls.h). Thread: any.
 [[nodiscard]] engine::Result<std::string> reportPdf(const ReportPage& report);
 
+/// Whether the libraries that a PDF is drawn with are installed, to be asked before the work for one. Errors (kFailed): which is
+/// missing, and the package that has it.
+[[nodiscard]] engine::Status pdfIsPossible();
+
 }  // namespace fettle::app

@@ -99,6 +99,11 @@ struct SheetDrawing {
 
 }  // namespace
 
+engine::Status pdfIsPossible() {
+  const auto loaded = cairoCalls();
+  return loaded ? engine::Status() : tl::unexpected(loaded.error());
+}
+
 engine::Result<std::string> reportPdf(const ReportPage& report) {
   const auto loaded = cairoCalls();
   if (!loaded) return tl::unexpected(loaded.error());
