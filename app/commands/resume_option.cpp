@@ -45,10 +45,15 @@ engine::Status checkResume(const ResumeOptions& options, const std::vector<Batch
     if (options.resume && memoryPlace(task.out) != nullptr)
       return engine::inputError("work cannot be kept next to a result in memory", "--resume",
                                 "call the program fettle with files");
+    if (options.resume || isStream(task.out)) continue;
+    const std::string work = keptWorkOf(task.out), rounds = engine::KeptWork::roundsOf(work);
     std::error_code error;
-    if (!options.resume && !isStream(task.out) && std::filesystem::exists(keptWorkOf(task.out), error))
+    for (const std::string& file : {work, rounds}) {
+      if (!std::filesystem::exists(file, error)) continue;
       warn(fmt::format("{}: work of an earlier run is kept here and not used, give --resume to continue it",
-                       keptWorkOf(task.out)));
+                       file));
+      break;
+    }
   }
   return {};
 }

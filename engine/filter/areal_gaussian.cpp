@@ -130,8 +130,9 @@ Result<PassResult> robustGaussianPass(const Version& input, const Version& origi
   double limit = 0.0;
   int round = 0;
   const std::size_t bytes = now.z.size() * sizeof(now.z[0]);
-  const auto kept = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
-  if (kept && kept->numbers.size() == bytes) {
+  // Not held while the rounds run: it is as large as the field.
+  if (const auto kept = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
+      kept && kept->numbers.size() == bytes) {
     std::memcpy(now.z.data(), kept->numbers.data(), bytes);
     limit = kept->limit;
     round = kept->done;

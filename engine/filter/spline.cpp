@@ -296,8 +296,9 @@ Result<PassResult> robustSplinePass(const Version& input, const Version& origina
     SplineSurface filter(input, spec, std::min(tuning.level, bestCpuLevel()));
     double limit = 0.0;
     int round = 0;
-    const auto before = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
-    if (before && filter.takeNumbers(before->numbers)) {
+    // Not held while the rounds run: it is as large as the field.
+    if (const auto before = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
+        before && filter.takeNumbers(before->numbers)) {
       filter.copyTo(surface);
       limit = before->limit;
       round = before->done;

@@ -36,7 +36,7 @@ KeptWork::KeptWork(KeepOptions options, const WorkIdentity& identity, const Vers
       input_(input),
       tile_columns_(input.reader().tileColumns()),
       tile_rows_(input.reader().tileRows()),
-      rounds_(options_.path + ".rounds", identity_) {
+      rounds_(roundsOf(options_.path), identity_) {
   start_ = {0, input};
 }
 
@@ -47,7 +47,8 @@ Result<std::unique_ptr<KeptWork>> KeptWork::open(KeepOptions options, const Work
   if (there->there)
     if (const std::string word = identity.differsIn(there->identity); !word.empty())
       return inputError(fmt::format("the kept work is {}", whatDiffers(word)), options.path,
-                        "give the same command as before, or delete the file to begin from the beginning");
+                        "give the same command as before, or delete the file and its .rounds to begin from "
+                        "the beginning");
   std::unique_ptr<KeptWork> kept(new KeptWork(std::move(options), identity, input));
   if (there->bytes > 0)
     if (Status read = kept->read(); !read) return tl::unexpected(read.error());

@@ -47,6 +47,9 @@ class KeptWork final : public FilterWork {
   ~KeptWork() override;
   KeptWork& operator=(KeptWork&&) = delete;
 
+  /// Where the rounds of a robust filter are kept, beside the file of the other kept work.
+  [[nodiscard]] static std::string roundsOf(const std::string& path) { return path + ".rounds"; }
+
   /// Rounds of its pass that were there, where the filter has rounds.
   [[nodiscard]] int roundsAtStart() const noexcept { return rounds_at_start_; }
   /// Share of the whole work that the file held when it was opened, 0 .. 1.

@@ -137,6 +137,10 @@ TEST(ResumedRounds, ARobustFilterGoesOnAfterTheRoundThatWasKept) {
     command.insert(command.end(), {"--resume", "--resume-every", "0"});
     const Outcome cut = fettle(command, endedWith(out + ".resume.rounds", 1, SIGKILL));
     ASSERT_EQ(cut.status, 128 + SIGKILL) << cut.err;
+    // Also where nothing but rounds was kept.
+    const Outcome without = fettle({"filter", in, out, "--filter", "box"});
+    EXPECT_NE(without.err.find("give --resume to continue it"), std::string::npos) << without.err;
+    ASSERT_TRUE(fs::remove(out));
     const auto report = fettleJson(command);
     EXPECT_GT(report["resumed_rounds"], 0) << filter;
     EXPECT_EQ(bytesOf(out), bytesOf(folder.file("whole.tif"))) << filter;
