@@ -79,6 +79,12 @@ engine::Result<Segments> segmentsOf(const FeatureRun& options, const ScaleLimite
 // The number of its segment at each sample, from 1; a hole where there is none.
 engine::Result<engine::Version> labelled(const Segments& segments, const engine::Grid& of,
                                          engine::JobControl& job) {
+  // Labels are samples, and those are floats: above this, neighbours would share a number.
+  constexpr std::size_t kMostLabels = std::size_t{1} << std::numeric_limits<float>::digits;
+  if (segments.figures.size() > kMostLabels)
+    return engine::inputError(
+        fmt::format("{} segments, and a label has {} values", segments.figures.size(), kMostLabels),
+        "--labels", "give a larger --prune");
   engine::Grid grid = of;
   grid.height_per_count = 0.0;
   auto builder = engine::FieldBuilder::create(std::move(grid), "the labels");

@@ -115,8 +115,8 @@ class LoopClient final {
   /// it was worked out are kept. Not to be called while a filter is being adopted. False, and no step: too much changed
   /// since; it is to be moved to the newest field first.
   [[nodiscard]] bool changeForm(FormChange& change);
-  /// Changes heights as one step of kind kFilter: `changed` is what computeHeights makes of `base`, a version of the newest field. A filter that
-  /// is being adopted ends first. False, and no step: the field is no longer `base`, its heights are to be made again.
+  /// Changes heights as one step of kind kFilter: `changed` is what computeHeights makes of `base`, a version of the newest field. Not to be
+  /// called while a filter is being adopted. False, and no step: the field is no longer `base`, its heights are to be made again.
   [[nodiscard]] bool changeHeights(const engine::Version& base, const engine::Version& changed,
                                    std::string name, const haptic::HeightsMaker& maker);
   /// The strokes of tools that edit marks which ended since the last call, in their order; only where the session is

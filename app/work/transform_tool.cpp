@@ -67,8 +67,9 @@ void TransformTool::write(const LoopClient& client, const engine::SampleRect& se
 }
 
 std::optional<std::string> TransformTool::poll(std::vector<Notice>& notices) {
+  const bool dropped = working_.cancelling();
   auto done = working_.take();
-  if (!done) return std::nullopt;
+  if (!done || dropped) return std::nullopt;
   if (*done) return **std::move(done);
   if (done->error().kind != engine::ErrorKind::kCancelled)
     notices.push_back({done->error().line(), done->error().remedy});
