@@ -63,7 +63,7 @@ std::vector<Rolled> rolledScans() {
       {"reaches one sample", 70, 66, 0.1, 0.1, 0.1, holed},
       {"in samples", 150, 131, 1.0, 1.0, 7.0, holed},
       {"a multiple of the spacing", 90, 70, 0.1, 0.1, 0.3, holed},
-      {"flat ball", 150, 131, 0.1, 0.1, 400.0, holed},
+      {"flat ball", 130, 66, 0.1, 0.1, 400.0, holed},
       {"spacing 1:4", 140, 70, 0.25, 1.0, 5.5, holed},
       {"heights in micrometres", 140, 70, 0.01, 0.01, 0.2, [](int c, int r) { return 40.0 * holed(c, r); },
        1e-3},
@@ -73,7 +73,7 @@ std::vector<Rolled> rolledScans() {
          return c == 40 && r == 50 ? 1e6 : c == 60 && r == 20 ? -1e6 : 1e-3 * rough(c, r);
        }},
       {"beyond the field", 75, 66, 1.0, 1.0, 1e7, holed},
-      {"at once", 330, 40, 1.0, 1.0, 140.0, [](int c, int r) { return 200.0 * holed(c, r); }},
+      {"at once", 330, 24, 1.0, 1.0, 140.0, [](int c, int r) { return 200.0 * holed(c, r); }},
       {"one row", 300, 1, 1.0, 1.0, 11.0, holed},
       {"one column", 1, 300, 1.0, 1.0, 200.0, holed},
       {"one sample", 1, 1, 1.0, 1.0, 2.0, [](int, int) { return 5.0; }},
