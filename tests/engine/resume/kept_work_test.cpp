@@ -1,10 +1,12 @@
 #include "engine/resume/kept_work.h"
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -73,6 +75,9 @@ class CutAfter : public FilterWork {
     if (left_.fetch_sub(1) == 1) job_.cancel();
   }
   void addMade(std::vector<NewTile>& made) override { work_.addMade(made); }
+  std::optional<Rounds> roundsBefore() override { return work_.roundsBefore(); }
+  bool wantsRounds() override { return work_.wantsRounds(); }
+  void roundDone(const Rounds& rounds) override { work_.roundDone(rounds); }
 
  private:
   FilterWork& work_;
@@ -106,44 +111,52 @@ void leaveWork(const Version& scan, const FilterSpec& spec, const std::string& p
   ASSERT_FALSE(run(scan, spec, cut, job));
 }
 
-TEST(KeptWork, EveryFilterCutAnywhereWithAnyThreadsComesToTheBitsOfOneRun) {
+class CutAnywhere : public testing::TestWithParam<Filter> {};
+
+TEST_P(CutAnywhere, WithAnyThreadsComesToTheBitsOfOneRun) {
+  const Filter& filter = GetParam();
   std::mt19937 random(7);
-  for (const Filter& filter : filters()) {
-    // Nine squares of those that work in squares, thirty blocks of the others.
-    const bool squares = filter.grid > 1;
-    const Version scan = squares ? scanWithEverything(530, 520) : scanWithEverything(kWidth, kHeight);
-    const unsigned most = squares ? 3 : 12;
-    for (const int passes : {1, 3}) {
-      const TempFolder folder;
-      const std::string path = folder.file("work");
-      const Seen wanted = uninterrupted(scan, specFor(filter.kind, passes, 2));
-      int runs = 0;
-      double share = 0.0;
-      for (;; ++runs) {
-        ASSERT_LT(runs, 100) << filter.word;
-        const FilterSpec spec = specFor(filter.kind, passes, 1 + runs % 3);
-        JobControl job;
-        auto kept = openFor(scan, spec, at(path));
-        ASSERT_TRUE(kept) << kept.error().line();
-        EXPECT_EQ((*kept)->damagedBytes(), 0U);
-        EXPECT_GE((*kept)->shareAtStart(passes), share) << filter.word;
-        share = (*kept)->shareAtStart(passes);
-        CutAfter cut(**kept, job, 1 + static_cast<int>(random() % most));
-        const auto filtered = run(scan, spec, cut, job);
-        if (!filtered) {
-          ASSERT_EQ(filtered.error().kind, ErrorKind::kCancelled);
-          continue;
-        }
-        EXPECT_EQ(seen(*filtered), wanted) << filter.word << ", " << passes << " passes";
-        (*kept)->finish();
-        break;
+  // Nine squares of those that work in squares, thirty blocks of the others.
+  const bool squares = filter.grid > 1;
+  const Version scan = squares ? scanWithEverything(530, 520) : scanWithEverything(kWidth, kHeight);
+  const unsigned most = squares ? 3 : 12;
+  for (const int passes : {1, 3}) {
+    const TempFolder folder;
+    const std::string path = folder.file("work");
+    const Seen wanted = uninterrupted(scan, specFor(filter.kind, passes, 2));
+    int runs = 0;
+    double share = 0.0;
+    for (;; ++runs) {
+      ASSERT_LT(runs, 100);
+      const FilterSpec spec = specFor(filter.kind, passes, 1 + runs % 3);
+      JobControl job;
+      auto kept = openFor(scan, spec, at(path));
+      ASSERT_TRUE(kept) << kept.error().line();
+      EXPECT_EQ((*kept)->damagedBytes(), 0U);
+      EXPECT_GE((*kept)->shareAtStart(passes), share);
+      share = (*kept)->shareAtStart(passes);
+      CutAfter cut(**kept, job, 1 + static_cast<int>(random() % most));
+      const auto filtered = run(scan, spec, cut, job);
+      if (!filtered) {
+        ASSERT_EQ(filtered.error().kind, ErrorKind::kCancelled);
+        continue;
       }
-      EXPECT_GT(runs, 1) << filter.word;
-      EXPECT_GT(share, 0.2) << filter.word;
-      EXPECT_TRUE(fs::is_empty(folder.path()));
+      EXPECT_EQ(seen(*filtered), wanted) << passes << " passes";
+      (*kept)->finish();
+      break;
     }
+    EXPECT_GT(runs, 1);
+    EXPECT_GT(share, 0.2);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(KeptWork, CutAnywhere, testing::ValuesIn(filters().begin(), filters().end()),
+                         [](const auto& each) {
+                           std::string name(each.param.word);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
 
 TEST(KeptWork, ALimitOfChangeOnlyMarksAndAnInvertedScanContinueToo) {
   const Version scan = scanWithEverything(kWidth, kHeight);
