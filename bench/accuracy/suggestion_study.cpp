@@ -47,8 +47,14 @@ struct Close {
     ++all;
     within += std::abs(expected / left - 1.0) <= kClose ? 1 : 0;
   }
-  [[nodiscard]] double percent() const { return all > 0 ? 100.0 * within / all : 0.0; }
 };
+
+// A part without edges has no expectations near them.
+std::string sharesOf(const Close& flat, const Close& near) {
+  std::string text = fmt::format("{} of {} expectations for flats", flat.within, flat.all);
+  if (near.all > 0) text += fmt::format(" and {} of {} near edges", near.within, near.all);
+  return text;
+}
 
 engine::Result<engine::TruthFigures> leftBy(const engine::SimulatedScan& scan,
                                             const engine::FilterCandidate& candidate) {
@@ -221,14 +227,12 @@ engine::Result<Study> suggestionStudy(const AccuracyOptions& options, engine::Jo
       "method was chosen "
       "by. The filter that is named is that for a tolerance of {:g} um times the noise.",
       side, side, kFirstUnseen, kFirstUnseen + seeds - 1, 1e3 * kTolerance_mm);
-  study.answer = fmt::format(
-      "Of the filter that is named, {:.0f} % of the expectations for flats and {:.0f} % of those near edges "
-      "are within 10 % of what it leaves",
-      named_flat.percent(), named_near.percent());
+  study.answer = fmt::format("Of the filter that is named, {} are within 10 % of what it leaves",
+                             sharesOf(named_flat, named_near));
   if (all_flat.all + all_near.all > 0)
-    study.answer += fmt::format("; of {}, {:.0f} and {:.0f} %",
-                                options.methods.empty() ? "all that are tried" : "those that were chosen",
-                                all_flat.percent(), all_near.percent());
+    study.answer +=
+        fmt::format("; of {}, {}", options.methods.empty() ? "all that are tried" : "those that were chosen",
+                    sharesOf(all_flat, all_near));
   study.answer += ".";
   return study;
 }
