@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/files/input_file.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -57,6 +59,54 @@ Result<std::string> followLinks(const std::string& path) {
     target = next.is_absolute() ? next : target.parent_path() / next;
   }
   return writeError(path, ELOOP);
+}
+
+// What a final path leads to; refuses one that is no place for a file.
+Result<std::string> targetOf(const std::string& final_path) {
+  if (final_path.empty()) return inputError("no output file was named", {});
+  Result<std::string> target = followLinks(final_path);
+  if (!target) return target;
+  struct stat existing {};
+  if (stat(target->c_str(), &existing) == 0) {
+    if (S_ISDIR(existing.st_mode))
+      return inputError("the output is a folder", final_path, "name a file in it");
+    if (!S_ISREG(existing.st_mode))
+      return inputError("the output is not a regular file", final_path, "name a file");
+    // A rename would replace even a file that its owner has write-protected.
+    if (access(target->c_str(), W_OK) != 0) return writeError(final_path, errno);
+  } else if (errno != ENOENT) {
+    return writeError(final_path, errno);
+  }
+  if (!std::filesystem::path(*target).has_filename())
+    return inputError("the output is a folder", final_path, "name a file in it");
+  return target;
+}
+
+// Flushes a file, with the permissions of what it replaces, and renames it; the error number, 0 where it went well.
+int putInPlace(const std::string& file, const std::string& target) {
+  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  struct stat existing {};
+  const bool replaces = stat(target.c_str(), &existing) == 0;
+  if ((replaces && fchmod(descriptor, existing.st_mode & 07777) != 0) || fsync(descriptor) != 0) {
+    const int error = errno;
+    close(descriptor);
+    return error;
+  }
+  if (close(descriptor) != 0) return errno;
+  return rename(file.c_str(), target.c_str()) != 0 ? errno : 0;
+}
+
+// The directory entry must be flushed too, otherwise a power failure may remove the file. Some file systems
+// cannot flush a folder (EINVAL); there nothing safer is possible.
+Status flushFolderOf(const std::string& target, const std::string& final_path) {
+  const std::filesystem::path parent = std::filesystem::path(target).parent_path();
+  const int folder = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return {};
+  const int error = fsync(folder) != 0 ? errno : 0;
+  close(folder);
+  if (error != 0 && error != EINVAL) return writeError(final_path, error);
+  return {};
 }
 
 }  // namespace
@@ -114,23 +164,9 @@ void AtomicFile::discard() noexcept {
 }
 
 Result<AtomicFile> AtomicFile::create(const std::string& final_path) {
-  if (final_path.empty()) return inputError("no output file was named", {});
-  Result<std::string> target = followLinks(final_path);
+  Result<std::string> target = targetOf(final_path);
   if (!target) return tl::unexpected(target.error());
-  struct stat existing {};
-  if (stat(target->c_str(), &existing) == 0) {
-    if (S_ISDIR(existing.st_mode))
-      return inputError("the output is a folder", final_path, "name a file in it");
-    if (!S_ISREG(existing.st_mode))
-      return inputError("the output is not a regular file", final_path, "name a file");
-    // A rename would replace even a file that its owner has write-protected.
-    if (access(target->c_str(), W_OK) != 0) return writeError(final_path, errno);
-  } else if (errno != ENOENT) {
-    return writeError(final_path, errno);
-  }
   const std::filesystem::path as_path = *target;
-  if (!as_path.has_filename()) return inputError("the output is a folder", final_path, "name a file in it");
-
   std::random_device random;
   for (int attempt = 0; attempt < 100; ++attempt) {
     const std::string name =
@@ -163,34 +199,36 @@ Error AtomicFile::explained(Error error) const {
 }
 
 Status AtomicFile::commit() {
-  const auto refuse = [this](int error) {
+  // By its name: a library may have replaced the empty file by its own.
+  if (const int error = putInPlace(temporary_, target_); error != 0) {
     discard();
     return writeError(final_, error);
-  };
-  // Opened again: a library may have replaced the empty file by its own of that name.
-  const int descriptor = open(temporary_.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) return refuse(errno);
-  struct stat existing {};
-  const bool replaces = stat(target_.c_str(), &existing) == 0;
-  if ((replaces && fchmod(descriptor, existing.st_mode & 07777) != 0) || fsync(descriptor) != 0) {
-    const int error = errno;
-    close(descriptor);
-    return refuse(error);
   }
-  if (close(descriptor) != 0) return refuse(errno);
-  if (rename(temporary_.c_str(), target_.c_str()) != 0) return refuse(errno);
   temporary_.clear();
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+  return flushFolderOf(target_, final_);
+}
 
-  // The directory entry must be flushed too, otherwise a power failure may remove the file. Some file systems
-  // cannot flush a folder (EINVAL); there nothing safer is possible.
-  const std::filesystem::path parent = std::filesystem::path(target_).parent_path();
-  const int folder = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    const int error = fsync(folder) != 0 ? errno : 0;
-    close(folder);
-    if (error != 0 && error != EINVAL) return writeError(final_, error);
+Status replaceFile(const std::string& finished, const std::string& final_path) {
+  const Result<std::string> target = targetOf(final_path);
+  if (!target) return tl::unexpected(target.error());
+  const int error = putInPlace(finished, *target);
+  if (error == 0) return flushFolderOf(*target, final_path);
+  if (error != EXDEV) return writeError(final_path, error);
+  Result<InputFile> from = InputFile::open(finished);
+  if (!from) return tl::unexpected(from.error());
+  Result<AtomicFile> copy = AtomicFile::create(final_path);
+  if (!copy) return tl::unexpected(copy.error());
+  std::string bytes(TextWriter::kPiece, '\0');
+  for (std::uint64_t done = 0; done < from->size();) {
+    const auto got = from->read(done, bytes.data(), bytes.size());
+    if (!got) return tl::unexpected(got.error());
+    if (*got == 0) return inputError("the file ends before its size", finished);
+    if (Status status = copy->write({bytes.data(), *got}); !status) return status;
+    done += *got;
   }
+  if (Status status = copy->commit(); !status) return status;
+  unlink(finished.c_str());
   return {};
 }
 

@@ -57,6 +57,11 @@ class AtomicFile {
   int descriptor_ = -1;    // open on temporary_
 };
 
+/// Gives a finished file, whose samples are on the disk, the name of another, as AtomicFile does: links are followed, the one that is
+/// replaced leaves its permissions. Where a link leads to another disk the bytes are copied. On an error `finished` stays and the
+/// final path is untouched. Errors and thread as AtomicFile.
+[[nodiscard]] Status replaceFile(const std::string& finished, const std::string& final_path);
+
 /// Why a file could not be written, from the system's error number: kFailed for a full disk, a used-up quota,
 /// a limit on file sizes and a broken disk, kInput for a path that cannot be written.
 [[nodiscard]] tl::unexpected<Error> writeError(const std::string& path, int error);

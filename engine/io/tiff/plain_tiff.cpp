@@ -5,6 +5,7 @@
 #include <bit>
 #include <cerrno>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include <fcntl.h>
@@ -128,6 +129,14 @@ class Descriptor {
   int number_;
 };
 
+// Why open(2) failed: a file that is missing is to be made again, others are there, whatever refuses them.
+tl::unexpected<Error> cannotOpen(const std::string& path, const char* remedy_where_missing) {
+  const int error = errno;
+  if (error == ENOENT || error == ENOTDIR)
+    return inputError("the file is missing", path, remedy_where_missing);
+  return failure(fmt::format("the file cannot be opened: {}", std::generic_category().message(error)), path);
+}
+
 }  // namespace
 
 Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path) {
@@ -154,7 +163,11 @@ Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path) {
 
 Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t width, std::int32_t height) {
   const GdalSession gdal;
-  const std::unique_ptr<TIFF, CloseOutline> file(TIFFOpen(path.c_str(), "rm"));
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return cannotOpen(path, "do the shard again");
+  // libtiff closes what it has taken.
+  const std::unique_ptr<TIFF, CloseOutline> file(TIFFFdOpen(descriptor, path.c_str(), "rm"));
+  if (!file) ::close(descriptor);
   struct stat found {};
   std::uint32_t columns = 0, rows = 0;
   if (!file || fstat(TIFFFileno(file.get()), &found) != 0 ||
@@ -169,9 +182,7 @@ Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t widt
 
 Result<PlainRows> PlainRows::open(const std::string& path, const PlainLayout& layout) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0)
-    return inputError("the file that was made for all shards cannot be opened", path,
-                      "plan the work again: fettle plan");
+  if (descriptor < 0) return cannotOpen(path, "plan the work again: fettle plan");
   PlainRows rows(path, layout, descriptor);
   struct stat found {};
   if (fstat(descriptor, &found) != 0 || static_cast<std::uint64_t>(found.st_size) != layout.bytes)
@@ -210,7 +221,10 @@ Status PlainRows::read(std::int32_t row, std::int32_t rows, float* heights) cons
       const ssize_t got = pread(descriptor_, to + done, row_bytes - done,
                                 static_cast<off_t>(layout_.offsetOf(row + r) + done));
       if (got < 0 && errno == EINTR) continue;
-      if (got <= 0)
+      if (got < 0)
+        return failure(fmt::format("the samples cannot be read: {}", std::generic_category().message(errno)),
+                       path_);
+      if (got == 0)
         return inputError("the samples cannot be read", path_, "the file is cut short or damaged");
       done += static_cast<std::size_t>(got);
     }

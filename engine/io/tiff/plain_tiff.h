@@ -31,7 +31,8 @@ struct PlainLayout {
 /// known before anything is computed. A file of this path is replaced. Errors as exportField; nothing is left then.
 [[nodiscard]] Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path);
 
-/// The layout of a file that createPlainTiff() made for a field of these sides. Errors (kInput): another file.
+/// The layout of a file that createPlainTiff() made for a field of these sides. Errors: kInput, no such file
+/// or another one; kFailed, the system does not open it (too many open files).
 [[nodiscard]] Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t width,
                                                     std::int32_t height);
 
@@ -39,7 +40,7 @@ struct PlainLayout {
 /// write other rows meanwhile where the file system keeps bytes that do not overlap apart (keepsBytesApart).
 class PlainRows {
  public:
-  /// Errors (kInput): no such file, or it is not as long as the layout states.
+  /// Errors: kInput, no such file, or it is not as long as the layout states; kFailed, the system does not open it.
   [[nodiscard]] static Result<PlainRows> open(const std::string& path, const PlainLayout& layout);
   PlainRows(PlainRows&& other) noexcept
       : path_(std::move(other.path_)),
@@ -50,7 +51,7 @@ class PlainRows {
 
   /// Rows row, row + 1 .. of the field, whole ones, row-major without gaps [height_unit]. Errors as writeError().
   [[nodiscard]] Status write(std::int32_t row, std::int32_t rows, const float* heights);
-  /// The same samples back. Errors (kInput): the file ends before them.
+  /// The same samples back. Errors: kInput, the file ends before them; kFailed, the disk does not give them.
   [[nodiscard]] Status read(std::int32_t row, std::int32_t rows, float* heights) const;
   /// What was written is on the disk. Errors as writeError().
   [[nodiscard]] Status flush();

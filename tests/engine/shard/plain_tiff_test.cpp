@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "engine/formats/formats.h"
 #include "tests/engine/shard/shard_field.h"
@@ -62,6 +63,29 @@ TEST(PlainTiffFile, without_a_folder_or_of_another_size_is_an_error) {
   ASSERT_TRUE(layout);
   std::filesystem::resize_file(folder.file("cut.tif"), layout->bytes - 1);
   EXPECT_EQ(PlainRows::open(folder.file("cut.tif"), *layout).error().kind, ErrorKind::kInput);
+}
+
+TEST(PlainTiffFile, that_the_system_does_not_open_is_not_called_missing) {
+  const tests::TempFolder folder;
+  Grid grid;
+  grid.width = grid.height = 10;
+  const std::string path = folder.file("rows.tif");
+  const auto layout = createPlainTiff(grid, path);
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(PlainRows::open(folder.file("none.tif"), *layout).error().kind, ErrorKind::kInput);
+  EXPECT_EQ(layoutOfPlainTiff(folder.file("none.tif"), 10, 10).error().kind, ErrorKind::kInput);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit none = before;
+  none.rlim_cur = 0;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const auto rows = PlainRows::open(path, *layout);
+  const auto found = layoutOfPlainTiff(path, 10, 10);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  ASSERT_FALSE(rows);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(rows.error().kind, ErrorKind::kFailed) << rows.error().line();
+  EXPECT_EQ(found.error().kind, ErrorKind::kFailed) << found.error().line();
 }
 
 }  // namespace

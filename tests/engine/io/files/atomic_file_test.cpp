@@ -94,6 +94,35 @@ TEST(AtomicFile, ReplacingKeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(fs::status(folder.file("real.txt")).permissions(), fs::perms{0640});
 }
 
+TEST(AtomicFile, AFinishedFileReplacesAnotherAsOneThatIsWritten) {
+  const TempFolder folder;
+  fs::create_directory(folder.file("other"));
+  // A link to another disk: a rename does not reach it.
+  const bool two_disks = mount("tmpfs", folder.file("other").c_str(), "tmpfs", 0, "size=64k") == 0;
+  fs::create_symlink("other/real.txt", folder.file("link.txt"));
+  for (const char* content : {"first", "second"}) {
+    writeBytes(folder.file("finished"), content);
+    const Status status = replaceFile(folder.file("finished"), folder.file("link.txt"));
+    ASSERT_TRUE(status) << status.error().line();
+    EXPECT_TRUE(fs::is_symlink(folder.file("link.txt")));
+    EXPECT_EQ(readBytes(folder.file("other/real.txt")), content);
+    EXPECT_FALSE(fs::exists(folder.file("finished")));
+    if (std::string(content) == "second") {
+      EXPECT_EQ(fs::status(folder.file("other/real.txt")).permissions(), fs::perms{0640});
+    }
+    ASSERT_EQ(chmod(folder.file("other/real.txt").c_str(), 0640), 0);
+  }
+  // What cannot be replaced stays, and the finished file with it.
+  writeBytes(folder.file("finished"), std::string(100'000, 'x'));
+  const Status refused =
+      replaceFile(folder.file("finished"), two_disks ? folder.file("link.txt") : "/dev/full");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(readBytes(folder.file("other/real.txt")), "second");
+  EXPECT_EQ(filesIn(folder.file("other")), 1U);
+  EXPECT_TRUE(fs::exists(folder.file("finished")));
+  if (two_disks) umount(folder.file("other").c_str());
+}
+
 TEST(AtomicFile, ALongNameAndNoExtensionWork) {
   const TempFolder folder;
   const std::string name(255, 'x');
