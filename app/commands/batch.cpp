@@ -186,9 +186,9 @@ engine::Result<Report> runBatch(
     return tl::unexpected(
         engine::Error{engine::ErrorKind::kCancelled,
                       fmt::format("cancelled after {} of {}", done, counted(tasks.size(), "scan")), "",
-                      tasks.front().out.empty() ? ""
-                      : done == 0               ? "nothing was written"
-                                                : "the written files are complete"});
+                      tasks.empty() || tasks.front().out.empty() ? ""
+                      : done == 0                                ? "nothing was written"
+                                                                 : "the written files are complete"});
   return Report{{"done", done}, {"failed", failures.size()}, {"files", std::move(files)}};
 }
 

@@ -109,12 +109,12 @@ engine::Result<Report> convert(const ConvertArguments& options, const std::vecto
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) { return convertOne(options, task, j); };
   if (options.files.many()) {
-    const auto mine = tasksOfShard(*tasks, options.shards.shard);
+    const auto mine = ListShard::begin(*tasks, options.shards.shard,
+                                       options.estimate ? std::string() : options.files.out_dir, arguments);
     if (!mine) return tl::unexpected(mine.error());
-    auto report = runBatch(*mine, job, one);
-    if (!options.shards.shard.empty() && report && !options.estimate)
-      if (auto status = keepListReport(options.files.out_dir, options.shards.shard, *report); !status)
-        return tl::unexpected(status.error());
+    auto report = runBatch(mine->tasks(), job, one);
+    if (report)
+      if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());
     return report;
   }
   const ProgressLine progress(job);
@@ -167,7 +167,7 @@ void addPlanConvert(Command plan, Chosen& chosen) {
       [options, shards, &chosen](engine::JobControl& job) -> engine::Result<Report> {
         const auto work = convertedBandOf(*options);
         if (!work) return tl::unexpected(work.error());
-        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), 0, job);
+        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), {}, job);
         if (!planned) return tl::unexpected(planned.error());
         return reportOf(*planned);
       },

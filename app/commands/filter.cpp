@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -26,6 +26,7 @@
 #include "app/commands/shards/band_work.h"
 #include "app/commands/shards/list_shard.h"
 #include "app/commands/shards/plan.h"
+#include "app/commands/shell_word.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
@@ -254,27 +255,12 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   return report;
 }
 
-// The file and its options, quoted for a shell.
-std::string shellWord(const std::string& text) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("/._-+=:,@%").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
-  std::string out = "'";
-  for (const char c : text)
-    if (c == '\'')
-      out += "'\\''";
-    else
-      out += c;
-  return out + "'";
-}
-
 // The command line that runs a candidate.
-std::vector<std::string> commandsFor(const FilterArguments& options, const engine::FilterCandidate& c) {
+std::vector<std::string> commandsFor(const FilterArguments& options, const BatchTask& task,
+                                     const engine::FilterCandidate& c) {
   if (c.spec.window == 1) return {};
-  const std::string in = shellWord(options.files.files[0]);
-  const std::string out = options.files.files.size() > 1 ? shellWord(options.files.files[1]) : "OUT.tif";
+  const std::string in = quotedWord(task.in);
+  const std::string out = task.out.empty() ? "OUT.tif" : quotedWord(task.out);
   const std::string reading = scanOptionsText(options.reading);
   std::vector<std::string> commands;
   std::string filter = fmt::format("fettle filter {} {} --filter {}", in, out, engine::name(c.spec.kind));
@@ -284,10 +270,10 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const engin
   std::string keep = options.keep;
   if (c.around_edges) {
     commands.push_back(fmt::format("fettle mark {} marks.png --edges --thickness {}{}{}", in, c.thickness,
-                                   keep.empty() ? "" : " --add " + shellWord(keep), reading));
+                                   keep.empty() ? "" : " --add " + quotedWord(keep), reading));
     keep = "marks.png";
   }
-  if (!keep.empty()) filter += " --keep " + shellWord(keep);
+  if (!keep.empty()) filter += " --keep " + quotedWord(keep);
   if (options.threads != 0) filter += fmt::format(" --threads {}", options.threads);
   commands.push_back(filter + reading);
   return commands;
@@ -374,12 +360,14 @@ Report reportOf(const engine::FilterCandidate& c) {
           {"within", c.within}};
 }
 
-engine::Result<Report> suggest(const FilterArguments& options, engine::JobControl& job) {
+// Refuses what --suggest has no use for.
+engine::Status checkSuggest(const FilterArguments& options) {
   const auto refused = [](const char* option, const char* why) {
     return engine::inputError(fmt::format("--suggest cannot be used with {}", option), option, why);
   };
-  if (options.files.many() || options.files.files.size() > 2)
-    return refused("several scans", "give one scan, and optionally OUT, which is only named");
+  if (!options.files.many() && options.files.files.size() > 2)
+    return refused("several scans",
+                   "give one scan and optionally OUT, or several with --out-dir, which are only named");
   if (!options.filter.empty()) return refused("--filter", "the filter is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
   if (options.resume.resume) return refused("--resume", "nothing is filtered that could be kept");
@@ -400,13 +388,19 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
                               "give the allowed error, as 0.01 in the scan's unit or 10um");
   if (!filters && options.budget)
     return refused("--budget", "give --tolerance: without it only places are named");
-  if (!filters && options.files.files.size() > 1)
+  if (!filters && !options.files.many() && options.files.files.size() > 1)
     return refused("OUT", "give --tolerance: without it only places are named, and no command for OUT");
   if (options.compute == "gpu")
     return refused("--compute gpu",
                    "leave it out: filters are tried, and their time measured, on the processor");
-  const ProgressLine progress(job);
-  auto imported = loadScan(options.files.files[0], options.reading, job);
+  return {};
+}
+
+// Of one scan; `out` is named in the commands, and empty where none is known.
+engine::Result<Report> suggestOne(const FilterArguments& options, const BatchTask& task,
+                                  engine::JobControl& job) {
+  const bool filters = !options.tolerance.empty() || options.places == 0;
+  auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   auto marked = withMarks(imported->field, options.keep, job);
   if (!marked) return tl::unexpected(marked.error());
@@ -437,7 +431,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   trying.memory_each = 105.0;
   const PlannedWork planned{
       .field = field, .original = field, .steps = {trying}, .out = {}, .extension = {}, .writing = {}};
-  auto foreseen = foresee(planned, shownInput(options.files.files[0]), options.estimate, job);
+  auto foreseen = foresee(planned, shownInput(task.in), options.estimate, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
   const auto found = engine::suggestFilter(field, request, job);
@@ -445,7 +439,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   const std::string& unit = field.grid().height_unit.name;
   report.update({{"met", found->met()},
                  {"why", whyOf(*found, request, unit)},
-                 {"commands", commandsFor(options, found->picked())},
+                 {"commands", commandsFor(options, task, found->picked())},
                  {"unit", unit},
                  {"tolerance", request.tolerance},
                  {"budget", request.budget_s ? Report(*request.budget_s) : Report()},
@@ -456,6 +450,40 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
                  {"pick", reportOf(found->picked())}});
   report["candidates"] = Report::array();
   for (const engine::FilterCandidate& c : found->candidates) report["candidates"].push_back(reportOf(c));
+  return report;
+}
+
+// The part of a list that this process does; of an estimate no report is kept.
+engine::Result<ListShard> shardOf(const FilterArguments& options, const std::vector<BatchTask>& tasks,
+                                  const std::vector<std::string>& arguments) {
+  return ListShard::begin(tasks, options.shards.shard,
+                          options.estimate ? std::string() : options.files.out_dir, arguments);
+}
+
+engine::Result<Report> suggest(const FilterArguments& options, const std::vector<std::string>& arguments,
+                               engine::JobControl& job) {
+  if (auto status = checkSuggest(options); !status) return tl::unexpected(status.error());
+  if (!options.files.many()) {
+    const ProgressLine progress(job);
+    const std::vector<std::string>& files = options.files.files;
+    return suggestOne(options, {files[0], files.size() > 1 ? files[1] : std::string(), {}}, job);
+  }
+  const auto tasks = batchTasks(options.files, {options.keep}, job);
+  if (!tasks) return tl::unexpected(tasks.error());
+  const auto mine = shardOf(options, *tasks, arguments);
+  if (!mine) return tl::unexpected(mine.error());
+  // Outputs are named and not written.
+  std::map<std::string, std::string> outputs;
+  std::vector<BatchTask> reading;
+  for (const BatchTask& task : mine->tasks()) {
+    outputs[task.in] = task.out;
+    reading.push_back({task.in, {}, {}});
+  }
+  auto report = runBatch(reading, job, [&](const BatchTask& task, engine::JobControl& j) {
+    return suggestOne(options, {task.in, outputs[task.in], {}}, j);
+  });
+  if (report)
+    if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());
   return report;
 }
 
@@ -512,8 +540,9 @@ engine::Result<BandWork> bandWorkOf(const FilterArguments& options) {
                   .out = out};
 }
 
-engine::Result<Report> filterAll(const FilterArguments& options, engine::JobControl& job) {
-  if (options.suggest) return suggest(options, job);
+engine::Result<Report> filterAll(const FilterArguments& options, const std::vector<std::string>& arguments,
+                                 engine::JobControl& job) {
+  if (options.suggest) return suggest(options, arguments, job);
   if (options.filter.empty())
     return engine::inputError("no filter is named", "--filter", "give one, or use --suggest");
   if (options.places != 0) return engine::inputError("places are for --suggest", "--places", "add --suggest");
@@ -551,13 +580,12 @@ engine::Result<Report> filterAll(const FilterArguments& options, engine::JobCont
     return done;
   };
   if (options.files.many()) {
-    const auto mine = tasksOfShard(*tasks, options.shards.shard);
+    const auto mine = shardOf(options, *tasks, arguments);
     if (!mine) return tl::unexpected(mine.error());
-    auto report = runBatch(*mine, job, one);
-    if (report && !options.estimate) FinishedScans(options.resume.resume).end(*mine, *report);
-    if (!options.shards.shard.empty() && report && !options.estimate)
-      if (auto status = keepListReport(options.files.out_dir, options.shards.shard, *report); !status)
-        return tl::unexpected(status.error());
+    auto report = runBatch(mine->tasks(), job, one);
+    if (report && !options.estimate) FinishedScans(options.resume.resume).end(mine->tasks(), *report);
+    if (report)
+      if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());
     return report;
   }
   const ProgressLine progress(job);
@@ -574,11 +602,26 @@ engine::Result<Report> filter(const FilterArguments& options, const std::vector<
     return options.shards.in_turn ? runBandsInTurn(*work, options.shards, arguments, job)
                                   : runBand(*work, options.shards.shard, job);
   }
-  return filterAll(options, job);
+  return filterAll(options, arguments, job);
+}
+
+bool isSuggestion(const Report& report) {
+  return report.contains("commands") || report.contains("places");
 }
 
 void printFilter(const Report& report) {
   if (report.contains("text")) return printBatch(report);
+  if (report.contains("files") && std::ranges::any_of(report["files"], isSuggestion)) {
+    for (const Report& file : report["files"]) {
+      fmt::print("{}{}\n", file["in"].get<std::string>(), file.contains("error") ? "  failed\n" : "");
+      if (file.contains("error")) continue;
+      printFilter(file);
+      fmt::print("\n");
+    }
+    fmt::print("{} done, {} failed\n", report["done"].get<std::size_t>(),
+               report["failed"].get<std::size_t>());
+    return;
+  }
   const bool suggested = report.contains("commands"), places = report.contains("places");
   if (suggested) printSuggestion(report);
   if (suggested && places) fmt::print("\n");
@@ -678,7 +721,7 @@ void addFilterRows(Command command, const std::shared_ptr<FilterArguments>& opti
           {.name = "--suggest",
            .to = &options->suggest,
            .text = "Filter nothing: test filters on pieces of IN, print which one to use for --tolerance, "
-                   "why, and the command for it"},
+                   "why, and the command for it; with --out-dir for each scan"},
           {.name = "--tolerance",
            .to = &options->tolerance,
            .text = "Allowed root mean square error on flats and near edges, each separately",
@@ -730,7 +773,7 @@ void addPlanFilter(Command plan, Chosen& chosen) {
       [options, shards, &chosen](engine::JobControl& job) -> engine::Result<Report> {
         const auto work = bandWorkOf(*options);
         if (!work) return tl::unexpected(work.error());
-        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), 0, job);
+        const auto planned = planBands(*work, *shards, shardArguments(chosen.arguments), {}, job);
         if (!planned) return tl::unexpected(planned.error());
         return reportOf(*planned);
       },

@@ -17,6 +17,7 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/shards/list_shard.h"
+#include "app/commands/shards/shard_option.h"
 #include "app/commands/surface_curves.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
@@ -159,7 +160,8 @@ engine::Status writeCsv(const MeasureArguments& options, const Report& report, e
                  [&](const std::string& file) { return engine::writeFileAtomically(file, text); });
 }
 
-engine::Result<Report> measureAll(const MeasureArguments& options, engine::JobControl& job) {
+engine::Result<Report> measureAll(const MeasureArguments& options, const std::vector<std::string>& arguments,
+                                  engine::JobControl& job) {
   if (options.scans.size() == 1 && options.shard.empty()) {
     const ProgressLine progress(job);
     return measureOne(options, options.scans.front(), job);
@@ -167,18 +169,19 @@ engine::Result<Report> measureAll(const MeasureArguments& options, engine::JobCo
   std::vector<BatchTask> tasks;
   tasks.reserve(options.scans.size());
   for (const std::string& scan : options.scans) tasks.push_back({scan, {}, {}});
-  const auto mine = tasksOfShard(tasks, options.shard);
+  const auto mine = ListShard::begin(tasks, options.shard,
+                                     options.estimate ? std::string() : options.shard_folder, arguments);
   if (!mine) return tl::unexpected(mine.error());
-  auto report = runBatch(*mine, job, [&](const BatchTask& task, engine::JobControl& j) {
+  auto report = runBatch(mine->tasks(), job, [&](const BatchTask& task, engine::JobControl& j) {
     return measureOne(options, task.in, j);
   });
-  if (report && !options.shard.empty())
-    if (auto status = keepListReport(options.shard_folder, options.shard, *report); !status)
-      return tl::unexpected(status.error());
+  if (report)
+    if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());
   return report;
 }
 
-engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
+engine::Result<Report> measure(const MeasureArguments& options, const std::vector<std::string>& arguments,
+                               engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   const bool functional =
       options.groups.empty() || std::ranges::find(options.groups, "functional") != options.groups.end();
@@ -186,10 +189,8 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
     return engine::inputError("no material ratios are measured without the functional parameters",
                               options.at_heights.empty() ? "--at-ratio" : "--at-height",
                               "add functional to --only");
-  if (options.shard.empty() != options.shard_folder.empty())
-    return engine::inputError("a share of the scans has a report of its own",
-                              options.shard.empty() ? "--shard" : "--shard-dir",
-                              "give both --shard K/N and --shard-dir FOLDER");
+  if (auto status = checkListShard(options.shard, options.shard_folder); !status)
+    return tl::unexpected(status.error());
   // Two inputs cannot both be standard input.
   std::vector<std::string> inputs = options.scans;
   inputs.push_back(options.form.marks);
@@ -199,7 +200,7 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
   outputs.push_back({options.csv, OutputKind::kText, ".csv"});
   if (auto status = checkOutputs(outputs, inputs, Replacing::kNoWork, job); !status)
     return tl::unexpected(status.error());
-  auto report = measureAll(options, job);
+  auto report = measureAll(options, arguments, job);
   if (!report) return report;
   if (options.estimate) return report;
   if (auto status = writeCsv(options, *report, job); !status) return tl::unexpected(status.error());
@@ -237,8 +238,8 @@ void addMeasure(Command root, Chosen& chosen) {
   auto options = std::make_shared<MeasureArguments>();
   Command command = addCommand(
       root, chosen, "measure", "Surface texture parameters of ISO 25178-2, about a form",
-      [options](engine::JobControl& job) { return measure(*options, job); }, printMeasured, Progress::kOwn,
-      batchStatus);
+      [options, &chosen](engine::JobControl& job) { return measure(*options, chosen.arguments, job); },
+      printMeasured, Progress::kOwn, batchStatus);
   command.add({{.name = "SCAN",
                 .to = &options->scans,
                 .text = "The scan, or several, each with a report of its own; - for standard input",
@@ -273,18 +274,7 @@ void addMeasure(Command root, Chosen& chosen) {
   addCurveOptions(command, options->curves);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
-  command.add(
-      {{.name = "--shard",
-        .to = &options->shard,
-        .text =
-            "Of several scans measure one of N shares alone, K of N from 1 on. auto: as Slurm's array, srun "
-            "or mpirun says",
-        .shown = "K/N"},
-       {.name = "--shard-dir",
-        .to = &options->shard_folder,
-        .text = "With --shard: where its report goes, for fettle gather",
-        .kind = ValueKind::kFolder}},
-      "Shards");
+  addListShardOptions(command, options->shard, options->shard_folder);
   addScanOptions(command, options->reading);
   command.notes(
       "No S- or L-filter is applied unless named. At borders and holes their weights are normalised. Ratios "

@@ -30,6 +30,7 @@ Keys planned() {
           {"id", "string", "hash of the keys above"},
           {"arguments", "[string]", "of a shard, without --shard"},
           {"folder", "string", "that these were typed in"},
+          {"threads", "integer", "of a shard, for which the next two are foreseen"},
           {"seconds_per_shard", "number", "foreseen on this machine, of the largest; 0: not foreseen"},
           {"memory_per_shard", "integer", "bytes, at most"}};
 }
@@ -90,6 +91,7 @@ std::vector<ReportSchema> sharing() {
            {{"the shards of one scan", gathered()},
             {"those of a list; of one alone in its file",
              {{"shard?", "integer", "of its file"},
+              {"work?", "string", "of its file: hash of the command and its list"},
               {"shards", "integer", ""},
               {"done", "integer", "scans"},
               {"failed", "integer", "scans"},
@@ -115,6 +117,7 @@ std::vector<ReportSchema> sharing() {
            {{"",
              {{"engine", "string", "slurm, mpi or local"},
               {"shards", "integer", ""},
+              {"threads", "integer", "of a shard"},
               {"memory_per_shard", "integer", "bytes"},
               {"seconds_per_shard", "number", ""},
               {"script", "string", "of the shell"},

@@ -51,14 +51,13 @@ RowSpan rowsRead(const Grid& grid, const RowSpan& own, const std::optional<Filte
 
 std::uint64_t bandMemory(const Grid& grid, const RowSpan& own, const RowSpan& read,
                          const std::optional<FilterSpec>& filter, int threads) noexcept {
-  // The program with its libraries, 8 MB of a reader and as much scratch for each thread, and rows on their way out.
-  constexpr double kProgram = 72e6, kThread = 24e6;
-  constexpr double kField = 4.5;  // bytes per sample of tiles and their nodes
+  // The program with its libraries, and rows on their way out.
+  constexpr double kProgram = 72e6;
   const double samples = static_cast<double>(grid.width) * read.count;
-  double bytes = kProgram + kThread * threads + kField * samples;
+  double bytes = kProgram + kBandThreadBytes * threads + kFieldBytes * samples;
   if (filter) {
     // What changes is there beside what was, of several passes twice.
-    bytes += kField * samples * (filter->passes > 1 ? 2.0 : 1.0);
+    bytes += kFieldBytes * samples * (filter->passes > 1 ? 2.0 : 1.0);
     // Sums at nodes, or heights of the whole band around large bodies.
     if (separatesScales(filterOf(filter->kind))) bytes += 16.0 * samples;
   }

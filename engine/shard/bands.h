@@ -28,6 +28,11 @@ struct Shard {
 [[nodiscard]] RowSpan rowsRead(const Grid& grid, const RowSpan& own, const std::optional<FilterSpec>& filter,
                                bool lines) noexcept;
 
+/// Of a sample in memory with its share of tiles and their nodes [bytes].
+inline constexpr double kFieldBytes = 4.5;
+/// That each thread of a shard takes: 8 MB of a reader, and scratch [bytes].
+inline constexpr double kBandThreadBytes = 24e6;
+
 /// Memory that a shard with such a band takes at its most, of the whole process [bytes]: meant as an upper
 /// bound; a test holds it against a process that filters by a box. `threads` > 0.
 [[nodiscard]] std::uint64_t bandMemory(const Grid& grid, const RowSpan& own, const RowSpan& read,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,13 +27,20 @@ struct BandWork {
   std::string in{}, out{};
 };
 
+/// Memory of bands that one process works on one after another [bytes].
+struct TurnMemory {
+  std::uint64_t most = 0;   ///< of which no band, and no reading, takes more
+  std::uint64_t keeps = 0;  ///< bands of an earlier run are kept that take this or less
+};
+
 /// Finds what is global of a field - its grid, the noise's range, a limit in its unit -, makes what the shards write to and
-/// writes the plan. The same plan again changes nothing. `arguments`: of the program as typed. `memory`: 0, or of which no
-/// reading takes more. Errors: a filter that needs the whole field with more than one shard, an OUT that cannot be put
-/// together, another plan for it; of reading and writing.
+/// writes the plan. The same plan again changes nothing. `arguments`: of the program as typed. `memory`: the bands
+/// are worked on in turn, in so many as it needs; a plan of such an earlier run is replaced where its bands cannot be kept. Errors: a filter that needs the whole field with more than one shard, an OUT that cannot be put
+/// together, another plan for it; with `memory` an OUT that is no plain TIFF; of reading and writing.
 [[nodiscard]] engine::Result<ShardPlan> planBands(const BandWork& work, const PlanOptions& options,
                                                   const std::vector<std::string>& arguments,
-                                                  std::uint64_t memory, engine::JobControl& job);
+                                                  const std::optional<TurnMemory>& memory,
+                                                  engine::JobControl& job);
 
 /// Does one shard as it was planned. One that is done already is not done again. Its rows are whole on the disk before its report is.
 /// Errors: no plan, or one for other options or another input; as the command.

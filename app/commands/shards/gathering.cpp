@@ -9,14 +9,13 @@
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/shards/vrt_text.h"
+#include "app/commands/shell_word.h"
 #include "app/terminal.h"
 #include "engine/field/builder.h"
 #include "engine/field/content_hash.h"
@@ -83,8 +82,8 @@ struct Total {
 };
 
 std::string remedyFor(const ShardPlan& plan, const std::vector<int>& numbers) {
-  std::string command = "fettle";
-  for (const std::string& word : plan.arguments) (command += ' ') += word;
+  const std::string command = fettleCommand(plan.arguments);
+  if (plan.inTurn()) return fmt::format("the same command continues: {}", command);
   return fmt::format("run {}: {} --shard {}/{}", numbers.size() == 1 ? "it" : "them", command,
                      numbers.size() == 1 ? std::to_string(numbers.front()) : std::string("K"), plan.shards);
 }
@@ -103,6 +102,8 @@ engine::Result<std::uint64_t> readAll(const ShardFolder& folder, const ShardPlan
     if (own.count == 0) continue;
     const auto rows = ShardRows::open(folder, plan, k, own);
     if (!rows) {
+      // Rows that the system does not give now are no damage.
+      if (rows.error().kind == engine::ErrorKind::kFailed) return tl::unexpected(rows.error());
       damaged.push_back(k);
       continue;
     }
@@ -112,6 +113,8 @@ engine::Result<std::uint64_t> readAll(const ShardFolder& folder, const ShardPlan
       if (job.cancelled()) return engine::cancelled();
       const std::int32_t now = std::min(engine::kTileSide, own.end() - row);
       readable = rows->read(row, now, heights.data());
+      if (!readable && readable.error().kind == engine::ErrorKind::kFailed)
+        return tl::unexpected(readable.error());
       if (!readable) break;
       for (std::int32_t r = 0; r < now; ++r) {
         const float* const of_row = heights.data() + static_cast<std::size_t>(r) * row_samples;
@@ -134,38 +137,23 @@ engine::Result<std::uint64_t> readAll(const ShardFolder& folder, const ShardPlan
                          folder.path(), remedyFor(plan, damaged));
 }
 
-engine::Status moveOnto(const std::string& from, const std::string& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (error) return engine::writeError(to, error.value());
-  const std::string parent = std::filesystem::path(to).parent_path().string();
-  if (const int folder = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      folder >= 0) {
-    (void)::fsync(folder);
-    ::close(folder);
-  }
-  return {};
-}
-
-bool writesPlainTiff(const ShardPlan& plan) {
-  const std::string extension = engine::extensionOf(plan.out);
-  return (extension == ".tif" || extension == ".tiff") && !plan.settings.contains("cloud-optimised") &&
-         plan.settings.value("compress", 0) == 0;
-}
-
-// The grid of the result: that of the first shard's file that has rows, at the place of the whole.
+// The grid of the result: that of the first shard's file that can be read, at the place of the whole. One that cannot is found
+// damaged when its rows are read.
 engine::Result<engine::Grid> gridOf(const ShardFolder& folder, const ShardPlan& plan) {
+  engine::Error error;
   for (int k = 1; k <= plan.shards; ++k) {
     const RowSpan own = engine::bandOf(sidesOf(plan), {k, plan.shards});
     if (own.count == 0) continue;
     const auto grid = engine::importGrid(folder.rows(k), {});
-    if (!grid) return tl::unexpected(grid.error());
+    if (!grid) error = grid.error();
+    if (!grid || !*grid) continue;
     engine::Grid whole = **grid;
     whole.height = plan.height;
     whole.origin_y -= own.first * whole.spacing_y;
     return whole;
   }
-  return engine::failure("the plan has no rows", folder.plan());
+  if (!error.what.empty()) return tl::unexpected(error);
+  return engine::failure("no shard has a file with rows", folder.path(), "do the shards again");
 }
 
 // `out` of the shards' files: by its path from here, the plan's is that from where it was made. Returns the hash.
@@ -174,7 +162,7 @@ engine::Result<std::uint64_t> assemble(const std::string& out, const ShardFolder
                                        engine::JobControl& job) {
   const auto grid = gridOf(folder, plan);
   if (!grid) return tl::unexpected(grid.error());
-  if (writesPlainTiff(plan)) {
+  if (writesPlainTiff(plan.out, plan.settings)) {
     const auto layout = engine::createPlainTiff(*grid, folder.whole());
     if (!layout) return tl::unexpected(layout.error());
     auto rows = engine::PlainRows::open(folder.whole(), *layout);
@@ -186,7 +174,7 @@ engine::Result<std::uint64_t> assemble(const std::string& out, const ShardFolder
         },
         job);
     engine::Status done = hash ? rows->flush() : engine::Status(tl::unexpected(hash.error()));
-    if (done) done = moveOnto(folder.whole(), out);
+    if (done) done = engine::replaceFile(folder.whole(), out);
     std::error_code ignored;
     if (!done) {
       std::filesystem::remove(folder.whole(), ignored);
@@ -300,7 +288,8 @@ engine::Result<Report> gatherBands(const std::string& out, const GatherOptions& 
   } else if (plan->one_file) {
     hash = readAll(folder, *plan, shards, {}, job);
     if (hash)
-      if (auto status = moveOnto(folder.whole(), out); !status) return tl::unexpected(status.error());
+      if (auto status = engine::replaceFile(folder.whole(), out); !status)
+        return tl::unexpected(status.error());
   } else {
     hash = assemble(out, folder, *plan, shards, job);
   }

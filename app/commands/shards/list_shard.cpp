@@ -11,34 +11,53 @@
 
 #include "app/commands/shards/gathering.h"
 #include "app/commands/shards/launcher.h"
+#include "app/commands/shards/shard_plan.h"
+#include "app/commands/shell_word.h"
 #include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
 
-engine::Result<std::vector<BatchTask>> tasksOfShard(const std::vector<BatchTask>& tasks,
-                                                    const std::string& shard) {
-  if (shard.empty()) return tasks;
-  const auto chosen = parseShard(shard, 0, variableOfProcess);
+engine::Result<ListShard> ListShard::begin(const std::vector<BatchTask>& tasks, const std::string& typed,
+                                           const std::string& folder,
+                                           const std::vector<std::string>& arguments) {
+  ListShard mine;
+  if (typed.empty()) {
+    mine.tasks_ = tasks;
+    return mine;
+  }
+  const auto chosen = parseShard(typed, 0, variableOfProcess);
   if (!chosen) return tl::unexpected(chosen.error());
-  std::vector<BatchTask> mine;
-  for (std::size_t i = static_cast<std::size_t>(chosen->number - 1); i < tasks.size();
+  mine.shard_ = *chosen;
+  for (auto i = static_cast<std::size_t>(chosen->number - 1); i < tasks.size();
        i += static_cast<std::size_t>(chosen->count))
-    mine.push_back(tasks[i]);
+    mine.tasks_.push_back(tasks[i]);
+  if (folder.empty()) return mine;
+  // What does not change a result, and where the program lies, may differ between machines.
+  const std::vector<std::string> words =
+      wordsWithout(arguments, {"--json", "-q", "--quiet", "--force", "--resume"}, {"--shard", "--threads"});
+  std::string work;
+  for (std::size_t i = 1; i < words.size(); ++i) (work += words[i]) += '\n';
+  mine.work_ = hashOfText(work);
+  mine.file_ =
+      (std::filesystem::path(folder) / "shards" / fmt::format("{}-of-{}.json", chosen->number, chosen->count))
+          .string();
+  std::error_code error;
+  std::filesystem::remove(mine.file_, error);
+  if (error) return engine::writeError(mine.file_, error.value());
   return mine;
 }
 
-engine::Status keepListReport(const std::string& folder, const std::string& shard, const Report& report) {
-  const auto chosen = parseShard(shard, 0, variableOfProcess);
-  if (!chosen) return tl::unexpected(chosen.error());
-  const std::filesystem::path shards = std::filesystem::path(folder) / "shards";
+engine::Status ListShard::keep(const Report& report) const {
+  if (file_.empty()) return {};
+  const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
   std::error_code error;
-  std::filesystem::create_directories(shards, error);
-  if (error) return engine::writeError(shards.string(), error.value());
-  Report file{{"schema", "fettle.gather/1"}, {"shard", chosen->number}, {"shards", chosen->count}};
+  std::filesystem::create_directories(folder, error);
+  if (error) return engine::writeError(folder.string(), error.value());
+  Report file{
+      {"schema", "fettle.gather/1"}, {"shard", shard_.number}, {"shards", shard_.count}, {"work", work_}};
   file.update(report);
-  return engine::writeFileAtomically(
-      (shards / fmt::format("{}-of-{}.json", chosen->number, chosen->count)).string(),
-      file.dump(1, ' ', false, Report::error_handler_t::replace) + "\n");
+  return engine::writeFileAtomically(file_,
+                                     file.dump(1, ' ', false, Report::error_handler_t::replace) + "\n");
 }
 
 bool isListFolder(const std::string& folder) {
@@ -56,7 +75,8 @@ engine::Result<Report> gatherList(const std::string& folder) {
     std::ifstream file(entry.path());
     Report report = Report::parse(file, nullptr, false);
     if (!report.is_object() || !report.value("shard", Report()).is_number_integer() ||
-        !report.value("shards", Report()).is_number_integer() || !report.value("files", Report()).is_array())
+        !report.value("shards", Report()).is_number_integer() ||
+        !report.value("work", Report()).is_string() || !report.value("files", Report()).is_array())
       return engine::failure("this is not the report of a shard", entry.path().string(),
                              "do the shard again, or remove the file");
     if (count && *count != report["shards"])
@@ -76,6 +96,12 @@ engine::Result<Report> gatherList(const std::string& folder) {
     return engine::failure(fmt::format("{} of {} shards {} not done: {}", missing.size(), *count,
                                        missing.size() == 1 ? "is" : "are", numbersText(missing)),
                            shards.string(), "run the same command with --shard K/N for them");
+  for (const auto& [k, report] : found)
+    if (report["work"] != found.begin()->second["work"])
+      return engine::failure(
+          fmt::format("shard {} was done by another command, or of another list, than shard {}", k,
+                      found.begin()->first),
+          shards.string(), "do the shards of the earlier command again by the later one");
   Report files = Report::array();
   std::size_t failed = 0;
   // Every count-th scan is of one shard: taken in turn they have the order of the list.

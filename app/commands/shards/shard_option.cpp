@@ -37,6 +37,27 @@ void addShardOptions(Command command, ShardOptions& options) {
       kLongWork);
 }
 
+void addListShardOptions(Command command, std::string& shard, std::string& folder) {
+  command.add(
+      {{.name = "--shard",
+        .to = &shard,
+        .text = "Of several scans do one of N shares alone, K of N from 1 on. auto: as Slurm's array, "
+                "srun or mpirun says",
+        .shown = "K/N"},
+       {.name = "--shard-dir",
+        .to = &folder,
+        .text = "With --shard: where its report goes, for fettle gather",
+        .kind = ValueKind::kFolder}},
+      "Shards");
+}
+
+engine::Status checkListShard(const std::string& shard, const std::string& folder) {
+  if (shard.empty() == folder.empty()) return {};
+  return engine::inputError("a share of the scans has a report of its own",
+                            shard.empty() ? "--shard" : "--shard-dir",
+                            "give both --shard K/N and --shard-dir FOLDER");
+}
+
 void addPlanOptions(Command command, PlanOptions& options) {
   command.add(
       {{.name = "--shards",

@@ -15,6 +15,11 @@ struct ShardOptions {
 };
 void addShardOptions(Command command, ShardOptions& options);
 
+/// Options of commands that only read: of several scans a share, and where its report goes.
+void addListShardOptions(Command command, std::string& shard, std::string& folder);
+/// Refuses one of them without the other.
+[[nodiscard]] engine::Status checkListShard(const std::string& shard, const std::string& folder);
+
 /// Of `fettle plan`.
 struct PlanOptions {
   int shards = 0;

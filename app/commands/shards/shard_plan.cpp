@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/export.h"
 #include "engine/io/files/input_file.h"
 #include "engine/resume/work_identity.h"
 
@@ -54,9 +55,22 @@ Report identifying(const ShardPlan& plan) {
 
 }  // namespace
 
-std::string ShardPlan::id() const {
-  const std::string text = identifying(*this).dump(-1, ' ', false, Report::error_handler_t::replace);
+std::string hashOfText(const std::string& text) {
   return fmt::format("{:016x}", fnv(kFnvStart, text.data(), text.size()));
+}
+
+std::string ShardPlan::id() const {
+  return hashOfText(identifying(*this).dump(-1, ' ', false, Report::error_handler_t::replace));
+}
+
+bool ShardPlan::inTurn() const {
+  return std::ranges::find(arguments, "--shards-in-turn") != arguments.end();
+}
+
+bool writesPlainTiff(const std::string& out, const Report& settings) {
+  const std::string extension = engine::extensionOf(out);
+  return (extension == ".tif" || extension == ".tiff") && !settings.contains("cloud-optimised") &&
+         settings.value("compress", 0) == static_cast<int>(engine::TiffCompression::kNone);
 }
 
 std::string planSchema(const std::string& command) {
@@ -70,6 +84,7 @@ Report reportOf(const ShardPlan& plan) {
   report["folder"] = plan.folder;
   report["seconds_per_shard"] = plan.seconds;
   report["memory_per_shard"] = plan.memory_bytes;
+  report["threads"] = plan.threads;
   return report;
 }
 
@@ -111,8 +126,10 @@ engine::Result<ShardPlan> readPlan(const std::string& path) {
                               report.at("file_bytes").get<std::uint64_t>()};
     plan.seconds = report.at("seconds_per_shard");
     plan.memory_bytes = report.at("memory_per_shard");
+    plan.threads = report.at("threads");
     if (plan.id() != report.at("id")) return refused("the plan is damaged");
-    if (plan.shards < 1 || plan.shards > engine::Grid::kMaxSide || plan.width < 1 || plan.height < 1)
+    if (plan.threads < 1 || plan.shards < 1 || plan.shards > engine::Grid::kMaxSide || plan.width < 1 ||
+        plan.height < 1)
       return refused("the plan is damaged");
     if (plan.revision != engine::kFilterRevision)
       return refused("the plan is of a version of fettle whose filters have other results");

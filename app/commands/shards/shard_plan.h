@@ -32,11 +32,17 @@ struct ShardPlan {
       one_file;                    ///< of ShardFolder::whole(); else every shard has a file of its own
   double seconds = 0.0;            ///< of the largest shard, as foreseen
   std::uint64_t memory_bytes = 0;  ///< of the largest shard at its most
+  int threads = 1;                 ///< of a shard, for which time and memory are foreseen
   int revision = 0;                ///< engine::kFilterRevision
 
   /// Hash of all but what is foreseen: what a shard's report names its plan by.
   [[nodiscard]] std::string id() const;
+  /// Whether one process made it for itself (--shards-in-turn).
+  [[nodiscard]] bool inTurn() const;
 };
+
+/// 64 bits of a text, as 16 digits.
+[[nodiscard]] std::string hashOfText(const std::string& text);
 
 /// The schema of a plan's file and report: "fettle.plan.filter/1".
 [[nodiscard]] std::string planSchema(const std::string& command);
@@ -46,6 +52,9 @@ struct ShardPlan {
 
 /// Errors (kInput): no plan of a version that this program knows.
 [[nodiscard]] engine::Result<ShardPlan> readPlan(const std::string& path);
+
+/// Whether a result is a TIFF whose rows lie one after another: no compression, not laid out for a cloud. `settings`: of a plan.
+[[nodiscard]] bool writesPlainTiff(const std::string& out, const Report& settings);
 
 /// A file by its size and some of its bytes: the first and the last 64 KB and 62 pieces of 4 KB between. The same file copied to
 /// another machine has the same. Errors as engine::InputFile.

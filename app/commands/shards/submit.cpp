@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -25,7 +26,7 @@ namespace {
 struct SubmitArguments {
   std::string out;
   std::string engine;
-  int at_once = 0, threads = 1;
+  int at_once = 0, threads = 0, tasks = 1000;
   std::string more;
   bool run = false;
 };
@@ -44,7 +45,8 @@ engine::Status runScript(const std::string& path) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   return engine::failure("the script did not end well", path,
-                         "see what is printed above, and fettle status; the same command continues");
+                         "see what is printed above, and fettle status; the same command continues. Where "
+                         "Slurm refuses so large an array, give --tasks");
 }
 
 engine::Result<Report> submit(const SubmitArguments& options) {
@@ -56,9 +58,11 @@ engine::Result<Report> submit(const SubmitArguments& options) {
                  : options.engine == "mpi" ? ShardEngine::kMpi
                                            : ShardEngine::kLocal;
   asked.threads = options.threads;
+  asked.tasks = options.tasks;
+  const ShardNeeds needs = needsOf(*plan, options.threads);
   asked.at_once = options.at_once;
   if (asked.engine == ShardEngine::kLocal && asked.at_once == 0)
-    asked.at_once = std::max(1, usableCores() / asked.threads);
+    asked.at_once = std::max(1, usableCores() / needs.threads);
   asked.more = options.more;
   std::error_code error;
   asked.program = std::filesystem::read_symlink("/proc/self/exe", error).string();
@@ -66,8 +70,9 @@ engine::Result<Report> submit(const SubmitArguments& options) {
   const std::string script = submitScript(*plan, asked);
   Report report{{"engine", options.engine},
                 {"shards", plan->shards},
-                {"memory_per_shard", plan->memory_bytes},
-                {"seconds_per_shard", plan->seconds},
+                {"threads", needs.threads},
+                {"memory_per_shard", static_cast<std::uint64_t>(needs.memory_bytes)},
+                {"seconds_per_shard", needs.seconds},
                 {"script", script},
                 {"run", options.run}};
   if (!options.run) return report;
@@ -90,32 +95,39 @@ void addSubmit(Command root, Chosen& chosen) {
       root, chosen, "submit", "Print, or run, the job that does all shards of a plan and gathers them",
       [options](engine::JobControl&) { return submit(*options); }, printSubmit, Progress::kOwn, {},
       Printing::kResult);
-  command.add({{.name = "OUT",
-                .to = &options->out,
-                .text = "The file that was planned",
-                .kind = ValueKind::kFile,
-                .required = true},
-               {.name = "--engine",
-                .to = &options->engine,
-                .text = "Who starts the shards",
-                .words = {{"slurm", "a task array of Slurm, and a job after it"},
-                          {"mpi", "mpirun, a rank for each"},
-                          {"local", "processes of this machine"}},
-                .required = true},
-               {.name = "--run", .to = &options->run, .text = "Run the job instead of printing it"},
-               {.name = "--at-once",
-                .to = &options->at_once,
-                .text = "Shards that run at the same time",
-                .range = Range{0.0, 100000.0},
-                .otherwise = "0, all of them; on one machine as its cores allow"},
-               {.name = "--threads",
-                .to = &options->threads,
-                .text = "Cores of each shard",
-                .range = Range{1.0, 1024.0}},
-               {.name = "--with",
-                .to = &options->more,
-                .text = "Further words for sbatch or mpirun, as \"--partition=long\"",
-                .shown = "WORDS"}});
+  command.add(
+      {{.name = "OUT",
+        .to = &options->out,
+        .text = "The file that was planned",
+        .kind = ValueKind::kFile,
+        .required = true},
+       {.name = "--engine",
+        .to = &options->engine,
+        .text = "Who starts the shards",
+        .words = {{"slurm", "a task array of Slurm, and a job after it"},
+                  {"mpi", "mpirun, a rank for each"},
+                  {"local", "processes of this machine"}},
+        .required = true},
+       {.name = "--run", .to = &options->run, .text = "Run the job instead of printing it"},
+       {.name = "--at-once",
+        .to = &options->at_once,
+        .text = "Shards that run at the same time",
+        .range = Range{0.0, 100000.0},
+        .otherwise = "0, all of them; on one machine as its cores allow"},
+       {.name = "--threads",
+        .to = &options->threads,
+        .text = "Cores of each shard",
+        .range = Range{1.0, 1024.0},
+        .otherwise = "as fettle plan was told, 1"},
+       {.name = "--tasks",
+        .to = &options->tasks,
+        .text = "Slurm: tasks of the array, as a site allows (MaxArraySize); of more shards each task does "
+                "several",
+        .range = Range{1.0, 1000000.0}},
+       {.name = "--with",
+        .to = &options->more,
+        .text = "Further words for sbatch or mpirun, as \"--partition=long\"",
+        .shown = "WORDS"}});
 }
 
 }  // namespace fettle::app

@@ -1,42 +1,64 @@
 #include "app/commands/shards/submit_script.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/shards/shard_folder.h"
+#include "app/commands/shell_word.h"
+#include "engine/field/tile.h"
+#include "engine/shard/bands.h"
 
 namespace fettle::app {
 
 namespace {
 
-// What is asked for is twice what was foreseen and two minutes, and a tenth more memory: a queue ends what takes more.
+// What is asked for is twice what was foreseen and two minutes: a queue ends what takes more.
 std::string timeText(double seconds) {
   const auto minutes = static_cast<std::int64_t>(std::ceil(2.0 * seconds / 60.0)) + 2;
   return fmt::format("{}:{:02}:00", minutes / 60, minutes % 60);
 }
 
-std::string slurmScript(const ShardPlan& plan, const SubmitOptions& options, const std::string& shard,
-                        const std::string& gather) {
+// A tenth more than was foreseen.
+std::int64_t megabytesToAsk(double bytes) {
+  return static_cast<std::int64_t>(std::ceil(1.1 * bytes / 1e6));
+}
+
+// A path that sbatch writes to: % begins what it replaces.
+std::string logWord(const std::string& path, const std::string& end) {
+  std::string escaped;
+  for (const char c : path) escaped += c == '%' ? std::string("%%") : std::string(1, c);
+  return quotedWord(escaped + end);
+}
+
+std::string slurmScript(const ShardPlan& plan, const SubmitOptions& options, const ShardNeeds& needs,
+                        const std::string& shard, const std::string& gather) {
   const ShardFolder folder(plan.out);
   const std::string more = options.more.empty() ? std::string() : options.more + " ";
-  const auto memory =
-      static_cast<std::int64_t>(std::ceil(1.1 * static_cast<double>(plan.memory_bytes) / 1e6));
-  const auto logged = [&](const char* which) { return quotedWord(folder.path() + "/log-" + which + ".txt"); };
+  // Slurm bounds the numbers of an array: of more shards each task does several, one after another.
+  const int tasks = std::min(plan.shards, options.tasks), each = (plan.shards + tasks - 1) / tasks;
+  const std::string work =
+      each == 1 ? shard + " --shard auto"
+                : fmt::format(
+                      "failed=0; for k in $(seq $SLURM_ARRAY_TASK_ID {} {}); do {} --shard $k/{} || "
+                      "failed=1; done; exit $failed",
+                      tasks, plan.shards, shard, plan.shards);
+  const GatherNeeds of_gather = needsOfGather(plan);
   return fmt::format(
              "shards=$(sbatch --parsable --job-name=fettle --array=1-{}{} --cpus-per-task={} --mem={}M \\\n"
              "  --time={} --output={} {}--wrap {})\n",
-             plan.shards, options.at_once > 0 ? fmt::format("%{}", options.at_once) : "", options.threads,
-             memory, timeText(plan.seconds), logged("%a"), more, quotedWord(shard + " --shard auto")) +
+             tasks, options.at_once > 0 ? fmt::format("%{}", options.at_once) : "", needs.threads,
+             megabytesToAsk(needs.memory_bytes), timeText(needs.seconds * each),
+             logWord(folder.path(), "/log-%a.txt"), more, quotedWord(work)) +
          "# After the last one, however it ended: what is missing is named.\n" +
          fmt::format(
              "gather=$(sbatch --parsable --job-name=fettle-gather --dependency=afterany:\"$shards\" \\\n"
              "  --mem={}M --time={} --output={} {}--wrap {})\n",
-             200, timeText(plan.seconds), quotedWord(plan.out + ".gather.txt"), more, quotedWord(gather)) +
+             megabytesToAsk(of_gather.memory_bytes), timeText(of_gather.seconds),
+             logWord(plan.out, ".gather.txt"), more, quotedWord(gather)) +
          "echo \"$shards $gather\"\n";
 }
 
@@ -53,44 +75,53 @@ std::string mpiScript(const ShardPlan& plan, const SubmitOptions& options, const
 std::string localScript(const ShardPlan& plan, const SubmitOptions& options, const std::string& shard,
                         const std::string& gather) {
   const ShardFolder folder(plan.out);
-  const std::string one = fmt::format("{} --shard {{}}/{} --quiet 2>{}/log-{{}}.txt", shard, plan.shards,
+  // The number is an argument of its own: braces in a path are no place for it.
+  const std::string one = fmt::format("{} --shard \"$1\"/{} --quiet 2>{}/log-\"$1\".txt", shard, plan.shards,
                                       quotedWord(folder.path()));
-  return fmt::format("seq 1 {} | xargs -P {} -I{{}} sh -c {} || true\n", plan.shards,
+  return fmt::format("seq 1 {} | xargs -P {} -n 1 sh -c {} shard || true\n", plan.shards,
                      std::max(options.at_once, 1), quotedWord(one)) +
          gather + "\n";
 }
 
+// The words of a shard, with the threads that it is given; `threads` 0: as planned.
+std::vector<std::string> shardWords(const ShardPlan& plan, int threads) {
+  // Shards of a conversion have no such option.
+  if (plan.command != "filter") return plan.arguments;
+  std::vector<std::string> words = wordsWithout(plan.arguments, {}, {"--threads"});
+  words.emplace_back("--threads");
+  words.push_back(std::to_string(needsOf(plan, threads).threads));
+  return words;
+}
+
 }  // namespace
 
-std::string quotedWord(const std::string& word) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("/._-+=:,@").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string out = "'";
-  for (const char c : word)
-    if (c == '\'')
-      out += "'\\''";
-    else
-      out += c;
-  return out + "'";
+ShardNeeds needsOf(const ShardPlan& plan, int threads) {
+  const int of_shard = threads != 0 ? threads : plan.threads;
+  const double more = std::max(of_shard - plan.threads, 0);
+  // More threads than were measured may all wait for the memory: no time is taken off for them.
+  return {of_shard, plan.seconds * std::max(1.0, static_cast<double>(plan.threads) / of_shard),
+          static_cast<double>(plan.memory_bytes) + engine::kBandThreadBytes * more};
+}
+
+GatherNeeds needsOfGather(const ShardPlan& plan) {
+  constexpr double kProgram = 150e6, kBytesPerSecond = 50e6;
+  const double samples = static_cast<double>(plan.width) * plan.height;
+  // Rows on their way in and out; the field where its format is written as a whole.
+  double bytes = kProgram + 2.0 * sizeof(float) * plan.width * engine::kTileSide;
+  if (!writesPlainTiff(plan.out, plan.settings)) bytes += engine::kFieldBytes * samples;
+  return {sizeof(float) * samples / kBytesPerSecond, bytes};
 }
 
 std::string submitScript(const ShardPlan& plan, const SubmitOptions& options) {
   std::string shard = quotedWord(options.program);
-  for (const std::string& word : plan.arguments) (shard += ' ') += quotedWord(word);
-  if (std::ranges::none_of(plan.arguments,
-                           [](const std::string& word) { return word.starts_with("--threads"); }) &&
-      plan.command == "filter")
-    shard += fmt::format(" --threads {}", options.threads);
+  for (const std::string& word : shardWords(plan, options.threads)) (shard += ' ') += quotedWord(word);
   const std::string gather = fmt::format("{} gather {}", quotedWord(options.program), quotedWord(plan.out));
   std::string script =
-      fmt::format("#!/bin/sh\n# The {} shards of {}, made by fettle submit.\nset -e\ncd {}\n", plan.shards,
-                  plan.out, quotedWord(plan.folder));
+      fmt::format("#!/bin/sh\n# {} shards of a scan, made by fettle submit.\nset -e\ncd {}\n", plan.shards,
+                  quotedWord(plan.folder));
   switch (options.engine) {
     case ShardEngine::kSlurm:
-      return script + slurmScript(plan, options, shard, gather);
+      return script + slurmScript(plan, options, needsOf(plan, options.threads), shard, gather);
     case ShardEngine::kMpi:
       return script + mpiScript(plan, options, shard, gather);
     case ShardEngine::kLocal:

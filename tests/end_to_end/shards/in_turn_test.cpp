@@ -90,5 +90,47 @@ TEST(ShardsInTurn, KilledInTheMiddleTheSameCommandContinues) {
       report["hash"]);
 }
 
+TEST(ShardsInTurn, WithMoreMemoryOrNoneGivenTheBandsThatAreDoneAreKept) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif"), out = folder.file("out.tif");
+  writeField(scan, 4096, 1024);
+  const std::vector<std::string> filter{"filter", scan,        out, "--filter",
+                                        "box",    "--threads", "1", "--shards-in-turn"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = filter;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  // Cut off after a band, and again by a command of more memory, which alone would take fewer bands.
+  ProcessOptions kill_it;
+  kill_it.while_running = [&](int pid) {
+    if (!std::filesystem::exists(out + ".shards/shard-1.json")) return false;
+    kill(pid, SIGKILL);
+    return true;
+  };
+  EXPECT_NE(fettle(with({"--memory", "105MB"}), kill_it).status, 0);
+  const auto planned = nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"];
+  ASSERT_GT(planned, 2);
+  EXPECT_NE(fettle(with({"--memory", "400MB"}), kill_it).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"], planned);
+  const auto report = fettleJson(filter);
+  EXPECT_EQ(report["bands"], planned);
+  EXPECT_GE(report["bands_kept"], 1);
+}
+
+TEST(ShardsInTurn, WhatIsNotWrittenRowByRowIsRefusedBeforeAnythingIsDone) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "64x300"}).status, 0);
+  for (const std::vector<std::string>& out :
+       {std::vector<std::string>{folder.file("out.asc")}, {folder.file("out.tif"), "--compress", "zstd"}}) {
+    std::vector<std::string> words{"filter", scan};
+    words.insert(words.end(), out.begin(), out.end());
+    words.insert(words.end(), {"--filter", "box", "--shards-in-turn"});
+    expectRefused(fettle(words), "written row by row");
+    EXPECT_FALSE(std::filesystem::exists(out.front() + ".shards"));
+  }
+}
+
 }  // namespace
 }  // namespace fettle::tests

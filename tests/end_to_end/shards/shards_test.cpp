@@ -1,14 +1,21 @@
 // One scan in shards: the file of one run, whatever the number; what is missing or wrong is named.
 
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 #include <csignal>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include <cpl_error.h>
+#include <gdal.h>
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/program.h"
@@ -178,6 +185,53 @@ TEST_F(Shards, AFullDiskOfOneLeavesTheOthersAndThePlan) {
   (void)fettleJson({"gather", out()});
 }
 
+TEST_F(Shards, AreGatheredFromAnotherFolderThroughALinkWithThePermissionsOfWhatWasThere) {
+  (void)fettleJson({"filter", scan(), file("whole.tif"), "--filter", "box"});
+  ASSERT_EQ(mkdir(file("elsewhere").c_str(), 0755), 0);
+  ASSERT_EQ(mkdir(file("target").c_str(), 0755), 0);
+  std::ofstream(file("elsewhere/out.tif")) << "not to be touched";
+  // Planned and done in the folder of the scan, by names from there.
+  ProcessOptions here, elsewhere;
+  here.folder = folder_.path().string();
+  elsewhere.folder = file("elsewhere");
+  for (const std::string result : {"one-file", "files"}) {
+    std::ofstream(file("target/real.tif")) << "old";
+    ASSERT_EQ(chmod(file("target/real.tif").c_str(), 0640), 0);
+    fs::create_symlink("target/real.tif", out());
+    const Words filter{"filter", "scan.tif", "out.tif", "--filter", "box"};
+    ASSERT_EQ(fettle(Words{"plan"} + filter + Words{"--shards", "2", "--result", result}, here).status, 0);
+    for (const char* k : {"1", "2"}) ASSERT_EQ(fettle(filter + Words{"--shard", k}, here).status, 0);
+    const Outcome gathered = fettle({"gather", out()}, elsewhere);
+    ASSERT_EQ(gathered.status, 0) << gathered.err;
+    EXPECT_TRUE(contentOf(file("target/real.tif")) == contentOf(file("whole.tif"))) << result;
+    EXPECT_TRUE(fs::is_symlink(out()));
+    EXPECT_EQ(fs::status(file("target/real.tif")).permissions(), fs::perms{0640});
+    EXPECT_EQ(contentOf(file("elsewhere/out.tif")), "not to be touched");
+    fs::remove(out());
+  }
+}
+
+TEST_F(Shards, RowsThatTheSystemDoesNotOpenNowAreNotCalledDamaged) {
+  const Words filter{"filter", scan(), out(), "--filter", "box"};
+  (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "2", "--result", "files"});
+  for (const char* k : {"1", "2"}) (void)fettleJson(filter + Words{"--shard", k});
+  // For a limit on open files, or a server that is away, stands a socket: open(2) refuses it, whoever asks.
+  const std::string rows = folder() + "/rows-2.tif";
+  fs::rename(rows, file("kept.tif"));
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  ASSERT_LT(rows.size(), sizeof name.sun_path);
+  std::copy(rows.begin(), rows.end(), name.sun_path);
+  const int socket_here = socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(bind(socket_here, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
+  expectFailed(fettle({"gather", out()}), "the file cannot be opened");
+  close(socket_here);
+  fs::remove(rows);
+  fs::rename(file("kept.tif"), rows);
+  EXPECT_EQ(fettleJson({"status", out()})["done"], nlohmann::json({1, 2}));
+  (void)fettleJson({"gather", out()});
+}
+
 TEST_F(Shards, ContradictionsAreRefused) {
   const Words filter{"filter", scan(), out(), "--filter", "tv"};
   expectRefused(fettle(filter + Words{"--shard", "1/2"}), "there is no plan");
@@ -241,31 +295,111 @@ TEST_F(Shards, AreNumberedByTheirLauncher) {
                 "7 of 3 tasks is none");
 }
 
-TEST_F(Shards, AVirtualRasterNamesTheFilesOfTheShards) {
+// The samples of a raster as GDAL has them, the highest row first; its geotransform behind them.
+std::vector<double> readByGdal(const std::string& path) {
+  GDALAllRegister();
+  std::vector<double> out;
+  const GDALDatasetH raster = GDALOpen(path.c_str(), GA_ReadOnly);
+  EXPECT_NE(raster, nullptr) << CPLGetLastErrorMsg();
+  if (raster == nullptr) return out;
+  const int width = GDALGetRasterXSize(raster), height = GDALGetRasterYSize(raster);
+  out.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 6);
+  EXPECT_EQ(GDALRasterIO(GDALGetRasterBand(raster, 1), GF_Read, 0, 0, width, height, out.data(), width,
+                         height, GDT_Float64, 0, 0),
+            CE_None);
+  EXPECT_EQ(GDALGetGeoTransform(raster, out.data() + out.size() - 6), CE_None);
+  GDALClose(raster);
+  return out;
+}
+
+TEST_F(Shards, AVirtualRasterOverTheFilesOfTheShardsIsForGdalTheResultOfOneRun) {
   const Words filter{"filter", scan(), out(), "--filter", "box"};
-  (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "2", "--result", "files"});
-  for (const char* k : {"1", "2"}) (void)fettleJson(filter + Words{"--shard", k});
+  (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "3", "--result", "files"});
+  for (const char* k : {"1", "2", "3"}) (void)fettleJson(filter + Words{"--shard", k});
   (void)fettleJson({"gather", out(), "--vrt", file("out.vrt")});
   EXPECT_FALSE(fs::exists(out()));
-  const std::string vrt = contentOf(file("out.vrt"));
-  EXPECT_NE(vrt.find("rasterXSize=\"96\" rasterYSize=\"330\""), std::string::npos);
-  EXPECT_NE(vrt.find("rows-2.tif"), std::string::npos);
-  // The band with the lowest rows lies at the bottom.
-  EXPECT_LT(vrt.find("rows-1.tif"), vrt.find("yOff=\"202\""));
+  (void)fettleJson({"filter", scan(), file("whole.tif"), "--filter", "box"});
+  const std::vector<double> whole = readByGdal(file("whole.tif")), together = readByGdal(file("out.vrt"));
+  ASSERT_EQ(whole.size(), 96U * 330U + 6U);
+  ASSERT_EQ(together.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size() - 6; ++i)
+    ASSERT_TRUE(together[i] == whole[i] || (std::isnan(together[i]) && std::isnan(whole[i]))) << i;
+  // The corner is a sum of the band's origin and rows, in another order.
+  for (std::size_t i = whole.size() - 6; i < whole.size(); ++i) EXPECT_NEAR(together[i], whole[i], 1e-9);
 }
 
 TEST_F(Shards, SubmitPrintsAJobAndRunsItHere) {
   const Words filter{"filter", scan(), out(), "--filter", "box"};
   (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "3"});
   const std::string slurm = fettle({"submit", out(), "--engine", "slurm", "--at-once", "2"}).out;
-  EXPECT_NE(slurm.find("--array=1-3%2"), std::string::npos) << slurm;
+  EXPECT_NE(slurm.find("--array=1-3%2 --cpus-per-task=1"), std::string::npos) << slurm;
   EXPECT_NE(slurm.find("--dependency=afterany"), std::string::npos);
+  EXPECT_NE(slurm.find("--shard auto"), std::string::npos);
+  // Of more shards than a site's arrays have tasks each does several.
+  const std::string few = fettle({"submit", out(), "--engine", "slurm", "--tasks", "2"}).out;
+  EXPECT_NE(few.find("--array=1-2 "), std::string::npos) << few;
+  EXPECT_NE(few.find("for k in $(seq $SLURM_ARRAY_TASK_ID 2 3)"), std::string::npos) << few;
   const std::string mpi = fettle({"submit", out(), "--engine", "mpi", "--with", "--oversubscribe"}).out;
   EXPECT_NE(mpi.find("mpirun -n 3 --oversubscribe "), std::string::npos) << mpi;
   const Outcome run = fettle({"submit", out(), "--engine", "local", "--run"});
   EXPECT_EQ(run.status, 0) << run.err;
   (void)fettleJson({"filter", scan(), file("whole.tif"), "--filter", "box"});
   EXPECT_TRUE(contentOf(out()) == contentOf(file("whole.tif")));
+}
+
+TEST_F(Shards, SubmitAsksForTheThreadsThatShardsRunWith) {
+  const Words filter{"filter", scan(), out(), "--filter", "median"};
+  (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "2", "--threads", "2"});
+  const auto planned = fettleJson({"submit", out(), "--engine", "slurm"});
+  EXPECT_EQ(planned["threads"], 2);
+  const auto more = fettleJson({"submit", out(), "--engine", "slurm", "--threads", "4"});
+  EXPECT_EQ(more["threads"], 4);
+  EXPECT_GT(more["memory_per_shard"], planned["memory_per_shard"]);
+  const std::string script = more["script"];
+  EXPECT_NE(script.find("--cpus-per-task=4"), std::string::npos) << script;
+  EXPECT_NE(script.find(" --threads 4 --shard auto"), std::string::npos) << script;
+  EXPECT_EQ(script.find("--threads 2"), std::string::npos) << script;
+  // One processor less takes longer.
+  EXPECT_GE(fettleJson({"submit", out(), "--engine", "slurm", "--threads", "1"})["seconds_per_shard"],
+            planned["seconds_per_shard"]);
+}
+
+TEST_F(Shards, ANameThatAShellReadsOtherwiseStaysAName) {
+  // A line break would be a command of the script's own, % and braces would be replaced.
+  const std::string odd = file("100%a {} of\ntouch pwned \"it's\".tif");
+  ProcessOptions here;
+  here.folder = folder_.path().string();
+  const Words filter{"filter", scan(), odd, "--filter", "box"};
+  const Outcome planned = fettle(Words{"plan"} + filter + Words{"--shards", "3"}, here);
+  ASSERT_EQ(planned.status, 0) << planned.err;
+  EXPECT_NE(planned.out.find("'\\''"), std::string::npos) << planned.out;
+  const std::string slurm = fettle({"submit", odd, "--engine", "slurm"}).out;
+  EXPECT_NE(slurm.find("100%%a {} of"), std::string::npos) << slurm;
+  const Outcome run = fettle({"submit", odd, "--engine", "local", "--run"}, here);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_FALSE(fs::exists(file("pwned")));
+  (void)fettleJson({"filter", scan(), file("whole.tif"), "--filter", "box"});
+  EXPECT_TRUE(contentOf(odd) == contentOf(file("whole.tif")));
+}
+
+TEST_F(Shards, WhatIsReadOrWrittenAsAWholeTakesMoreMemoryOfShardsOrOfGathering) {
+  ASSERT_EQ(fettle({"synth", file("big.tif"), "--size", "2000x2000"}).status, 0);
+  const auto memory = [&](const std::string& name, const Words& more) {
+    return fettleJson(
+               Words{"plan", "filter", file("big.tif"), file(name), "--filter", "box", "--shards", "8"} +
+               more)["memory_per_shard"]
+        .get<double>();
+  };
+  const double plain = memory("a.tif", {});
+  EXPECT_GE(memory("b.tif", {"--original", file("big.tif"), "--max-change", "1um"}), plain + 2 * 4.0 * 4e6);
+  const std::string tiff = fettle({"submit", file("a.tif"), "--engine", "slurm"}).out;
+  (void)memory("c.asc", {});
+  const std::string text = fettle({"submit", file("c.asc"), "--engine", "slurm"}).out;
+  const auto asked = [](const std::string& script) {
+    return std::stoi(script.substr(script.rfind("--mem=") + 6));
+  };
+  EXPECT_GE(asked(tiff), 150);
+  EXPECT_GE(asked(text), asked(tiff) + 16);
 }
 
 }  // namespace
