@@ -1,16 +1,22 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/align_option.h"
+#include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/compare_nominal.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/shards/list_shard.h"
+#include "app/commands/shards/shard_option.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
@@ -27,7 +33,8 @@ namespace {
 
 struct CompareArguments {
   std::string a;
-  std::string b;
+  std::vector<std::string> others;
+  std::string b;  // the one of them that A is compared with
   std::string truth;
   std::string edges;
   std::string deviation;
@@ -37,6 +44,7 @@ struct CompareArguments {
   bool aligned = false;  // B is moved onto A first
   AlignArguments align;
   InspectArguments inspect;
+  std::string shard, shard_folder;
   ScanOptions reading;
 };
 
@@ -118,7 +126,9 @@ engine::Result<Foreseen> foreseeCompare(const CompareArguments& options, const e
   return foresee(planned, shownInput(options.b), options.estimate, job);
 }
 
-engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
+// `first`: A, where it was read before; else it is read into it.
+engine::Result<Report> compareOne(const CompareArguments& options, std::optional<engine::Imported>& first,
+                                  engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges need a truth", "--edges", "give --truth too");
   if (auto status = checkNominal(options); !status) return tl::unexpected(status.error());
@@ -132,8 +142,12 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
     return compareNominal({options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
                            options.reading, options.deviation, options.to, options.estimate},
                           job);
-  const auto a = loadSamples(options.a, options.reading, job);
-  if (!a) return tl::unexpected(a.error());
+  if (!first) {
+    auto read = loadSamples(options.a, options.reading, job);
+    if (!read) return tl::unexpected(read.error());
+    first = *std::move(read);
+  }
+  const engine::Imported* const a = &*first;
   auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
   auto foreseen = foreseeCompare(options, a->field, b->field, job);
@@ -187,11 +201,66 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
   return report;
 }
 
+// Several: the first is what all others are compared with, or the last, where it is the nominal shape of all before it.
+engine::Result<Report> compareAll(const CompareArguments& options, const std::vector<std::string>& arguments,
+                                  engine::JobControl& job) {
+  std::vector<std::string> scans = options.others;
+  const bool of_nominal = isNominal(scans.back(), options.reading, options.inspect.nominal);
+  const std::string with = of_nominal ? scans.back() : options.a;
+  if (of_nominal) {
+    scans.pop_back();
+    scans.insert(scans.begin(), options.a);
+  }
+  if (!options.deviation.empty())
+    return engine::inputError("a deviation is written of two scans", "--deviation",
+                              "leave it out, or compare one after another");
+  if (std::ranges::any_of(scans, isStream))
+    return engine::inputError("standard input is one scan", "-", "name files where several are compared");
+  std::vector<BatchTask> tasks;
+  for (const std::string& scan : scans) tasks.push_back({scan, {}, {}});
+  const auto mine = ListShard::begin(tasks, options.shard,
+                                     options.estimate ? std::string() : options.shard_folder, arguments);
+  if (!mine) return tl::unexpected(mine.error());
+  std::optional<engine::Imported> first;
+  auto report = runBatch(mine->tasks(), job, [&](const BatchTask& task, engine::JobControl& j) {
+    CompareArguments pair = options;
+    pair.a = of_nominal ? task.in : with;
+    pair.b = of_nominal ? with : task.in;
+    return compareOne(pair, first, j);
+  });
+  if (report)
+    if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());
+  return report;
+}
+
+engine::Result<Report> compare(const CompareArguments& options, const std::vector<std::string>& arguments,
+                               engine::JobControl& job) {
+  if (auto status = checkListShard(options.shard, options.shard_folder); !status)
+    return tl::unexpected(status.error());
+  if (options.others.size() > 1 || !options.shard.empty()) return compareAll(options, arguments, job);
+  CompareArguments pair = options;
+  pair.b = options.others.front();
+  std::optional<engine::Imported> first;
+  const ProgressLine progress(job);
+  return compareOne(pair, first, job);
+}
+
 void printCompared(const Report& report) {
+  if (report.contains("files")) {
+    for (const Report& file : report["files"]) {
+      fmt::print("{}{}\n", file["in"].get<std::string>(), file.contains("error") ? "  failed" : "");
+      if (!file.contains("error")) printCompared(file);
+      fmt::print("\n");
+    }
+    fmt::print("{} compared, {} failed\n", report["done"].get<std::size_t>(),
+               report["failed"].get<std::size_t>());
+    return;
+  }
   if (report.contains("text")) return printReport(report);
   if (report.contains("align")) printAlignment(report["align"]);
   Report rest = report;
   rest.erase("align");
+  rest.erase("in");
   printReport(rest);
 }
 
@@ -201,7 +270,8 @@ void addCompare(Command root, Chosen& chosen) {
   auto options = std::make_shared<CompareArguments>();
   Command command = addCommand(
       root, chosen, "compare", "How B deviates from A; against a truth, the errors of B and where they are",
-      [options](engine::JobControl& job) { return compare(*options, job); }, printCompared);
+      [options, &chosen](engine::JobControl& job) { return compare(*options, chosen.arguments, job); },
+      printCompared, Progress::kOwn, batchStatus);
   command.add({
       {.name = "A",
        .to = &options->a,
@@ -209,8 +279,10 @@ void addCompare(Command root, Chosen& chosen) {
        .kind = ValueKind::kInput,
        .required = true},
       {.name = "B",
-       .to = &options->b,
-       .text = "The scan to compare, or the nominal shape of A as a mesh, .stl",
+       .to = &options->others,
+       .text = "The scan to compare, or the nominal shape of A as a mesh, .stl. Several, each with a report "
+               "of its "
+               "own: all are compared with A, or where the last is a mesh, A and all others with that",
        .kind = ValueKind::kInput,
        .required = true},
       {.name = "--truth",
@@ -243,6 +315,7 @@ void addCompare(Command root, Chosen& chosen) {
                 .kind = ValueKind::kFormat,
                 .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addEstimateOption(command, options->estimate);
+  addListShardOptions(command, options->shard, options->shard_folder);
   addScanOptions(command, options->reading);
   command.notes(
       "Of a mesh B the deviation is that of A from it, above 0 where the part has more. A sample over or "
@@ -256,7 +329,9 @@ void addCompare(Command root, Chosen& chosen) {
                     {"fettle compare scan.tif clean.tif --align all --deviation wear.tif",
                      "What differs after the second was moved onto the first"},
                     {"fettle compare scan.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
-                     "How a part deviates from its nominal shape"}});
+                     "How a part deviates from its nominal shape"},
+                    {"fettle compare new.tif worn*.tif --align all --shard 2/8 --shard-dir wear",
+                     "Of many scans, the second of eight shares compared with the new one"}});
 }
 
 }  // namespace fettle::app

@@ -41,7 +41,7 @@ _INFO = Command("info", "info", hides=(READING,))
 _COMPARE = Command(
     "compare",
     "compare",
-    hidden=("to", "force", "estimate"),
+    hidden=("to", "force", "estimate", "shard", "shard-dir"),
     hides=(READING,),
     summary="How another scan deviates from this one; against a truth, the errors of the other and where they are",
 )

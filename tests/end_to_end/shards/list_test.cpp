@@ -1,5 +1,8 @@
 // Many scans that several processes share.
 
+#include <csignal>
+
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -59,6 +62,70 @@ TEST_F(ShardsOfAList, OfMeasuringHaveTheirReportsInAFolder) {
   const auto alone = fettleJson({"measure", scans_[3], "--only", "height", "--noise-trials", "0"});
   EXPECT_EQ(gathered["files"][3]["sq"], alone["sq"]);
   expectRefused(fettle(command({"measure"}, {"--shard", "1/2"})), "--shard-dir");
+}
+
+TEST_F(ShardsOfAList, OfSuggestingAndComparingHaveTheReportsOfOneRun) {
+  const std::string out = folder_.file("suggested"), worn = folder_.file("worn");
+  const std::vector<std::string> suggest{"--out-dir", out, "--suggest", "--tolerance", "20um"};
+  const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  for (const char* shard : {"1/2", "2/2"}) {
+    (void)fettleJson(with(command({"filter"}, suggest), {"--shard", shard}));
+    (void)fettleJson(command({"compare", scans_[0]}, {"--shard", shard, "--shard-dir", worn}));
+  }
+  const auto suggested = fettleJson({"gather", out});
+  ASSERT_EQ(suggested["files"].size(), 5U);
+  const auto alone = fettleJson({"filter", scans_[3], "--suggest", "--tolerance", "20um"});
+  EXPECT_EQ(suggested["files"][3]["noise"], alone["noise"]);
+  EXPECT_EQ(suggested["files"][3]["pick"]["method"], alone["pick"]["method"]);
+  // The outputs are named, and not written.
+  const auto& commands = suggested["files"][3]["commands"];
+  ASSERT_FALSE(commands.empty()) << suggested["files"][3]["why"];
+  EXPECT_NE(commands.back().get<std::string>().find(out + "/s3.tif"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out + "/s3.tif"));
+
+  const auto compared = fettleJson({"gather", worn});
+  ASSERT_EQ(compared["files"].size(), 5U);
+  EXPECT_EQ(compared["files"][0]["max_abs"], 0.0);
+  EXPECT_EQ(compared["files"][3]["rms"], fettleJson({"compare", scans_[0], scans_[3]})["rms"]);
+  expectRefused(fettle(command({"compare", scans_[0]}, {"--deviation", folder_.file("d.tif")})),
+                "a deviation is written of two scans");
+  expectRefused(fettle(command({"compare", scans_[0]}, {"--shard", "1/2"})), "--shard-dir");
+}
+
+TEST_F(ShardsOfAList, ANominalShapeIsTheLastOfThoseCompared) {
+  const std::string mesh = folder_.file("nominal.stl");
+  (void)fettleJson({"convert", scans_[0], mesh});
+  const auto all = fettleJson({"compare", scans_[0], scans_[1], scans_[2], mesh});
+  ASSERT_EQ(all["files"].size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(all["files"][i]["in"], scans_[i]);
+    EXPECT_EQ(all["files"][i]["rms"], fettleJson({"compare", scans_[i], mesh})["rms"]);
+  }
+}
+
+TEST_F(ShardsOfAList, OfTwoCommandsAreNotPutTogether) {
+  const std::string out = folder_.file("out");
+  const auto shard = [&](const char* filter, const char* k, const ProcessOptions& options = {}) {
+    return fettle(command({"filter"}, {"--out-dir", out, "--filter", filter, "--shard", k, "--force"}),
+                  options);
+  };
+  ASSERT_EQ(shard("tv", "1/2").status, 0);
+  ASSERT_EQ(shard("box", "2/2").status, 0);
+  expectFailed(fettle({"gather", out}), "shard 2 was done by another command");
+  ASSERT_EQ(shard("box", "1/2").status, 0);
+  EXPECT_EQ(fettleJson({"gather", out})["done"], 5);
+  // A shard that is begun again and does not end is not done, whatever it did before.
+  ProcessOptions kill_it;
+  kill_it.while_running = [&](int pid) {
+    if (std::filesystem::exists(out + "/shards/2-of-2.json")) return false;
+    kill(pid, SIGKILL);
+    return true;
+  };
+  EXPECT_NE(shard("tgv", "2/2", kill_it).status, 0);
+  expectFailed(fettle({"gather", out}), "1 of 2 shards is not done: 2");
 }
 
 }  // namespace
