@@ -217,6 +217,7 @@ engine::Result<Report> compareAll(const CompareArguments& options, const std::ve
   if (std::ranges::any_of(scans, isStream))
     return engine::inputError("standard input is one scan", "-", "name files where several are compared");
   std::vector<BatchTask> tasks;
+  tasks.reserve(scans.size());
   for (const std::string& scan : scans) tasks.push_back({scan, {}, {}});
   const auto mine = ListShard::begin(tasks, options.shard,
                                      options.estimate ? std::string() : options.shard_folder, arguments);
@@ -330,8 +331,8 @@ void addCompare(Command root, Chosen& chosen) {
                      "What differs after the second was moved onto the first"},
                     {"fettle compare scan.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
                      "How a part deviates from its nominal shape"},
-                    {"fettle compare new.tif worn*.tif --align all --shard 2/8 --shard-dir wear",
-                     "Of many scans, the second of eight shares compared with the new one"}});
+                    {"fettle compare scan.tif clean.tif other.tif --shard 1/2 --shard-dir compared",
+                     "Of several scans the first of two shares, each compared with the first scan"}});
 }
 
 }  // namespace fettle::app
