@@ -13,6 +13,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "app/commands/typed_values.h"
 #include "engine/base/job.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/version.h"
@@ -66,10 +67,11 @@ std::string hashOf(const Scan& scan) {
 }
 
 // How far a filter reaches, at what multiples pieces begin that have the field's results [samples], and its range in
-// standard deviations of the noise where it has one, else 0. Reach -1: as far as the whole field.
+// standard deviations of the noise where it has one, else 0. Reach -1: as far as the whole field. `cutoff` and `radius` as
+// typed, in mm or with a unit; empty: none.
 std::tuple<std::int32_t, std::int32_t, double> reachOf(const std::string& word, double window, double passes,
-                                                       double cutoff, double radius, double spacing_x,
-                                                       double spacing_y, const std::string& unit,
+                                                       const std::string& cutoff, const std::string& radius,
+                                                       double spacing_x, double spacing_y, const std::string& unit,
                                                        std::int32_t columns, std::int32_t rows) {
   const engine::Filter* const filter = engine::filterNamed(word);
   if (filter == nullptr || engine::needsWholeField(*filter)) {
@@ -80,7 +82,9 @@ std::tuple<std::int32_t, std::int32_t, double> reachOf(const std::string& word, 
   spec.kind = filter->kind;
   if (filter->window.exists() && window > 0.0) spec.window = static_cast<int>(window);
   spec.passes = static_cast<int>(passes);
-  if (filter->nesting.exists()) spec.nesting_mm = filter->nesting_word == "radius" ? radius : cutoff;
+  const std::string& nesting = filter->nesting_word == "radius" ? radius : cutoff;
+  if (filter->nesting.exists() && !nesting.empty())
+    spec.nesting_mm = valueOf(app::parseHeight(nesting, engine::Grid{}, std::string(filter->nesting_word)));
   engine::Grid grid;
   grid.width = columns;
   grid.height = rows;

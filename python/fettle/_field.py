@@ -324,10 +324,10 @@ class Field:
             f"heights in {self.height_unit}, {hole}>"
         )
 
-    def __copy__(self):
+    def __copy__(self) -> Field:
         return self
 
-    def __deepcopy__(self, memo):
+    def __deepcopy__(self, memo: dict) -> Field:
         return self
 
     # A field goes to another process, or into a file of pickle, as its arrays, with the form that lies over it beside them; its
@@ -642,7 +642,7 @@ for _name in TABLES:
 class Suggestion(dict):
     """What `Field.suggest` found, as a dict."""
 
-    def __init__(self, field, report, options):
+    def __init__(self, field: Field, report: dict, options: dict) -> None:
         super().__init__(report)
         self._field = field
         self._options = options

@@ -7,19 +7,24 @@
 Dask is imported when a function is called, not before.
 """
 
+from __future__ import annotations
+
+import inspect
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _fettle, _field
+from ._commands import parameter, type_of
 from ._errors import InputError
 
 __all__ = ["filter", "noise"]
 
-#: Numbers of a filter that decide how far it reaches.
-_REACH = ("window", "passes", "cutoff", "radius")
 #: Options that are of a whole field, or of a process.
 _REFUSED = ("keep", "only", "lines", "residual", "original", "suggest", "max_change")
+_OPTIONS = {name: row for name, row in _field._FILTER.rows.items() if name not in _REFUSED}
 _DIGITS = 16
 _SIGMA_OF_MEDIAN = 1.482602218505602
 _SIGMA_OF_MASK = 6.0
@@ -48,7 +53,7 @@ def _counts(block, shift, prefix):
     return np.bincount(digits.astype(np.int64), minlength=1 << _DIGITS)[None, None, :]
 
 
-def noise(array):
+def noise(array: ArrayLike) -> float:
     """float: the noise of an array, exactly the `noise_finest` of `fettle info` for the whole of it. Reads it four times.
 
     array: rows x columns of Dask, heights; NaN: a hole.
@@ -85,7 +90,33 @@ def _aligned(chunks, multiple, least):
     return tuple(end - start for start, end in zip(starts, [*starts[1:], total]))
 
 
-def filter(array, filter, *, spacing=1.0, unit="mm", height_unit=None, **options):
+def _options(command):
+    """A decorator: gives the function the options of the command's table in the place of **options."""
+
+    def decorate(function):
+        known = list(inspect.signature(function).parameters.values())[:-1]
+        known[1] = parameter("filter", type_of(command.first[0]))
+        known += [each.replace(annotation=type_of(_OPTIONS[each.name])) for each in command.signature().parameters.values() if each.name in _OPTIONS]
+        function.__signature__ = inspect.Signature(known, return_annotation="Any")
+        return function
+
+    return decorate
+
+
+def _word(value):
+    return value if isinstance(value, str) else "" if value is None else repr(float(value))
+
+
+@_options(_field._FILTER)
+def filter(
+    array: ArrayLike,
+    filter: str,
+    *,
+    spacing: float | tuple[float, float] = 1.0,
+    unit: str = "mm",
+    height_unit: str | None = None,
+    **options: Any,
+) -> Any:
     """dask.array.Array: the filtered heights, float32, rows x columns as before; nothing is computed yet but the noise.
 
     array: rows x columns of Dask, heights in `height_unit`; NaN: a hole. Row 0 is the row with the lowest y.
@@ -94,21 +125,32 @@ def filter(array, filter, *, spacing=1.0, unit="mm", height_unit=None, **options
     spacing: of samples, or the pair of x and y, in `unit`.
 
     Each chunk is read with the samples around it on which its results depend, and chunks are cut anew where a filter works in
-    squares, so that the bits are those of one run over the whole array, whatever the chunks. InputError: a filter whose results
-    depend on the whole field, and options that are of one.
+    squares, so that the bits are those of one run over the whole array, whatever the chunks. InputError: an unknown filter, one
+    whose results depend on the whole field, and options that are of one.
     """
     import dask.array as da
 
     for name in _REFUSED:
         if options.get(name) is not None:
             raise InputError(f"{name} is of a whole field", name, "leave it out, or use fettle filter --shard")
+    for name in options:
+        if name not in (*_OPTIONS, *_REFUSED):
+            raise TypeError(f"filter() got an unexpected keyword argument {name!r}; it has {', '.join(_OPTIONS)}")
+    words = [each["word"] for each in _field._FILTER.first[0]["words"]]
+    if filter not in words:
+        raise InputError(f"there is no filter {filter!r}", "filter", f"take one of {', '.join(words)}")
     array = da.asarray(array).astype(np.float32)
     if array.ndim != 2:
         raise InputError(f"an array of {array.ndim} axes is not a field", "array", "give rows x columns")
     x, y = _spacing(spacing)
     options.setdefault("compute", "cpu")
     reach, grid, range_noises = _fettle.reach(
-        filter, *(float(options.get(name) or (1 if name == "passes" else 0)) for name in _REACH), x, y, unit, array.shape[1], array.shape[0]
+        filter,
+        float(options.get("window") or 0),
+        float(options.get("passes") or 1),
+        *(_word(options.get(name)) for name in ("cutoff", "radius")),
+        *(x, y, unit),
+        *array.shape[::-1],
     )
     if reach < 0:
         raise InputError(f"a result of {filter} depends on the whole field", "filter", "filter it in one piece")

@@ -1,11 +1,13 @@
-"""make_stub.py OUT: the types of the package as a stub, __init__.pyi, made of the package itself: of the tables of its
-commands, and of the annotations of all else."""
+"""make_stub.py FOLDER: the types of the package as stubs, FOLDER/__init__.pyi and FOLDER/dask.pyi, made of the package itself:
+of the tables of its commands, and of the annotations of all else."""
 
 import inspect
+import os
 import sys
 import typing
 
 import fettle
+import fettle.dask
 from fettle._commands import type_of
 
 HEAD = '''# Made by python/stub/make_stub.py of the tables of the commands.
@@ -17,6 +19,13 @@ import numpy
 from numpy.typing import ArrayLike, DTypeLike
 
 __version__: str
+'''
+HEAD_OF_DASK = '''# Made by python/stub/make_stub.py of the tables of the commands.
+import os
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from numpy.typing import ArrayLike
 '''
 
 
@@ -83,9 +92,7 @@ def of_class(kind):
     body += ["name: str", "report: dict"] if kind is fettle.Field else []
     body += ["id: int", "closed: bool"] if kind is fettle.Line else []
     for name, member in vars(kind).items():
-        if name.startswith("_") and name not in ("__init__", "__array__", "__len__", "_repr_png_"):
-            continue
-        if kind is fettle.Suggestion and name == "__init__":
+        if name.startswith("_") and name not in ("__init__", "__array__", "__copy__", "__deepcopy__", "__len__", "_repr_png_"):
             continue
         if isinstance(member, property):
             body += ["@property", *of_function(name, member.fget)]
@@ -110,6 +117,12 @@ def stub():
     return text
 
 
+def stub_of_dask():
+    functions = [of_function(name, getattr(fettle.dask, name)) for name in fettle.dask.__all__]
+    return HEAD_OF_DASK + "".join("\n" + "\n".join(lines) + "\n" for lines in functions)
+
+
 if __name__ == "__main__":
-    with open(sys.argv[1], "w", encoding="utf-8") as file:
-        file.write(stub())
+    for name, text in (("__init__.pyi", stub()), ("dask.pyi", stub_of_dask())):
+        with open(os.path.join(sys.argv[1], name), "w", encoding="utf-8") as file:
+            file.write(text)

@@ -18,7 +18,7 @@ OPTIONS = {
     "tv": {"window": 7},
     "tgv": {},
     "planes": {},
-    "areal-gaussian": {"cutoff": "3"},
+    "areal-gaussian": {"cutoff": "3000um"},
     "opening": {"radius": "0.5"},
     "closing": {"radius": "0.5"},
 }
@@ -61,6 +61,16 @@ class Dask(unittest.TestCase):
                 fettle.dask.filter(array, name, cutoff="3")
         with self.assertRaises(fettle.InputError):
             fettle.dask.filter(array, "median", keep=self.field)
+
+    def test_what_is_no_filter_or_no_option_is_refused_before_anything_is_computed(self):
+        array = da.from_array(self.heights, chunks=(200, 200))
+        for name, options, error, text in (
+            ("medan", {}, fettle.InputError, "no filter 'medan'"),
+            ("median", {"windw": 3}, TypeError, "'windw'.*window"),
+            ("areal-gaussian", {"cutoff": "3parsec"}, fettle.InputError, "unknown unit parsec"),
+        ):
+            with self.assertRaisesRegex(error, text):
+                fettle.dask.filter(array, name, **options)
 
 
 if __name__ == "__main__":
