@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 
 from . import _fettle
-from ._errors import FettleWarning
+from ._errors import Error, FettleWarning
 
 PROGRESS = """    progress (Callable[[str, float], object]): Called about ten times a second with what is being
         done, and how much of that is done, 0 to 1. An exception in it ends the work, and is raised.
@@ -196,9 +196,17 @@ class _Call:
         return place
 
     def run(self, help_text, progress, stacklevel):
-        report, written, told = _fettle.call(
-            [os.fsencode(each) for each in self.arguments + self.options], self.given, self.made, self.source, help_text, progress
-        )
+        words = [os.fsencode(each) for each in self.arguments + self.options]
+        try:
+            report, written, told = _fettle.call(words, self.given, self.made, self.source, help_text, progress)
+        except Error as error:
+            if re.fullmatch(r"--[a-z][a-z-]*", error.where):
+                error.where = identifier({"name": error.where})
+            # What names a command of the program stays one.
+            if "fettle " not in error.remedy:
+                error.remedy = in_python(error.remedy)
+            error.args = (error.what, error.where, error.remedy)
+            raise
         for text in told:
             warnings.warn(text, FettleWarning, stacklevel=stacklevel + 1)
         # Where a command says which file it wrote, the name of a place in memory would say nothing.

@@ -158,6 +158,18 @@ class Calls(unittest.TestCase):
         self.assertEqual(refused.exception.where, "/there/is/no.tif")
         self.assertIn(refused.exception.what, str(refused.exception))
 
+    def test_errors_name_parameters_as_python_does(self):
+        field = fettle.Field(wave())
+        for call, where in (
+            (lambda: field.filter("areal-gaussian", cutoff="x3"), "cutoff"),
+            (lambda: field.suggest(), "tolerance"),
+            (lambda: field.filter("box", max_change="-1"), "max_change"),
+        ):
+            with self.assertRaises(fettle.InputError) as refused:
+                call()
+            self.assertEqual(refused.exception.where, where)
+            self.assertNotIn("--", str(refused.exception))
+
     def test_a_path_that_looks_like_something_else_is_a_path(self):
         for name in ("-x", "<field>", "--help"):
             with self.assertRaises(fettle.InputError) as refused:
