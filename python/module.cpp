@@ -71,8 +71,9 @@ std::string hashOf(const Scan& scan) {
 // typed, in mm or with a unit; empty: none.
 std::tuple<std::int32_t, std::int32_t, double> reachOf(const std::string& word, double window, double passes,
                                                        const std::string& cutoff, const std::string& radius,
-                                                       double spacing_x, double spacing_y, const std::string& unit,
-                                                       std::int32_t columns, std::int32_t rows) {
+                                                       double spacing_x, double spacing_y,
+                                                       const std::string& unit, std::int32_t columns,
+                                                       std::int32_t rows) {
   const engine::Filter* const filter = engine::filterNamed(word);
   if (filter == nullptr || engine::needsWholeField(*filter)) {
     // An unknown word is refused by the filter itself.
