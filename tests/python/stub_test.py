@@ -65,13 +65,18 @@ class Stub(unittest.TestCase):
     # Only the stubs, as a package of their own: stubtest would have the sources beside them checked, too.
     @unittest.skipIf(shutil.which("stubtest") is None, "mypy is not installed")
     def test_stubtest_finds_the_module_as_the_stubs_say(self):
-        of_package = os.path.dirname(fettle.__file__)
+        of_package = os.path.dirname(os.path.abspath(fettle.__file__))
         with tempfile.TemporaryDirectory() as folder:
             os.mkdir(os.path.join(folder, "fettle"))
             for name in ("__init__.pyi", "dask.pyi", "py.typed"):
                 shutil.copy(os.path.join(of_package, name), os.path.join(folder, "fettle"))
             done = subprocess.run(
-                ["stubtest", "fettle"], env=dict(os.environ, MYPYPATH=folder), capture_output=True, text=True, check=False, cwd=folder
+                ["stubtest", "fettle"],
+                env=dict(os.environ, MYPYPATH=folder, PYTHONPATH=os.path.dirname(of_package)),
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                check=False,
             )
         self.assertRegex(done.stdout, r"^Success: no issues found in \d+ modules", done.stdout + done.stderr)
 
