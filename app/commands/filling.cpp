@@ -83,7 +83,8 @@ PlannedOnPieces plannedFill(const engine::Version& field, const engine::FillOpti
           },
           .amount = [&field](const engine::SampleRect& r) { return holesIn(field.reader(), r); },
           .column = column,
-          .row = row};
+          .row = row,
+          .uneven = true};  // a session keeps both states of the tiles with holes alone
 }
 
 }  // namespace fettle::app

@@ -6,6 +6,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/scan_files.h"
+#include "app/terminal.h"
 #include "engine/formats/formats.h"
 #include "engine/session/session.h"
 
@@ -31,6 +32,9 @@ engine::Result<Report> journal(const std::string& path, engine::JobControl& job)
     if (!entry.data.empty()) row["data_bytes"] = entry.data.size();
     entries.push_back(std::move(row));
   }
+  // Only the window keeps a journal.
+  if (entries.empty())
+    note(fmt::format("{}: nothing was done in the window; fettle recipe prints the steps of commands", path));
   return Report{{"session", path}, {"state", session->history.number()}, {"entries", std::move(entries)}};
 }
 

@@ -197,14 +197,18 @@ engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& piece
   }
   const std::array<double, 3> samples = pieces.madeSamples();
   const double all = work.result * static_cast<double>(work.field.grid().samples());
-  WritingCost whole{ofAll(all, 0, 1, samples, bytes), ofAll(all, 0, 2, samples, seconds),
+  // The third piece of a filter's sample is more than what was filtered. A session has whole tiles, so that of other work
+  // the largest piece shows best what a sample takes; of squares all over the field that piece is one.
+  const auto make = unevenWork(work);
+  const bool filtered = !work.steps.empty() && std::holds_alternative<PlannedFilter>(work.steps.back());
+  const int size = filtered || (make && !always) ? 1 : 2;
+  WritingCost whole{ofAll(all, 0, size, samples, bytes), ofAll(all, 0, 2, samples, seconds),
                     memoryOfAll(all, samples, memory)};
   const auto mesh = meshBytes(work, always, *folder, job);
   if (!mesh) return tl::unexpected(mesh.error());
   if (*mesh) {
     whole.bytes = **mesh;
-  } else if (const auto make = unevenWork(work)) {
-    const int size = always ? 2 : 1;
+  } else if (make) {
     const auto elsewhere = meanElsewhere(work, pieces.at[size], make, *folder, job);
     if (!elsewhere) return tl::unexpected(elsewhere.error());
     whole.bytes = std::max(0.0, whole.bytes + (*elsewhere - bytes[size]) / samples[size] * all);
