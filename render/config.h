@@ -27,6 +27,12 @@ inline constexpr std::size_t kMostPanels = 5;
 inline constexpr int kGlyphImageSide = 1024;
 /// About so many samples give the robust range of the colours; larger fields are sampled.
 inline constexpr std::int64_t kRangeSamples = std::int64_t{1} << 20;
+/// Colours of deviations end at the latest at this multiple of their median. 6: that of noise ends at four
+/// sigma, beyond its 99.5th percentile (4.2); smaller ones would clip it, larger ones leave little of it to see
+/// beside an edge that moved.
+inline constexpr double kUsualChanges = 6.0;
+/// Steps of the colours where they are in steps.
+inline constexpr int kColourSteps = 12;
 
 /// Distance from which the height around a point counts as what stands around it, along x and y, and on the
 /// lines between these [px at the middle of the picture, lying on the field]. Nearer ones show less of the
@@ -35,6 +41,11 @@ inline constexpr double kAroundPx = 8.0, kAroundBetweenPx = 4.0;
 /// At most so many steps between the samples that colours come from: on demand, those of a fragment are then
 /// in two pages in each direction at most.
 inline constexpr int kMostAround = (1 << 5) - 2;
+
+/// Half the side of the square within which a plane shows whether a contour line belongs to the surface or to
+/// its noise [px at the middle of the picture, lying on the field]. Larger ones draw lines on flatter slopes of
+/// noisy fields, and leave them out on tops and in corners of this size.
+inline constexpr double kContourPx = 4.0;
 
 // Level of detail.
 

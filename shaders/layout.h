@@ -131,7 +131,7 @@ struct PanelUniforms {
   ivec4 paging;  // 448: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
   ivec4 shade;   // 464: log2 of the step between samples that colours come from; -; columns, rows of those
   // Seam: how far seams overlap [px]; from this distance between drawn and exact position on, a point counts
-  // as displaced [scene mm]; -; -.
+  // as displaced [scene mm]. Half the side of the square that decides on contour lines, in x, y [steps].
   vec4 seam;            // 480
   vec4 suggested_tint;  // 496: of marks that are suggested: linear red, green, blue; opacity
   // Samples of a footprint: how many steps in x, y they lie outside a cell, 1 or 2. How many steps before a cell the

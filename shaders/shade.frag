@@ -28,7 +28,8 @@ void main() {
   const vec3 facet = cross(dFdx(scene), dFdy(scene));
   const float contour = kContours ? contourOf(p) : 0.0;
   const float contour_width = kContours ? fwidth(contour) : 1.0;
-  vec3 c = surfaceColour(p, facet, contour, contour_width);
+  const mat2 steps = kContours ? mat2(dFdx(at.xy), dFdy(at.xy)) : mat2(0.0);
+  vec3 c = surfaceColour(p, facet, contour, contour_width, steps);
   // The geometry excludes holes except for rounding.
   if (kHoles && p.hole) c = panel.no_data.rgb;
   colour = vec4(c, 1.0);

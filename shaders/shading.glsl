@@ -19,6 +19,7 @@ bool inField(ivec2 s) { return all(greaterThanEqual(s, ivec2(0))) && all(lessTha
 
 #include "footprint.glsl"
 #include "surroundings.glsl"
+#include "contours.glsl"
 
 // Half the difference between the neighbours of `s` along `d`, or the difference to one neighbour where the other is a
 // hole; height units per step. `h` is the height at s.
@@ -63,6 +64,7 @@ struct SurfacePoint {
   ivec2 cell;     // among the samples that colours come from
   vec2 f;         // position in it, 0 .. 1
   vec4 h;         // heights of its corners
+  vec4 shown;     // what the colours show there
   bool hole;      // one of them is a hole
   bool displaced;    // drawn away from its exact position: see below
   bool compared;  // the original has a height here
@@ -79,6 +81,7 @@ SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
   p.h = panel.relief.x * uintBitsToFloat(raw);
   const float height = mix(mix(p.h.x, p.h.y, p.f.x), mix(p.h.z, p.h.w, p.f.x), p.f.y);
   p.value = height;
+  p.shown = p.h;
   p.compared = true;
   if (kDeviation) {
     uvec4 before;
@@ -90,6 +93,7 @@ SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
     // Corner by corner, so that equal samples give exactly zero.
     const vec4 d = p.h - panel.limits.z * uintBitsToFloat(before);
     p.value = mix(mix(d.x, d.y, p.f.x), mix(d.z, d.w, p.f.x), p.f.y);
+    p.shown = d;
   }
   // Where a coarse cell is drawn in place of a steep wall, the drawn point is not above the sample's position but
   // displaced: it shows the wall at its own height, so it takes colour and light from there. Otherwise walls would be
@@ -102,9 +106,30 @@ SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
 
 float contourOf(SurfacePoint p) { return p.value / panel.colouring.z; }
 
-// `facet`: normal of the geometry, used where the point is displaced. `contour`: contourOf, and its change over one
-// ray.
-vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_width) {
+// How much of a contour line covers the point, 0 .. 1: lines of one width on the screen. `contour`: contourOf, and its
+// change over one ray; `steps`: samples that the position changes by from this ray to the next, along and up the
+// picture.
+float contourInk(SurfacePoint p, float contour, float contour_width, mat2 steps) {
+  float shown = 1.0;
+  if (!p.displaced) {
+    const bvec2 after = greaterThanEqual(p.f, vec2(0.5));
+    const vec2 pair = after.y ? p.shown.zw : p.shown.xy;
+    const Trend trend = trendAround(p.cell + ivec2(after), after.x ? pair.y : pair.x);
+    shown = smoothstep(0.9, 1.6, trend.rise / max(trend.residual, 1e-30));
+    // Steps are no noise: their width is that of the cell itself.
+    const vec2 own = 0.5 * vec2(p.shown.y - p.shown.x + p.shown.w - p.shown.z,
+                                p.shown.z - p.shown.x + p.shown.w - p.shown.y);
+    const float noisy = 1.0 - smoothstep(3.0, 5.0, length(own) / max(trend.residual, 1e-30));
+    const vec2 change = trend.slope * steps / (float(1 << shade_log2) * panel.colouring.z);
+    contour_width = mix(contour_width, abs(change.x) + abs(change.y), noisy);
+  }
+  const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
+  // Lines closer than four rays would fill the surface: they are faded out.
+  return shown * (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
+}
+
+// `facet`: normal of the geometry, used where the point is displaced. The others as contourInk().
+vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_width, mat2 steps) {
   const ivec2 nearest = p.cell + ivec2(round(p.f));
   vec2 g;
   if (kSmooth) {
@@ -136,11 +161,6 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
     if (kOcclusion) c *= 1.0 - panel.form.x * normal.z * s.hidden;
     if (kCavity) c *= 1.0 - panel.form.y * normal.z * s.hollow;
   }
-  if (kContours && p.compared) {
-    const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
-    // Lines closer than four rays would fill the surface: they are faded out.
-    const float ink = (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
-    c = mix(c, vec3(0.01), 0.7 * ink);
-  }
+  if (kContours && p.compared) c = mix(c, vec3(0.01), 0.7 * contourInk(p, contour, contour_width, steps));
   return min(c, vec3(1.0));
 }

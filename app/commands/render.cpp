@@ -40,6 +40,7 @@ struct RenderArguments {
   std::vector<double> range;
   bool perspective = false;
   bool contours = false;
+  render::Colouring colouring;
   bool dark = false;
   bool bare = false;
   bool invert = false;
@@ -69,7 +70,8 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
     view.centre_y = options.centre[1];
   }
   if (options.perspective) view.projection = render::Projection::kPerspective;
-  if (options.contours) w.input.contours = render::Contours::kShow;
+  if (options.contours || options.colouring.contour_step > 0.0) w.input.contours = render::Contours::kShow;
+  w.input.colouring = options.colouring;
   w.input.form = options.form;
   w.input.form.filtered_normals = options.normals == "footprint";
   if (options.dark) w.input.theme = render::Theme::kDark;
@@ -80,7 +82,7 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
                                                               {"cividis", render::ColourMap::kCividis},
                                                               {"grey", render::ColourMap::kGrey},
                                                               {"diverging", render::ColourMap::kDiverging}};
-  w.input.map = kMaps.at(options.map);
+  w.input.colouring.map = kMaps.at(options.map);
   static const std::map<std::string, render::StereoMode> kStereo{
       {"off", render::StereoMode::kOff},
       {"side-by-side", render::StereoMode::kSideBySide},
@@ -266,6 +268,21 @@ void addRender(Command root, Chosen& chosen) {
       {.name = "--contours",
        .to = &options->contours,
        .text = "Contour lines at the steps of the colour bar"},
+      {.name = "--contour-step",
+       .to = &options->colouring.contour_step,
+       .text = "Contour lines this far apart, in the unit of the heights",
+       .range = Range{0.0, 1e30},
+       .shown = "D",
+       .otherwise = "none, or those of --contours"},
+      {.name = "--tolerance",
+       .to = &options->colouring.tolerance,
+       .text = "Deviations up to this are shown as none, in the unit of the heights",
+       .range = Range{0.0, 1e30},
+       .shown = "D",
+       .otherwise = "none are"},
+      {.name = "--steps",
+       .to = &options->colouring.steps,
+       .text = "Twelve steps of one colour each instead of a gradual change"},
       {.name = "--normals",
        .to = &options->normals,
        .text = "What the light falls on where samples are smaller than pixels",

@@ -40,6 +40,12 @@ glm::vec4 aroundOf(const PanelPlan& p, int shift, bool smooth) {
   return glm::vec4(glm::dvec4(along, between));
 }
 
+// PanelUniforms::seam.zw of a level whose step is 2^shift samples.
+glm::vec2 contourSquareOf(const PanelPlan& p, int shift) {
+  const glm::dvec2 steps = kContourPx / p.camera.pixelsPerMm() / std::ldexp(1.0, shift) / p.placing.spacing;
+  return glm::clamp(glm::round(steps), 1.0, double{kMostAround});
+}
+
 glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
   const double azimuth = input.light_azimuth_deg * std::numbers::pi / 180.0;
   const double up = std::sin(input.light_elevation_deg * std::numbers::pi / 180.0);
@@ -186,6 +192,12 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
     u.form = glm::vec4(share * glm::dvec4(input.form.occlusion, input.form.cavity, 0.0, 0.0));
     const float most = std::max(std::max(u.around.x, u.around.y), std::max(u.around.z, u.around.w));
     panel.reach = std::max(panel.reach, static_cast<int>(std::ceil(most)));
+  }
+  if (input.contours == Contours::kShow) {
+    const glm::vec2 square = contourSquareOf(p, shift);
+    u.seam.z = square.x;
+    u.seam.w = square.y;
+    panel.reach = std::max(panel.reach, static_cast<int>(std::max(square.x, square.y)));
   }
   u.footprint = glm::ivec4(footprint, panel.reach, 0);
   panel.variant = {

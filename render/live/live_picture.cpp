@@ -293,6 +293,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   if (reusable) drawn = std::move(current);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
+  stats.contour_step = plan.contour_step;
   stats.vertical_exaggeration = plan.exaggeration;
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   stats.record_ms = watch.ms() - stats.select_ms - upload_ms;

@@ -100,7 +100,7 @@ struct FrameInput {
   Contours contours = Contours::kHide;
   FormShading form;
   double marks_opacity = 0.65;
-  ColourMap map = ColourMap::kAuto;
+  Colouring colouring{};
   Theme theme = Theme::kDark;
   Decoration decoration = Decoration::kFull;
   double decoration_scale = 0.0;    ///< of text and bars, see layOut; 0: by the picture's size
@@ -179,6 +179,7 @@ struct FrameStatistics {
   double wait_ms = 0.0;     ///< waiting for the frame before the last one: the device is behind
   double device_ms = -1.0;  ///< from submission to completion, of the last completed frame; -1: none yet
   ValueRange range;
+  double contour_step = 0.0;  ///< between two contour lines [height_unit]
   double vertical_exaggeration = 1.0;
   double pixels_per_mm = 1.0;         ///< at the middle of the picture
   std::vector<std::string> warnings;  ///< e.g. text that did not fit

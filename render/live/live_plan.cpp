@@ -92,7 +92,7 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
   spec.range = input.range;
   spec.marks = shown.marks;
   spec.marks_opacity = input.marks_opacity;
-  spec.map = input.map;
+  spec.colouring = input.colouring;
   spec.contours = input.contours;
   spec.decoration = input.decoration;
   spec.theme = input.theme;

@@ -5,17 +5,22 @@
 #include <cmath>
 #include <span>
 
+#include "render/config.h"
+
 #include "colour_map_data.h"  // generated from assets/colour_maps
 
 namespace fettle::render {
 namespace {
+
+// A deviation just beyond the tolerance, as a share of the way from the middle colour to the end's.
+constexpr double kBeyondTolerance = 0.3;
 
 glm::vec3 linear(const std::array<float, 3>& code) {
   return {linearFromSrgb(code[0]), linearFromSrgb(code[1]), linearFromSrgb(code[2])};
 }
 
 // Tables with fewer steps are interpolated linearly in code values.
-ColourTable tableOf(std::span<const std::array<float, 3>> steps) {
+ColourTable evenly(std::span<const std::array<float, 3>> steps) {
   ColourTable table;
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double at = static_cast<double>(i) / 255.0 * static_cast<double>(steps.size() - 1);
@@ -40,12 +45,12 @@ double srgbFromLinear(double light) noexcept {
 }
 
 const ColourTable& colourTable(ColourMap map) {
-  static const ColourTable viridis = tableOf(data::kViridis);
-  static const ColourTable cividis = tableOf(data::kCividis);
-  static const ColourTable diverging = tableOf(data::kDiverging);
+  static const ColourTable viridis = evenly(data::kViridis);
+  static const ColourTable cividis = evenly(data::kCividis);
+  static const ColourTable diverging = evenly(data::kDiverging);
   // Begins at dark grey, so that shading can darken the lowest heights too.
   static constexpr std::array<std::array<float, 3>, 2> kGreyEnds{{{0.2F, 0.2F, 0.2F}, {1.0F, 1.0F, 1.0F}}};
-  static const ColourTable grey = tableOf(kGreyEnds);
+  static const ColourTable grey = evenly(kGreyEnds);
   switch (map) {
     case ColourMap::kAuto:
       assert(false && "resolve() first");
@@ -65,6 +70,29 @@ const ColourTable& colourTable(ColourMap map) {
 ColourMap resolve(ColourMap map, Quantity quantity) noexcept {
   if (map != ColourMap::kAuto) return map;
   return quantity == Quantity::kDeviation ? ColourMap::kDiverging : ColourMap::kViridis;
+}
+
+ColourTable tableOf(const Colouring& colouring, Quantity quantity, const ValueRange& range) {
+  const ColourTable& map = colourTable(resolve(colouring.map, quantity));
+  const double limit = 0.5 * (range.high - range.low);
+  const double tolerance =
+      quantity == Quantity::kDeviation ? std::min(colouring.tolerance / limit, 1.0) : 0.0;
+  if (!colouring.steps && !(tolerance > 0.0)) return map;
+  ColourTable table;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    // Of the range's half: -1 .. 1.
+    double at = 2.0 * static_cast<double>(k) / static_cast<double>(table.size() - 1) - 1.0;
+    if (tolerance > 0.0) {
+      const double beyond = (std::abs(at) - tolerance) / std::max(1.0 - tolerance, 1e-9);
+      at = beyond > 0.0 ? std::copysign(kBeyondTolerance + (1.0 - kBeyondTolerance) * beyond, at) : 0.0;
+    }
+    if (colouring.steps && !(tolerance > 0.0 && at == 0.0)) {
+      constexpr double kHalf = 0.5 * kColourSteps;
+      at = (std::clamp(std::floor(at * kHalf), -kHalf, kHalf - 1.0) + 0.5) / kHalf;
+    }
+    table[k] = mapped(map, at, {-1.0, 1.0});
+  }
+  return table;
 }
 
 glm::vec3 mapped(const ColourTable& table, double value, const ValueRange& range) noexcept {

@@ -26,6 +26,11 @@ enum class Quantity { kHeight, kDeviation };
 /// table's colours in linear light, as in the shaders.
 [[nodiscard]] glm::vec3 mapped(const ColourTable& table, double value, const ValueRange& range) noexcept;
 
+/// The table of a picture whose colours span `range`: that of `colouring`'s map (resolved), in steps and with its
+/// middle colour up to the tolerance where `quantity` has one. Between two steps, and at the tolerance, the
+/// colour changes within 1/255 of the range.
+[[nodiscard]] ColourTable tableOf(const Colouring& colouring, Quantity quantity, const ValueRange& range);
+
 /// IEC 61966-2-1, channel values 0 .. 1.
 [[nodiscard]] double linearFromSrgb(double code) noexcept;
 [[nodiscard]] double srgbFromLinear(double light) noexcept;

@@ -54,7 +54,7 @@ enum class MarksOverlay {
 
 enum class Contours {
   kHide,
-  kShow,  ///< lines of equal height at the steps of the colour bar
+  kShow,  ///< lines of equal height, or deviation
 };
 
 /// How shading shows the form of the surface. What is off is not in the shader.
@@ -90,6 +90,19 @@ struct ValueRange {
   friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 
+/// How values become colours.
+struct Colouring {
+  ColourMap map = ColourMap::kAuto;
+  /// The values in equal steps of one colour each, kColourSteps (render/config.h) from end to end.
+  bool steps = false;
+  /// Deviations of at most this have the middle colour, larger ones differ from it visibly; >= 0 [height_unit];
+  /// 0: none do. No effect on heights.
+  double tolerance = 0.0;
+  /// Between two contour lines, >= 0, finite [height_unit]; 0: at the steps of the colour bar.
+  double contour_step = 0.0;
+  friend bool operator==(const Colouring&, const Colouring&) = default;
+};
+
 /// What a picture shows of its fields, and how.
 struct PictureSpec {
   View view;
@@ -102,7 +115,7 @@ struct PictureSpec {
   std::optional<ValueRange> range;
   MarksOverlay marks = MarksOverlay::kHide;
   double marks_opacity = 0.65;  ///< 0 .. 1
-  ColourMap map = ColourMap::kAuto;
+  Colouring colouring{};
   Contours contours = Contours::kHide;
   Decoration decoration = Decoration::kFull;
   Theme theme = Theme::kLight;

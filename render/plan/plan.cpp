@@ -43,6 +43,10 @@ engine::Status check(const PictureSpec& spec) {
   if (spec.range && !(std::isfinite(spec.range->low) && std::isfinite(spec.range->high) &&
                       spec.range->low < spec.range->high))
     return inputError("the range of the colours is empty", "picture", "give a low end below the high end");
+  const Colouring& c = spec.colouring;
+  if (!in(c.tolerance, 0.0, 1e30) || !in(c.contour_step, 0.0, 1e30))
+    return inputError("the tolerance or the step of contour lines is out of range", "picture",
+                      "give 0 or more");
   return {};
 }
 
@@ -128,7 +132,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
 
   // Colours.
   const Quantity quantity = spec.deviation_from ? Quantity::kDeviation : Quantity::kHeight;
-  plan.map = resolve(spec.map, quantity);
+  plan.map = resolve(spec.colouring.map, quantity);
   plan.palette = paletteOf(spec.theme, plan.map);
   // Constant values: a bar of about the size of the relief, or of a hundredth of the field's width.
   const double flat_half =
@@ -140,8 +144,10 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   }
 
   const std::vector<Tick> steps = ticks(plan.range.low, plan.range.high, 13);
-  const double contour_step =
-      steps.size() > 1 ? steps[1].value - steps[0].value : plan.range.high - plan.range.low;
+  plan.contour_step = spec.colouring.contour_step > 0.0 ? spec.colouring.contour_step
+                      : steps.size() > 1                ? steps[1].value - steps[0].value
+                                                        : plan.range.high - plan.range.low;
+  const ColourTable table = tableOf(spec.colouring, quantity, plan.range);
 
   for (std::size_t i = 0; i < fields.size(); ++i) {
     PanelPlan panel;
@@ -182,7 +188,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     u.limits = glm::vec4(glm::dvec4(lowest_drawn * share, highest_drawn * share,
                                     spec.deviation_from ? spec.deviation_from->reader().sign() : 1.0F, 0.0));
     u.colouring = glm::vec4(glm::dvec4(plan.range.low * share, own_unit / (plan.range.high - plan.range.low),
-                                       contour_step * share, 0.0));
+                                       plan.contour_step * share, 0.0));
     const glm::dvec3 right = panel.camera.right();
     const glm::dvec3 away{-right.y, right.x, 0.0};  // horizontal, from the viewer into the picture
     const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
@@ -199,7 +205,6 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     const double least = spec.view.projection == Projection::kPerspective ? 0.3 : 0.0;
     const double upright = std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm();
     u.seam = glm::vec4(0.0F, static_cast<float>(std::min(1e30, 1.0 / std::max(upright, 1e-30))), 0.0F, 0.0F);
-    const ColourTable& table = colourTable(plan.map);
     for (std::size_t k = 0; k < table.size(); ++k) u.colours[k] = glm::vec4(table[k], 1.0F);
     plan.panels.push_back(std::move(panel));
   }
@@ -222,10 +227,16 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   if (f.below || f.above) {
     f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * f.height_unit.per_unit),
                          shortNumber(colours.extreme.high * f.height_unit.per_unit));
-    if (quantity == Quantity::kDeviation && !spec.range) f.note += "\nbar: 99.5 %";
+    if (quantity == Quantity::kDeviation && !spec.range)
+      f.note += fmt::format("\nbar: {:.3g} %", 100.0 * colours.share);
   }
   if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})
     f.note = "no deviation";
+  const auto add = [&](const std::string& line) { f.note += (f.note.empty() ? "" : "\n") + line; };
+  if (quantity == Quantity::kDeviation && spec.colouring.tolerance > 0.0)
+    add("\u00b1" + shortNumber(spec.colouring.tolerance * f.height_unit.per_unit) + " is 0");
+  if (spec.contours == Contours::kShow)
+    add("lines: " + shortNumber(plan.contour_step * f.height_unit.per_unit));
   return plan;
 }
 

@@ -37,6 +37,7 @@ struct PicturePlan {
   Palette palette;
   ColourMap map = ColourMap::kViridis;
   ValueRange range;
+  double contour_step = 0.0;  ///< [height_unit of the first field]
   double exaggeration = 1.0;
 };
 

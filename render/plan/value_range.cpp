@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -30,12 +31,8 @@ void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const auto& visit) 
     visit(static_cast<std::size_t>((tile_number * 977 + k * kStep) & (engine::kTileSamples - 1)));
 }
 
-}  // namespace
-
-ValueSpan heightSpan(const engine::Version& field) {
-  const engine::FieldReader reader = field.reader();
-  const engine::HeightBounds bounds = reader.bounds();
-  if (bounds.empty()) return {};
+// Some of the heights, not sorted.
+std::vector<float> someHeights(const engine::FieldReader& reader) {
   const std::int64_t tiles = std::int64_t{reader.tileColumns()} * reader.tileRows();
   std::vector<float> values;
   values.reserve(static_cast<std::size_t>(std::min(tiles * engine::kTileSamples, 2 * kRangeSamples)));
@@ -47,6 +44,16 @@ ValueSpan heightSpan(const engine::Version& field) {
         if (!std::isnan(tile.samples[i])) values.push_back(reader.sign() * tile.samples[i]);
       });
     }
+  return values;
+}
+
+}  // namespace
+
+ValueSpan heightSpan(const engine::Version& field) {
+  const engine::FieldReader reader = field.reader();
+  const engine::HeightBounds bounds = reader.bounds();
+  if (bounds.empty()) return {};
+  std::vector<float> values = someHeights(reader);
   ValueSpan span;
   span.empty = false;
   span.extreme = {bounds.min, bounds.max};
@@ -90,45 +97,103 @@ RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& 
     kExtremesOf(ta.samples.data(), tb.samples.data(), a.sign(), b.sign(), low, high);
     row.extreme = {*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes)};
     forSomeOf(tiles, std::int64_t{tile_row} * a.tileColumns() + tc, [&](std::size_t i) {
-      const double d = std::abs(double{a.sign()} * ta.samples[i] - double{b.sign()} * tb.samples[i]);
-      if (d > 0.0) row.changes.push_back(d);
+      const double d = double{a.sign()} * ta.samples[i] - double{b.sign()} * tb.samples[i];
+      if (std::abs(d) > 0.0) row.changes.push_back(d);
     });
   }
   return row;
 }
 
-}  // namespace
-
-ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original) {
+// Of all rows: changes in the order of the tiles.
+RowSpan deviationOf(const engine::Version& field, const engine::Version& original) {
   const engine::FieldReader a = field.reader(), b = original.reader();
   assert(a.width() == b.width() && a.height() == b.height());
   std::vector<RowSpan> rows(static_cast<std::size_t>(a.tileRows()));
   oneapi::tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
     rows[r] = deviationOfRow(a, b, static_cast<std::int32_t>(r));
   });
-  ValueSpan span;
-  std::vector<double> changes;
-  for (RowSpan& row : rows) {
-    changes.insert(changes.end(), row.changes.begin(), row.changes.end());
-    if (!(row.extreme.low <= row.extreme.high)) continue;
-    span.extreme = span.empty ? row.extreme
-                              : ValueRange{std::min(span.extreme.low, row.extreme.low),
-                                           std::max(span.extreme.high, row.extreme.high)};
-    span.empty = false;
+  RowSpan all;
+  for (const RowSpan& row : rows) {
+    all.changes.insert(all.changes.end(), row.changes.begin(), row.changes.end());
+    all.extreme = {std::min(all.extreme.low, row.extreme.low), std::max(all.extreme.high, row.extreme.high)};
   }
+  return all;
+}
+
+}  // namespace
+
+ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original) {
+  RowSpan all = deviationOf(field, original);
+  ValueSpan span;
+  if (!(all.extreme.low <= all.extreme.high)) return span;
+  span.empty = false;
+  span.extreme = all.extreme;
+  std::vector<double>& changes = all.changes;
+  for (double& d : changes) d = std::abs(d);
   const double largest = std::max(-span.extreme.low, span.extreme.high);
   double limit = largest;
   if (changes.size() >= 64) {
-    const double usual = percentile(changes, 0.995);
+    const double usual = std::min(percentile(changes, 0.995), kUsualChanges * percentile(changes, 0.5));
     if (largest > 1.25 * usual) limit = usual;
+    span.share = static_cast<double>(std::count_if(changes.begin(), changes.end(),
+                                                   [limit](double d) { return d <= limit; })) /
+                 static_cast<double>(changes.size());
   }
   span.robust = {-limit, limit};
   return span;
 }
 
+double ValueSample::quantile(double share) const noexcept {
+  const double last = static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * last + 0.5)];
+}
+
+double ValueSample::within(double low, double high) const noexcept {
+  if (sorted.empty() || !(low <= high)) return 0.0;
+  const auto from = std::lower_bound(sorted.begin(), sorted.end(), low);
+  const auto to = std::upper_bound(from, sorted.end(), high);
+  return static_cast<double>(to - from) / static_cast<double>(sorted.size());
+}
+
+ValueRange ValueSample::middle(double share) const noexcept {
+  const double outside = 0.5 * (1.0 - std::clamp(share, 0.0, 1.0));
+  return {quantile(outside), quantile(1.0 - outside)};
+}
+
+ValueRange ValueSample::symmetric(double share) const noexcept {
+  // The smallest limit between two neighbouring magnitudes, by bisection of the sorted values from both sides.
+  double low = 0.0, high = std::max(std::abs(sorted.front()), std::abs(sorted.back()));
+  for (int i = 0; i < 60 && low < high; ++i) {
+    const double half = 0.5 * (low + high);
+    (within(-half, half) >= share ? high : low) = half;
+  }
+  return {-high, high};
+}
+
+ValueSample heightSample(const engine::Version& field) {
+  const engine::FieldReader reader = field.reader();
+  const engine::HeightBounds bounds = reader.bounds();
+  ValueSample sample;
+  if (bounds.empty()) return sample;
+  const std::vector<float> values = someHeights(reader);
+  sample.sorted.assign(values.begin(), values.end());
+  std::sort(sample.sorted.begin(), sample.sorted.end());
+  sample.extreme = {bounds.min, bounds.max};
+  return sample;
+}
+
+ValueSample deviationSample(const engine::Version& field, const engine::Version& original) {
+  RowSpan all = deviationOf(field, original);
+  ValueSample sample;
+  sample.sorted = std::move(all.changes);
+  std::sort(sample.sorted.begin(), sample.sorted.end());
+  if (!sample.sorted.empty()) sample.extreme = all.extreme;
+  return sample;
+}
+
 ValueSpan negated(const ValueSpan& span) noexcept {
   const auto turned = [](const ValueRange& r) { return ValueRange{0.0 - r.high, 0.0 - r.low}; };
-  return {turned(span.robust), turned(span.extreme), span.empty};
+  return {turned(span.robust), turned(span.extreme), span.empty, span.share};
 }
 
 ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept {
@@ -136,7 +201,8 @@ ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept {
   if (b.empty) return a;
   return {{std::min(a.robust.low, b.robust.low), std::max(a.robust.high, b.robust.high)},
           {std::min(a.extreme.low, b.extreme.low), std::max(a.extreme.high, b.extreme.high)},
-          false};
+          false,
+          std::min(a.share, b.share)};
 }
 
 }  // namespace fettle::render

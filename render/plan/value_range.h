@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/field/version.h"
 #include "render/plan/picture.h"
 
@@ -13,6 +15,7 @@ struct ValueSpan {
   ValueRange robust;
   ValueRange extreme;  ///< the true lowest and highest value
   bool empty = true;   ///< no value at all: all holes. The ranges are 0, 0 then.
+  double share = 1.0;  ///< of the deviations that are not zero, those within the robust range, 0 .. 1
 };
 
 /// Heights, sign applied [height_unit]. Percentiles 0.2 and 99.8 of about a million samples spread evenly
@@ -20,10 +23,31 @@ struct ValueSpan {
 [[nodiscard]] ValueSpan heightSpan(const engine::Version& field);
 
 /// field - original where both have a sample, in double precision; both of one width and height. Exact
-/// extremes; the robust range is symmetric about zero: 99.5th percentile of the absolute value of the
-/// deviations that are not zero (unchanged samples do not indicate the size of changes), or the largest when
-/// within 1.25 times that. Tiles that the two share are not read.
+/// extremes; the robust range is symmetric about zero, of the absolute value of the deviations that are not
+/// zero (unchanged samples do not indicate the size of changes): up to the 99.5th percentile, but not beyond
+/// kUsualChanges times the median, which noise stays below and a few samples at an edge do not move; or up to
+/// the largest when within 1.25 times that. Tiles that the two share are not read.
 [[nodiscard]] ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original);
+
+/// Values of a field (or of a deviation) for choosing the range of the colours: how often each occurs.
+struct ValueSample {
+  std::vector<double>
+      sorted;          ///< ascending, about a million at most [height_unit]; of a deviation those not 0
+  ValueRange extreme;  ///< as ValueSpan; of a deviation without its zeros
+
+  [[nodiscard]] bool empty() const noexcept { return sorted.empty(); }
+  /// The value below which `share` (0 .. 1) of them lie. Not empty.
+  [[nodiscard]] double quantile(double share) const noexcept;
+  /// Share of them that lie within [low, high].
+  [[nodiscard]] double within(double low, double high) const noexcept;
+  /// The range that holds the middle `share` of them; symmetric about zero for a deviation. Not empty.
+  [[nodiscard]] ValueRange middle(double share) const noexcept;
+  [[nodiscard]] ValueRange symmetric(double share) const noexcept;
+};
+
+/// The same samples as those of heightSpan and deviationSpan. Any thread.
+[[nodiscard]] ValueSample heightSample(const engine::Version& field);
+[[nodiscard]] ValueSample deviationSample(const engine::Version& field, const engine::Version& original);
 
 /// The span of the same values with their signs changed. For heights and deviations alike: the result of
 /// heightSpan and deviationSpan for inverted fields, except for how a percentile between two samples is

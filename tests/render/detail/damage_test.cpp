@@ -180,7 +180,7 @@ TEST(Damage, NothingIsDrawnAnewWhereNothingChangedAndLittleUnderABrush) {
   // Whatever else changes is drawn as a whole.
   input.light_azimuth_deg = 10;
   EXPECT_EQ(twins.shoot(input), 1.0);
-  input.map = ColourMap::kGrey;
+  input.colouring.map = ColourMap::kGrey;
   EXPECT_EQ(twins.shoot(input), 1.0);
   shown.versions = {live.snapshot().inverted()};
   ASSERT_TRUE(twins.picture().update(shown));

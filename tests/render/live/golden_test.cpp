@@ -125,7 +125,7 @@ TEST(Golden, SideBySideFromAbove) {
   still.input.view.azimuth_deg = 0;
   still.input.view.elevation_deg = 90;
   still.input.titles = {"scan", "smoothed"};
-  still.input.map = ColourMap::kCividis;
+  still.input.colouring.map = ColourMap::kCividis;
   compareWithGolden("side_by_side", still);
 }
 
@@ -140,7 +140,7 @@ TEST(Golden, DeviationOnDarkInPerspective) {
 
 TEST(Golden, GreyWithContourLines) {
   Still still = small(part(0.0));
-  still.input.map = ColourMap::kGrey;
+  still.input.colouring.map = ColourMap::kGrey;
   still.input.contours = Contours::kShow;
   compareWithGolden("grey_contours", still);
 }
@@ -162,7 +162,7 @@ TEST(Golden, LiveContoursOnASmoothPart) {
   shown.versions = {part(0.0)};
   FrameInput input = frame(330, 55);
   input.contours = Contours::kShow;
-  input.map = ColourMap::kGrey;
+  input.colouring.map = ColourMap::kGrey;
   compareWithGolden("live_contours", shown, input);
 }
 

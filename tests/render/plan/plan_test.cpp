@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/grid.h"
+#include "render/config.h"
 #include "render/plan/colour_map.h"
 #include "render/plan/number_text.h"
 #include "tests/render/support/fields.h"
@@ -42,6 +43,40 @@ TEST(ValueRange, DeviationIsSymmetricAboutZeroAndIgnoresUntouchedSamples) {
   EXPECT_EQ(span.extreme, (ValueRange{-0.25, 50}));
   EXPECT_EQ(span.robust, (ValueRange{-0.25, 0.25}));
   EXPECT_EQ(deviationSpan(a, a).robust, (ValueRange{0, 0}));
+}
+
+TEST(ValueRange, ChangesAreSeenBesideAnEdgeThatMoved) {
+  // Twenty samples in a hundred moved by 3, the rest by some hundredths.
+  const engine::Version a = fieldOf(gridOf(200, 200), [](int, int) { return 0.0; });
+  const engine::Version b = fieldOf(gridOf(200, 200), [](int c, int r) {
+    return c % 5 == 0 ? 3.0 : 0.01 + 0.02 * ((r * 37 + c * 11) % 100) / 100.0;
+  });
+  const ValueSpan span = deviationSpan(b, a);
+  EXPECT_EQ(span.extreme.high, 3.0);
+  // The median is 0.0225 or so: of a hundred values 62.5 in the middle of those below 3.
+  EXPECT_NEAR(span.robust.high, kUsualChanges * 0.0225, 0.01);
+  EXPECT_NEAR(span.share, 0.8, 0.01);
+}
+
+TEST(ValueSample, SharesAndQuantilesAreThoseOfAllSamples) {
+  const engine::Version field =
+      fieldOf(gridOf(200, 100), [](int c, int r) { return c < 3 && r < 3 ? kNan : c + 200 * r; });
+  const ValueSample heights = heightSample(field);
+  EXPECT_EQ(heights.extreme, (ValueRange{3, 19999}));
+  EXPECT_NEAR(heights.quantile(0.25), 5000, 100);
+  EXPECT_NEAR(heights.middle(0.9).low, 1000, 100);
+  EXPECT_NEAR(heights.within(5000, 15000), 0.5, 0.01);
+  EXPECT_EQ(heights.within(2, 1), 0.0);
+  // Only what changed counts, and by its size.
+  const engine::Version changed = fieldOf(gridOf(200, 100), [](int c, int r) {
+    return c < 3 && r < 3 ? kNan : c + 200 * r + (c < 100 ? 0.0 : c < 150 ? -1.0 : 2.0);
+  });
+  const ValueSample changes = deviationSample(changed, field);
+  EXPECT_EQ(changes.extreme, (ValueRange{-1, 2}));
+  EXPECT_NEAR(changes.symmetric(0.4).high, 1.0, 1e-9);
+  EXPECT_NEAR(changes.symmetric(1.0).high, 2.0, 1e-9);
+  EXPECT_TRUE(deviationSample(field, field).empty());
+  EXPECT_TRUE(heightSample(fieldOf(gridOf(5, 5), [](int, int) { return kNan; })).empty());
 }
 
 TEST(ValueRange, OfInvertedFieldsTheEndsChangePlacesAndSigns) {
@@ -251,6 +286,45 @@ TEST(ColourMaps, EndsAndMiddleAreTheSourcesOwn) {
   EXPECT_EQ(code(colourTable(ColourMap::kCividis).front()), glm::ivec3(0, 34, 78));
   const glm::vec3 zero = mapped(colourTable(ColourMap::kDiverging), 0.0, {-3, 3});
   EXPECT_GT(std::min({zero.x, zero.y, zero.z}), 0.97F);
+}
+
+TEST(ColourMaps, AToleranceIsTheMiddleColourAndStepsAreOneColourEach) {
+  const ValueRange range{-4, 4};
+  const glm::vec3 zero = mapped(colourTable(ColourMap::kDiverging), 0.0, range);
+  const auto apart = [&](const ColourTable& table, double value) {
+    return glm::length(mapped(table, value, range) - zero);
+  };
+  const ColourTable tolerant = tableOf({.tolerance = 1.0}, Quantity::kDeviation, range);
+  // A step of the table is 8 / 255.
+  for (const double value : {-0.96, -0.5, 0.0, 0.7, 0.96}) EXPECT_LT(apart(tolerant, value), 1e-6) << value;
+  for (const double value : {-1.04, 1.04}) EXPECT_GT(apart(tolerant, value), 0.1) << value;
+  EXPECT_EQ(tolerant.front(), colourTable(ColourMap::kDiverging).front());
+  EXPECT_EQ(tolerant.back(), colourTable(ColourMap::kDiverging).back());
+  // Of heights it is none, and beyond the range all are within it.
+  EXPECT_EQ(tableOf({.tolerance = 1.0}, Quantity::kHeight, range), colourTable(ColourMap::kViridis));
+  const ColourTable all = tableOf({.tolerance = 9.0}, Quantity::kDeviation, range);
+  for (const double value : {-4.0, 0.0, 4.0}) EXPECT_LT(apart(all, value), 1e-6) << value;
+  ColourTable steps = tableOf({.steps = true}, Quantity::kHeight, range);
+  EXPECT_EQ(std::unique(steps.begin(), steps.end()) - steps.begin(), kColourSteps);
+}
+
+TEST(Plan, ContourLinesAreAsFarApartAsAskedOrAtTheStepsOfTheBar) {
+  const std::vector<engine::Version> fields{fieldOf(gridOf(64, 64), [](int c, int) { return c; })};
+  PictureSpec spec;
+  spec.contours = Contours::kShow;
+  const auto plan = [&] {
+    return planPicture(spec, fields, spansOf(fields, {}),
+                       layOut(spec.view, spec.decoration, 1, Titles::kNone));
+  };
+  EXPECT_EQ(plan()->contour_step, 5.0);
+  spec.colouring.contour_step = 0.75;
+  EXPECT_EQ(plan()->contour_step, 0.75);
+  EXPECT_EQ(plan()->panels[0].uniforms.colouring.z, 0.75F);
+  EXPECT_NE(plan()->decorations.note.find("lines: 0.75"), std::string::npos);
+  spec.colouring.contour_step = -1.0;
+  EXPECT_FALSE(plan());
+  spec.colouring = {.tolerance = std::nan("")};
+  EXPECT_FALSE(plan());
 }
 
 TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
