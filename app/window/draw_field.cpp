@@ -22,7 +22,8 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, b
   input.contours = display.contours ? render::Contours::kShow : render::Contours::kHide;
   input.form = display.form;
   input.marks_opacity = display.marks_opacity;
-  input.map = display.map;
+  input.range = parts.colours.range(display, parts.picture.shown());
+  input.colouring = parts.colours.colouring(display, ColourRange::quantityOf(parts.picture.shown()));
   input.stereo.mode = display.stereo;
   input.stereo.eye_separation = static_cast<double>(display.eye_separation);
   input.theme = display.theme;

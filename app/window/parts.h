@@ -8,6 +8,7 @@
 #include "app/window/active_document.h"
 #include "app/window/brush_adjustment.h"
 #include "app/window/change_figures.h"
+#include "app/window/colour_range.h"
 #include "app/window/drags.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
@@ -71,6 +72,7 @@ struct Parts {
   TransformTool transform;
   CompareTool compare;
   ChangeFigures change;
+  ColourRange colours;
   ChoiceCosts costs;
   render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array kMaps{"automatic", "viridis", "cividis", "grey", "diverging"};
+constexpr std::array kRangeRules{"automatic", "share", "all"};
 constexpr std::array kHabits{"blender", "cloudcompare", "meshlab"};
 
 void take(const json& from, const char* name, bool& value) {
@@ -35,6 +36,11 @@ void take(const json& from, const char* name, const std::array<const char*, N>& 
     if (it->get<std::string>() == words[i]) value = static_cast<Enum>(i);
 }
 
+// Ends that were typed are of one scan.
+const char* wordOf(const RangeRule& rule) {
+  return kRangeRules[rule.kind == RangeRule::Kind::kTyped ? 0 : static_cast<std::size_t>(rule.kind)];
+}
+
 }  // namespace
 
 std::string Settings::text() const {
@@ -45,6 +51,11 @@ std::string Settings::text() const {
               {"split", d.split},
               {"split_at", d.split_at},
               {"colours", kMaps[static_cast<std::size_t>(d.map)]},
+              {"height_range", wordOf(d.heights)},
+              {"height_share", d.heights.share},
+              {"change_range", wordOf(d.changes)},
+              {"change_share", d.changes.share},
+              {"colour_steps", d.colour_steps},
               {"light_background", d.theme == render::Theme::kLight},
               {"marks_opacity", d.marks_opacity},
               {"light_azimuth", d.light_azimuth_deg},
@@ -76,6 +87,11 @@ Settings Settings::load(const std::string& path) {
   take(file, "split", d.split);
   take(file, "split_at", 0.02, 0.98, d.split_at);
   take(file, "colours", kMaps, d.map);
+  take(file, "height_range", kRangeRules, d.heights.kind);
+  take(file, "height_share", 0.01, 1.0, d.heights.share);
+  take(file, "change_range", kRangeRules, d.changes.kind);
+  take(file, "change_share", 0.01, 1.0, d.changes.share);
+  take(file, "colour_steps", d.colour_steps);
   bool light = false;
   take(file, "light_background", light);
   d.theme = light ? render::Theme::kLight : render::Theme::kDark;

@@ -10,6 +10,18 @@
 
 namespace fettle::app {
 
+/// Which values the colours span.
+struct RangeRule {
+  enum class Kind : std::uint8_t {
+    kAutomatic,  ///< found by the picture: render::PictureSpec::range
+    kShare,      ///< the middle `share` of heights; of changes the smallest ones
+    kAll,        ///< up to the extremes
+    kTyped,      ///< by hand: of one scan, not stored
+  };
+  Kind kind = Kind::kAutomatic;
+  double share = 0.95;  ///< 0.01 .. 1
+};
+
 /// Display settings, stored for the next start.
 struct Display {
   bool marks = true;
@@ -18,6 +30,8 @@ struct Display {
   bool split = true;
   double split_at = 0.5;
   render::ColourMap map = render::ColourMap::kAuto;
+  RangeRule heights{}, changes{};  ///< while colours show heights; changes or deviations
+  bool colour_steps = false;
   render::Theme theme = render::Theme::kDark;
   float marks_opacity = 0.65F;
   float light_azimuth_deg = 135.0F;

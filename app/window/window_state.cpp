@@ -91,6 +91,16 @@ void addBrushAndView(const Parts& p, Report& r) {
   r["contours"] = display.contours;
   r["vertices"] = display.vertices;
   r["colours"] = {rounded(range.low), rounded(range.high)};
+  const render::Shown& shown = p.picture.shown();
+  const RangeRule& rule = ColourRange::ruleOf(display, ColourRange::quantityOf(shown));
+  static constexpr const char* kRules[] = {"automatic", "share", "all", "typed"};
+  r["colour_rule"] = kRules[static_cast<std::size_t>(rule.kind)];
+  r["contour_step"] = p.picture.figures().contour_step;
+  r["tolerance"] = p.colours.typed.tolerance;
+  const auto& handles = p.colours.handles;
+  r["colour_handles"] =
+      handles ? Report{std::lround(handles->low_x), std::lround(handles->high_x), std::lround(handles->y)}
+              : Report();
   r["contact_level"] =
       scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
   r["measured"] = {!p.costs.contact().empty(), !p.costs.detail().empty()};
@@ -186,7 +196,7 @@ bool fieldIsSettled(const Parts& p) {
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
   if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
       p.heights.busy() || p.compare.busy() || p.transform.busy() || p.measure.busy() || p.section.busy() ||
-      p.marking.busy() || p.picture.empty())
+      p.marking.busy() || p.colours.busy() || p.picture.empty())
     return false;
   const render::Shown& shown = p.picture.shown();
   return shown.accepted.value_or(shown.versions.front()) == client.field() &&

@@ -182,7 +182,11 @@ void Workstation::takeResults() {
   }
   for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
   while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
-  changed |= p.change.poll(client, p.stylus.held() || p.marking.held());
+  const bool stroke = p.stylus.held() || p.marking.held();
+  changed |= p.change.poll(client, stroke);
+  const render::Shown& shown = p.picture.shown();
+  const bool counted = p.settings.side_panel && p.settings.panels["Colours"];
+  changed |= p.colours.poll(shown, counted || ColourRange::needsSample(p.settings.display, shown), stroke);
   for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
   if (changed) p.picture.requestRedraw();
 }
@@ -388,6 +392,7 @@ void Workstation::noteHeights() {
   Parts& p = parts_;
   const engine::Version& original = p.document.client()->original();
   const render::ValueRange heights = render::heightSpan(original).robust;
+  p.colours.clear(p.settings.display);
   p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
   if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
 }

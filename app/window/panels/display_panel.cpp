@@ -22,8 +22,6 @@ void shareSlider(const char* label, const char* id, double& share, const char* t
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs) {
   Display& display = settings.display;
-  actionTick("colours show the change", display.deviation, Action::kDeviation, context.act);
-  actionTick("contour lines", display.contours, Action::kContours, context.act);
   actionTick("scale bar and colour bar", display.decorations, Action::kDecorations, context.act);
   actionTick("light background", display.theme == render::Theme::kLight, Action::kTheme, context.act);
   ImGui::Checkbox("half resolution while it moves", &display.half_in_motion);
@@ -43,10 +41,6 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
         "opened again.");
   beginFields();
   detailChooser(context, display, picture, view, costs);
-  const char* maps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
-  int map = static_cast<int>(display.map);
-  if (field("colours", [&] { return ImGui::Combo("##colours", &map, maps, 5); }))
-    display.map = static_cast<render::ColourMap>(map);
   const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
   int mode = static_cast<int>(display.stereo);
   if (field("eyes", [&] { return ImGui::Combo("##eyes", &mode, eyes, 3); }))

@@ -41,6 +41,8 @@ void sectionPanel(const PanelContext& context, SectionTool& section);
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture);
 void historyPanel(const PanelContext& context, MarkEdit& edit);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
+/// The range of the colours over a histogram, tolerance, steps and contour lines.
+void colourPanel(const PanelContext& context, Display& display, ColourRange& colours, WindowPicture& picture);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs);
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times);

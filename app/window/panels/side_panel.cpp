@@ -57,6 +57,9 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(settings, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
   if (section(settings, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
+  parts.colours.handles.reset();
+  if (section(settings, "Colours", false))
+    colourPanel(context, settings.display, parts.colours, parts.picture);
   if (section(settings, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
   if (section(settings, "Status", true)) statusPanel(context, parts.picture, parts.opening.times());

@@ -16,6 +16,9 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.marks = false;
   settings.display.split_at = 0.25;
   settings.display.map = render::ColourMap::kCividis;
+  settings.display.heights = {RangeRule::Kind::kAll, 0.99};
+  settings.display.changes = {RangeRule::Kind::kShare, 0.9};
+  settings.display.colour_steps = true;
   settings.display.theme = render::Theme::kLight;
   settings.display.light_azimuth_deg = 20.0F;
   settings.display.half_in_motion = false;
@@ -30,6 +33,15 @@ TEST(Settings, come_back_as_they_were_saved) {
   EXPECT_FALSE(Settings() == settings);
 }
 
+TEST(Settings, ends_of_colours_that_were_typed_belong_to_the_scan) {
+  const tests::TempFolder folder;
+  const std::string path = (folder.path() / "window.json").string();
+  Settings settings;
+  settings.display.changes.kind = RangeRule::Kind::kTyped;
+  settings.save(path);
+  EXPECT_EQ(Settings::load(path).display.changes.kind, RangeRule::Kind::kAutomatic);
+}
+
 TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   const tests::TempFolder folder;
   const std::string path = (folder.path() / "window.json").string();
@@ -37,7 +49,8 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   for (const char* text :
        {"", "no json", "[1, 2]",
         "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
-        "{\"panels\": {\"Tool\": 5}, \"side_width\": \"wide\", \"colours\": 4}"}) {
+        "{\"change_range\": \"typed\", \"change_share\": 0, \"panels\": {\"Tool\": 5}, \"side_width\": "
+        "\"wide\", \"colours\": 4}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }

@@ -1,0 +1,88 @@
+#include "app/window/colour_range.h"
+
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/builder.h"
+
+namespace fettle::app {
+namespace {
+
+using Kind = RangeRule::Kind;
+
+// Heights from 0 to 99, or with `change` added in the left tenth.
+engine::Version rampOf(double change = 0.0) {
+  engine::Grid grid;
+  grid.width = 100;
+  grid.height = 100;
+  std::vector<float> z;
+  for (int r = 0; r < 100; ++r)
+    for (int c = 0; c < 100; ++c) z.push_back(static_cast<float>(c + (c < 10 ? change : 0.0)));
+  return engine::makeField(grid, z, {});
+}
+
+void waitFor(ColourRange& colours, const render::Shown& shown) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!colours.poll(shown, true, false)) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end);
+    std::this_thread::yield();
+  }
+}
+
+TEST(ColourRange, follows_its_rule_and_what_is_shown) {
+  ColourRange colours;
+  Display display;
+  render::Shown shown;
+  shown.versions = {rampOf()};
+  EXPECT_FALSE(ColourRange::needsSample(display, shown));
+  EXPECT_FALSE(colours.range(display, shown)) << "automatic: the picture finds it";
+  display.heights = {Kind::kAll, 0.5};
+  EXPECT_TRUE(ColourRange::needsSample(display, shown));
+  EXPECT_FALSE(colours.poll(shown, true, true)) << "not while a brush works";
+  EXPECT_FALSE(colours.busy());
+  waitFor(colours, shown);
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{0, 99}));
+  display.heights.kind = Kind::kShare;
+  EXPECT_NEAR(colours.range(display, shown)->low, 25, 1);
+  EXPECT_NEAR(colours.range(display, shown)->high, 74, 1);
+  // Of changes no sample is there yet; then only what changed counts.
+  shown.original = rampOf();
+  shown.versions = {rampOf(-3.0)};
+  display.changes.kind = Kind::kAll;
+  EXPECT_FALSE(colours.range(display, shown));
+  waitFor(colours, shown);
+  EXPECT_EQ(colours.sample(render::Quantity::kDeviation)->sorted.size(), 1000U);
+  EXPECT_EQ(colours.sample(render::Quantity::kHeight), nullptr);
+  EXPECT_EQ(colours.range(display, shown)->low, -3.0);
+}
+
+TEST(ColourRange, what_is_typed_keeps_its_samples_upside_down_and_ends_with_the_scan) {
+  ColourRange colours;
+  Display display;
+  render::Shown shown;
+  shown.versions = {rampOf()};
+  colours.type(display, shown, {10, 30});
+  EXPECT_EQ(display.heights.kind, Kind::kTyped);
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{10, 30}));
+  shown.versions = {rampOf().inverted()};
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{-30, -10}));
+  shown.original = shown.versions.front();
+  EXPECT_FALSE(colours.range(display, shown)) << "of heights alone";
+  colours.type(display, shown, {-0.5, 0.5});
+  colours.typed.tolerance = 0.1;
+  colours.typed.change_contours = 0.25;
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{-0.5, 0.5}));
+  EXPECT_EQ(colours.colouring(display, render::Quantity::kDeviation).tolerance, 0.1);
+  EXPECT_EQ(colours.colouring(display, render::Quantity::kDeviation).contour_step, 0.25);
+  EXPECT_EQ(colours.colouring(display, render::Quantity::kHeight).contour_step, 0.0);
+  colours.clear(display);
+  EXPECT_EQ(display.heights.kind, Kind::kAutomatic);
+  EXPECT_EQ(display.changes.kind, Kind::kAutomatic);
+  EXPECT_FALSE(colours.range(display, shown));
+  EXPECT_EQ(colours.typed.tolerance, 0.0);
+}
+
+}  // namespace
+}  // namespace fettle::app

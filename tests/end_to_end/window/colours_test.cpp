@@ -1,0 +1,125 @@
+// The range of the colours: found so that a small change is seen beside a large one, dragged on the histogram, typed,
+// chosen by a share; a tolerance and the interval of contour lines.
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+class ColoursTest : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    State panels{{"Colours", true}};
+    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+      panels[closed] = false;
+    std::ofstream(folder.path() / "fettle" / "window.json")
+        << State{{"edge_lines", false}, {"panels", panels}};
+  }
+  // Waits until the histogram is there and the window rests.
+  static State counted(ViewProgram& program) {
+    return program.until("the histogram", [](const State& s) {
+      return s["settled"] == true && s["colour_handles"].is_array();
+    });
+  }
+};
+
+TEST_F(ColoursTest, handles_are_dragged_ends_are_typed_and_a_rule_leads_back) {
+  const auto program = start({scan});
+  User user(display, *program, "colours");
+  (void)opened(*program);
+  const State first = counted(*program);
+  EXPECT_EQ(first["colour_rule"], "automatic");
+  const double low = first["colours"][0], high = first["colours"][1];
+  const State handles = first["colour_handles"];
+  const int low_x = handles[0], high_x = handles[1], y = handles[2];
+  ASSERT_GT(high_x - low_x, 60);
+  const Screen before = user.look("automatic");
+  // Half the way to the other end.
+  const int middle = (low_x + high_x) / 2;
+  const State dragged = user.drag(1, {high_x, y}, {middle, y}, 4);
+  EXPECT_EQ(dragged["colour_rule"], "typed");
+  EXPECT_EQ(dragged["colours"][0], low);
+  // A pixel of the histogram is so much.
+  const double per_px = (high - low) / (high_x - low_x);
+  EXPECT_NEAR(dragged["colours"][1], 0.5 * (low + high), 2.0 * per_px);
+  const Screen narrow = user.changed("dragged", before, 2000);
+  const State lower = user.drag(1, {low_x, y}, {low_x + 20, y}, 4);
+  EXPECT_NEAR(lower["colours"][0], low + 20.0 * per_px, 2.0 * per_px);
+  EXPECT_EQ(lower["colours"][1], dragged["colours"][1]);
+  // Upside down the same samples keep their place in the range.
+  const State over = user.key("i");
+  EXPECT_EQ(over["colours"][0], -lower["colours"][1].get<double>());
+  (void)user.key("i");
+  const State typed = user.enter("highest", "7.5");
+  EXPECT_NEAR(typed["colours"][1], 7.5, 1e-9);
+  (void)user.click("by hand");
+  const State back = user.click("automatic");
+  EXPECT_EQ(back["colour_rule"], "automatic");
+  EXPECT_EQ(back["colours"], first["colours"]);
+  (void)user.same("automatic again", before);
+  // Lines at an interval.
+  (void)user.key("c");
+  EXPECT_GT(user.rest()["contour_step"], 0.0);
+  EXPECT_EQ(user.enter("a line every", "0.75")["contour_step"], 0.75);
+  (void)user.changed("contour lines", before, 200);
+  (void)quit(user);
+}
+
+TEST_F(ColoursTest, a_small_change_is_seen_beside_an_edge_that_moved_and_a_tolerance_hides_it) {
+  const auto program = start({scan});
+  User user(display, *program, "change");
+  (void)opened(*program);
+  (void)counted(*program);
+  // Over ribs and plain alike.
+  (void)user.key("s");
+  (void)user.stroke({250, 330}, {480, 400}, 10);
+  user.at({20, 790});
+  const Screen without = user.look("heights");
+  EXPECT_EQ(user.key("d")["deviation"], true);
+  const State found = counted(*program);
+  const double automatic = found["colours"][1];
+  const Screen seen = user.changed("changes", without, 500);
+  // All of what changed: far more.
+  (void)user.click("automatic");
+  const State all = user.click("all");
+  EXPECT_EQ(all["colour_rule"], "all");
+  EXPECT_GT(all["colours"][1], 3.0 * automatic);
+  const Screen pale = user.changed("all changes", seen);
+  (void)user.click("all");
+  const State half = user.click("a share");
+  EXPECT_EQ(half["colour_rule"], "share");
+  EXPECT_LT(half["colours"][1], all["colours"][1]);
+  EXPECT_LT(user.enter("share", "50")["colours"][1], automatic);
+  (void)user.until("half of the changes",
+                   [&](const Screen& now) { return differing(now, pale, user.surface()) > 30; });
+  // A tolerance beyond the range: nothing differs from white but the light.
+  const State within = user.enter("as zero up to", "100000");
+  EXPECT_GT(within["tolerance"], 0.0);
+  const Part surface = user.surface();
+  (void)user.until("all within the tolerance", [&](const Screen& now) {
+    int coloured = 0;
+    for (int y = surface.y; y < surface.y + surface.height; ++y)
+      for (int x = surface.x; x < surface.x + surface.width; ++x) {
+        const std::uint8_t* p = now.at(x, y);
+        coloured += std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) > 40;
+      }
+    return coloured == 0;
+  });
+  (void)quit(user);
+  // The share is kept for the next start, what was typed is not.
+  const auto again = start({scan});
+  User next(display, *again, "next");
+  (void)opened(*again);
+  EXPECT_EQ(next.key("d")["colour_rule"], "share");
+  EXPECT_EQ(next.rest()["tolerance"], 0.0);
+  (void)quit(next);
+}
+
+}  // namespace
+}  // namespace fettle::tests
