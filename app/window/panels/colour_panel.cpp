@@ -141,7 +141,7 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
 
 void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* values,
                 const render::ValueRange& range, WindowPicture& picture) {
-  constexpr const char* kRules[] = {"automatic", "a share", "all", "by hand"};
+  constexpr const char* kRules[] = {"usual", "a share", "all", "by hand"};
   int kind = static_cast<int>(rule.kind);
   // "by hand" is what dragging and typing leave behind.
   const int count = rule.kind == RuleKind::kTyped ? 4 : 3;
@@ -153,9 +153,9 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("%s",
                       quantity == Quantity::kDeviation
-                          ? "automatic: six times the median of what changed, or all but half a percent "
+                          ? "usual: six times the median of what changed, or all but half a percent "
                             "of it\na share: so many of the changed samples\nall: up to the largest change"
-                          : "automatic: all but single spikes\na share: the middle of the values\nall: "
+                          : "usual: all but single spikes\na share: the middle of the values\nall: "
                             "from the lowest to the highest");
   if (rule.kind == RuleKind::kShare) {
     double percent = 100.0 * rule.share;

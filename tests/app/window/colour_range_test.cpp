@@ -10,7 +10,7 @@
 namespace fettle::app {
 namespace {
 
-using Kind = RangeRule::Kind;
+using RuleKind = RangeRule::Kind;
 
 // Heights from 0 to 99, or with `change` added in the left tenth.
 engine::Version rampOf(double change = 0.0) {
@@ -38,19 +38,19 @@ TEST(ColourRange, follows_its_rule_and_what_is_shown) {
   shown.versions = {rampOf()};
   EXPECT_FALSE(ColourRange::needsSample(display, shown));
   EXPECT_FALSE(colours.range(display, shown)) << "automatic: the picture finds it";
-  display.heights = {Kind::kAll, 0.5};
+  display.heights = {RuleKind::kAll, 0.5};
   EXPECT_TRUE(ColourRange::needsSample(display, shown));
   EXPECT_FALSE(colours.poll(shown, true, true)) << "not while a brush works";
   EXPECT_FALSE(colours.busy());
   waitFor(colours, shown);
   EXPECT_EQ(colours.range(display, shown), (render::ValueRange{0, 99}));
-  display.heights.kind = Kind::kShare;
+  display.heights.kind = RuleKind::kShare;
   EXPECT_NEAR(colours.range(display, shown)->low, 25, 1);
   EXPECT_NEAR(colours.range(display, shown)->high, 74, 1);
   // Of changes no sample is there yet; then only what changed counts.
   shown.original = rampOf();
   shown.versions = {rampOf(-3.0)};
-  display.changes.kind = Kind::kAll;
+  display.changes.kind = RuleKind::kAll;
   EXPECT_FALSE(colours.range(display, shown));
   waitFor(colours, shown);
   EXPECT_EQ(colours.sample(render::Quantity::kDeviation)->sorted.size(), 1000U);
@@ -64,7 +64,7 @@ TEST(ColourRange, what_is_typed_keeps_its_samples_upside_down_and_ends_with_the_
   render::Shown shown;
   shown.versions = {rampOf()};
   colours.type(display, shown, {10, 30});
-  EXPECT_EQ(display.heights.kind, Kind::kTyped);
+  EXPECT_EQ(display.heights.kind, RuleKind::kTyped);
   EXPECT_EQ(colours.range(display, shown), (render::ValueRange{10, 30}));
   shown.versions = {rampOf().inverted()};
   EXPECT_EQ(colours.range(display, shown), (render::ValueRange{-30, -10}));
@@ -78,8 +78,8 @@ TEST(ColourRange, what_is_typed_keeps_its_samples_upside_down_and_ends_with_the_
   EXPECT_EQ(colours.colouring(display, render::Quantity::kDeviation).contour_step, 0.25);
   EXPECT_EQ(colours.colouring(display, render::Quantity::kHeight).contour_step, 0.0);
   colours.clear(display);
-  EXPECT_EQ(display.heights.kind, Kind::kAutomatic);
-  EXPECT_EQ(display.changes.kind, Kind::kAutomatic);
+  EXPECT_EQ(display.heights.kind, RuleKind::kAutomatic);
+  EXPECT_EQ(display.changes.kind, RuleKind::kAutomatic);
   EXPECT_FALSE(colours.range(display, shown));
   EXPECT_EQ(colours.typed.tolerance, 0.0);
 }

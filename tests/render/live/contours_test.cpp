@@ -1,4 +1,5 @@
 // Contour lines (shaders/contours.glsl): of one width wherever they are, none where noise crosses a level.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/render/support/fields.h"
@@ -82,9 +83,9 @@ TEST(ContourLines, NoiseOnALevelPlainIsNotInked) {
 TEST(ContourLines, AStepHasThemAndSoDoDeviations) {
   LivePicture* picture = sharedPicture();
   ASSERT_NE(picture, nullptr);
-  // Over ten samples by 20: four levels, closer than they are wide, beside level plains on no level.
-  const Still step = drawn([](int c, int) { return 2.0 + 2.0 * std::clamp(c - 145, 0, 10); }, 4.0);
-  EXPECT_GT(ink(*picture, step, 160), 2.0);
+  // Over ten samples by 20, through one level; the plains beside it are on none.
+  const Still step = drawn([](int c, int) { return 2.0 + 2.0 * std::clamp(c - 145, 0, 10); }, 16.0);
+  EXPECT_NEAR(ink(*picture, step, 160), 2.0, 1.2);
   Still change = drawn([](int c, int r) { return 5.0 * std::sin(0.1 * r) + 0.1 * c; }, 4.0);
   change.shown.original = fieldOf(gridOf(kSide, kSide), [](int, int r) { return 5.0 * std::sin(0.1 * r); });
   EXPECT_NEAR(ink(*picture, change, 160), 5.7 * 2.0, 3.5);

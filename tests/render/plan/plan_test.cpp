@@ -60,7 +60,7 @@ TEST(ValueRange, ChangesAreSeenBesideAnEdgeThatMoved) {
 
 TEST(ValueSample, SharesAndQuantilesAreThoseOfAllSamples) {
   const engine::Version field =
-      fieldOf(gridOf(200, 100), [](int c, int r) { return c < 3 && r < 3 ? kNan : c + 200 * r; });
+      fieldOf(gridOf(200, 100), [](int c, int r) { return c < 3 && r < 3 ? kNan : c + 200.0 * r; });
   const ValueSample heights = heightSample(field);
   EXPECT_EQ(heights.extreme, (ValueRange{3, 19999}));
   EXPECT_NEAR(heights.quantile(0.25), 5000, 100);
