@@ -39,6 +39,7 @@ TEST_F(ColoursTest, handles_are_dragged_ends_are_typed_and_a_rule_leads_back) {
   const State handles = first["colour_handles"];
   const int low_x = handles[0], high_x = handles[1], y = handles[2];
   ASSERT_GT(high_x - low_x, 60);
+  user.at({20, 790});  // where the cursor lies in no picture
   const Screen before = user.look("automatic");
   // Half the way to the other end.
   const int middle = (low_x + high_x) / 2;
