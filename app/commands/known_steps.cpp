@@ -1,10 +1,15 @@
 #include "app/commands/known_steps.h"
 
+#include <cstdint>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_of_session.h"
 #include "app/commands/scan_files.h"
+#include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/session/session.h"
@@ -25,6 +30,11 @@ Recipe noted(const std::string& note) {
 engine::Result<Recipe> recipeStored(const std::string& file, engine::JobControl& job) {
   const auto session = loadSession(file, {}, job);
   if (!session) return tl::unexpected(session.error());
+  if (const std::int64_t first = session->history.first(); first > 0)
+    warn(
+        fmt::format("{}: its history is long, the recipe of the output begins after step {}; fettle recipe "
+                    "on the input has all",
+                    file, first));
   return recipeOf(*session, job);
 }
 

@@ -177,8 +177,7 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
   Recipe recipe;
   const Noted noted = addNoted(session, made, recipe);
   if (history.first() > 0)
-    recipe.left_out.push_back(
-        fmt::format("steps 1 to {}: the session no longer holds them", history.first()));
+    recipe.left_out.push_back(fmt::format("steps 1 to {}: more history than was read", history.first()));
   FormSteps forms(noted, hasMarks(history.state(std::max(noted.states, history.first()))));
   for (std::int64_t k = std::max(noted.states, history.first()) + 1; k <= history.number(); ++k) {
     const engine::StepInfo& info = history.info(k);

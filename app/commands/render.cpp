@@ -61,6 +61,9 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   const auto size = parseSize(options.size, "--size", kPictureSides);
   if (!size) return tl::unexpected(size.error());
   std::tie(view.width, view.height) = *size;
+  if (options.colouring.tolerance > 0.0 && options.deviation.empty())
+    return engine::inputError("a tolerance is one of a deviation", "--tolerance",
+                              "also give --deviation SCAN");
   if (!options.centre.empty()) {
     if (!std::all_of(options.centre.begin(), options.centre.end(),
                      [](double c) { return c >= 0.0 && c <= 1.0; }))
@@ -270,19 +273,21 @@ void addRender(Command root, Chosen& chosen) {
        .text = "Contour lines at the steps of the colour bar"},
       {.name = "--contour-step",
        .to = &options->colouring.contour_step,
-       .text = "Contour lines this far apart, in the unit of the heights",
+       .text = "Contour lines this far apart, in SCAN's height unit",
        .range = Range{0.0, 1e30},
        .shown = "D",
        .otherwise = "none, or those of --contours"},
       {.name = "--tolerance",
        .to = &options->colouring.tolerance,
-       .text = "Deviations up to this are shown as none, in the unit of the heights",
+       .text = "With --deviation: deviations up to this are shown as none, in SCAN's height unit",
        .range = Range{0.0, 1e30},
        .shown = "D",
        .otherwise = "none are"},
       {.name = "--steps",
        .to = &options->colouring.steps,
-       .text = "Twelve steps of one colour each instead of a gradual change"},
+       .text =
+           "Twelve steps of one colour each instead of a gradual change; with --tolerance five beyond it on "
+           "each side"},
       {.name = "--normals",
        .to = &options->normals,
        .text = "What the light falls on where samples are smaller than pixels",

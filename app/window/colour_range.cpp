@@ -10,12 +10,25 @@ namespace {
 using render::Quantity;
 using RuleKind = RangeRule::Kind;
 
+bool isTurned(const std::vector<engine::Version>& versions) {
+  return !versions.empty() && versions.front().reader().sign() < 0.0F;
+}
+
 bool isInverted(const render::Shown& shown) {
-  return !shown.versions.empty() && shown.versions.front().reader().sign() < 0.0F;
+  return isTurned(shown.versions);
 }
 
 render::ValueRange turnedOver(const render::ValueRange& range) {
   return {-range.high, -range.low};
+}
+
+render::ValueRange rangeOfShare(const render::ValueSample& values, Quantity quantity, double share) {
+  if (quantity == Quantity::kDeviation) return values.symmetric(share);
+  const render::ValueRange middle = values.middle(share);
+  if (middle.low < middle.high || !(values.extreme.low < values.extreme.high)) return middle;
+  // So many samples have one height that it is all of the share: a little on both sides of it.
+  const double half = 1e-3 * (values.extreme.high - values.extreme.low);
+  return {middle.low - half, middle.high + half};
 }
 
 // Of all panels, which share one range.
@@ -26,7 +39,8 @@ engine::Result<render::ValueSample> sampleOf(const std::vector<engine::Version>&
   for (const engine::Version& version : versions) {
     if (job.cancelled()) return engine::cancelled();
     render::ValueSample one =
-        original ? render::deviationSample(version, *original) : render::heightSample(version);
+        original ? render::deviationSample(version, *original, &job) : render::heightSample(version);
+    if (job.cancelled()) return engine::cancelled();
     if (one.empty()) continue;
     if (all.empty()) {
       all = std::move(one);
@@ -55,14 +69,22 @@ void ColourRange::clear(Display& display) {
 }
 
 bool ColourRange::poll(const render::Shown& shown, bool needed, bool working) {
+  if (working) return false;
   const bool dropped = measuring_.cancelling();
   bool changed = false;
-  if (auto done = measuring_.take(); done && *done && !dropped) {
-    sample_ = *std::move(*done);
+  if (auto done = measuring_.take(); done && !dropped && isOfForm(shown)) {
+    // Without memory for one: an empty sample, and the picture finds the range.
+    sample_ = *done ? *std::move(*done) : render::ValueSample{};
     sampled_ = measured_.original ? Quantity::kDeviation : Quantity::kHeight;
+    turned_ = isTurned(measured_.versions);
     changed = true;
   }
-  if (!needed || working || measuring_.busy() || shown.versions.empty()) return changed;
+  if (!needed && !measuring_.busy()) {
+    // Else it would keep fields in memory that nothing else shows.
+    measured_ = {};
+    sample_.reset();
+  }
+  if (!needed || measuring_.busy() || shown.versions.empty()) return changed;
   Values now{shown.versions, shown.original};
   if (now == measured_) return changed;
   measured_ = std::move(now);
@@ -70,6 +92,11 @@ bool ColourRange::poll(const render::Shown& shown, bool needed, bool working) {
     return sampleOf(versions, original, job);
   });
   return changed;
+}
+
+bool ColourRange::isOfForm(const render::Shown& shown) const {
+  return !measured_.versions.empty() && !shown.versions.empty() &&
+         measured_.versions.front().formOver() == shown.versions.front().formOver();
 }
 
 Quantity ColourRange::quantityOf(const render::Shown& shown) noexcept {
@@ -100,8 +127,11 @@ std::optional<render::ValueRange> ColourRange::range(const Display& display,
     range = isInverted(shown) ? turnedOver(*heights_) : *heights_;
   if (const render::ValueSample* const values = sample(quantity); values != nullptr && !values->empty()) {
     if (rule.kind == RuleKind::kAll) range = values->extreme;
-    if (rule.kind == RuleKind::kShare)
-      range = quantity == Quantity::kDeviation ? values->symmetric(rule.share) : values->middle(rule.share);
+    if (rule.kind == RuleKind::kShare) range = rangeOfShare(*values, quantity, rule.share);
+    // Until those turned over are counted.
+    if (quantity == Quantity::kHeight && range && rule.kind != RuleKind::kTyped &&
+        turned_ != isInverted(shown))
+      range = turnedOver(*range);
   }
   // All equal: the picture opens the range.
   return range && range->low < range->high ? range : std::nullopt;

@@ -28,7 +28,7 @@ class ColourRange {
 
   /// Another scan, or the same under another form: typed values are dropped, and rules that need them.
   void clear(Display& display);
-  /// Takes results, starts on what is shown now where `needed`; `working`: a stroke is running, and the colours
+  /// Takes results, starts on what is shown now where `needed`; `working`: a stroke or a filter is running, and the colours
   /// stay as they are. True when something visible changed.
   [[nodiscard]] bool poll(const render::Shown& shown, bool needed, bool working);
 
@@ -73,10 +73,14 @@ class ColourRange {
     std::optional<engine::Version> original;
     friend bool operator==(const Values&, const Values&) = default;
   };
+  // Whether what was counted lies under the form of what is shown: else its heights are others.
+  [[nodiscard]] bool isOfForm(const render::Shown& shown) const;
+
   Background<render::ValueSample> measuring_;
   Values measured_;  // that measuring_ works on, or of sample_
   std::optional<render::ValueSample> sample_;
   render::Quantity sampled_ = render::Quantity::kHeight;
+  bool turned_ = false;                        // whether sample_ is of a field upside down
   std::optional<render::ValueRange> heights_;  // typed, of the field with sign +1
   std::optional<double> limit_;                // typed, of deviations
 };

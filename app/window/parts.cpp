@@ -78,6 +78,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   compare.clear();
   marking.reset();
   change.cancel();
+  colours.clear(settings.display);
   costs.reset();
   saving.dropWaiting();
   if (const auto closed = document.close(afterwards); !closed)

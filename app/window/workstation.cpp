@@ -34,7 +34,7 @@ std::string settingsPath(const char* file) {
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
          p.filters.computing() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
-         p.section.busy() || p.heights.busy() || p.compare.busy() || p.transform.busy() ||
+         p.section.busy() || p.heights.busy() || p.colours.busy() || p.compare.busy() || p.transform.busy() ||
          (p.document.isOpen() && p.picture.refining());
 }
 
@@ -186,7 +186,8 @@ void Workstation::takeResults() {
   changed |= p.change.poll(client, stroke);
   const render::Shown& shown = p.picture.shown();
   const bool counted = p.settings.side_panel && p.settings.panels["Colours"];
-  changed |= p.colours.poll(shown, counted || ColourRange::needsSample(p.settings.display, shown), stroke);
+  changed |= p.colours.poll(shown, counted || ColourRange::needsSample(p.settings.display, shown),
+                            stroke || p.filters.computing() || p.filters.applying());
   for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
   if (changed) p.picture.requestRedraw();
 }

@@ -14,6 +14,8 @@ namespace {
 
 // A deviation just beyond the tolerance, as a share of the way from the middle colour to the end's.
 constexpr double kBeyondTolerance = 0.3;
+// Steps of one colour on each side beyond a tolerance.
+constexpr double kStepsBeyond = 0.5 * kColourSteps - 1.0;
 
 glm::vec3 linear(const std::array<float, 3>& code) {
   return {linearFromSrgb(code[0]), linearFromSrgb(code[1]), linearFromSrgb(code[2])};
@@ -79,14 +81,20 @@ ColourTable tableOf(const Colouring& colouring, Quantity quantity, const ValueRa
       quantity == Quantity::kDeviation ? std::min(colouring.tolerance / limit, 1.0) : 0.0;
   if (!colouring.steps && !(tolerance > 0.0)) return map;
   ColourTable table;
+  // Zero lies between two entries: what did not change has the middle colour however small the tolerance is.
+  const double around_zero = 1.5 / static_cast<double>(table.size() - 1);
   for (std::size_t k = 0; k < table.size(); ++k) {
     // Of the range's half: -1 .. 1.
     double at = 2.0 * static_cast<double>(k) / static_cast<double>(table.size() - 1) - 1.0;
-    if (tolerance > 0.0) {
-      const double beyond = (std::abs(at) - tolerance) / std::max(1.0 - tolerance, 1e-9);
-      at = beyond > 0.0 ? std::copysign(kBeyondTolerance + (1.0 - kBeyondTolerance) * beyond, at) : 0.0;
-    }
-    if (colouring.steps && !(tolerance > 0.0 && at == 0.0)) {
+    if (quantity == Quantity::kDeviation && std::abs(at) <= std::max(tolerance, around_zero)) {
+      at = 0.0;
+    } else if (tolerance > 0.0) {
+      double beyond = (std::abs(at) - tolerance) / std::max(1.0 - tolerance, 1e-9);
+      if (colouring.steps)
+        beyond =
+            (std::clamp(std::floor(kStepsBeyond * beyond), 0.0, kStepsBeyond - 1.0) + 0.5) / kStepsBeyond;
+      at = std::copysign(kBeyondTolerance + (1.0 - kBeyondTolerance) * beyond, at);
+    } else if (colouring.steps) {
       constexpr double kHalf = 0.5 * kColourSteps;
       at = (std::clamp(std::floor(at * kHalf), -kHalf, kHalf - 1.0) + 0.5) / kHalf;
     }

@@ -93,7 +93,8 @@ struct ValueRange {
 /// How values become colours.
 struct Colouring {
   ColourMap map = ColourMap::kAuto;
-  /// The values in equal steps of one colour each, kColourSteps (render/config.h) from end to end.
+  /// The values in equal steps of one colour each, kColourSteps (render/config.h) from end to end; of deviations with the
+  /// middle colour at zero, and beyond a tolerance with one step less on each side.
   bool steps = false;
   /// Deviations of at most this have the middle colour, larger ones differ from it visibly; >= 0 [height_unit];
   /// 0: none do. No effect on heights.

@@ -44,7 +44,9 @@ engine::Status check(const PictureSpec& spec) {
                       spec.range->low < spec.range->high))
     return inputError("the range of the colours is empty", "picture", "give a low end below the high end");
   const Colouring& c = spec.colouring;
-  if (!in(c.tolerance, 0.0, 1e30) || !in(c.contour_step, 0.0, 1e30))
+  // A step is a float in the shader, which divides by it.
+  if (!in(c.tolerance, 0.0, 1e30) || !in(c.contour_step, 0.0, 1e30) ||
+      (c.contour_step > 0.0 && c.contour_step < 1e-30))
     return inputError("the tolerance or the step of contour lines is out of range", "picture",
                       "give 0 or more");
   return {};

@@ -81,13 +81,19 @@ struct RowSpan {
   std::vector<double> changes;
 };
 
-RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& b, std::int32_t tile_row) {
-  const std::int64_t tiles = std::int64_t{a.tileColumns()} * a.tileRows();
+// Whether the two share the tile, so that nothing differs in it.
+bool shared(const engine::FieldReader& a, const engine::FieldReader& b, std::int32_t tc, std::int32_t tr) {
+  return &a.tile(tc, tr) == &b.tile(tc, tr) && a.sign() == b.sign();
+}
+
+// `tiles`: that the two do not share, among which the sample is divided.
+RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& b, std::int32_t tile_row,
+                       std::int64_t tiles) {
   RowSpan row;
   for (std::int32_t tc = 0; tc < a.tileColumns(); ++tc) {
     const engine::Tile& ta = a.tile(tc, tile_row);
     const engine::Tile& tb = b.tile(tc, tile_row);
-    if (&ta == &tb && a.sign() == b.sign()) {
+    if (shared(a, b, tc, tile_row)) {
       if (!ta.bounds.empty()) row.extreme = {std::min(row.extreme.low, 0.0), std::max(row.extreme.high, 0.0)};
       continue;
     }
@@ -105,12 +111,18 @@ RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& 
 }
 
 // Of all rows: changes in the order of the tiles.
-RowSpan deviationOf(const engine::Version& field, const engine::Version& original) {
+RowSpan deviationOf(const engine::Version& field, const engine::Version& original,
+                    const engine::JobControl* job = nullptr) {
   const engine::FieldReader a = field.reader(), b = original.reader();
   assert(a.width() == b.width() && a.height() == b.height());
+  std::int64_t differing = 0;
+  for (std::int32_t tr = 0; tr < a.tileRows(); ++tr)
+    for (std::int32_t tc = 0; tc < a.tileColumns(); ++tc) differing += shared(a, b, tc, tr) ? 0 : 1;
+  differing = std::max<std::int64_t>(differing, 1);
   std::vector<RowSpan> rows(static_cast<std::size_t>(a.tileRows()));
   oneapi::tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-    rows[r] = deviationOfRow(a, b, static_cast<std::int32_t>(r));
+    if (job != nullptr && job->cancelled()) return;
+    rows[r] = deviationOfRow(a, b, static_cast<std::int32_t>(r), differing);
   });
   RowSpan all;
   for (const RowSpan& row : rows) {
@@ -182,8 +194,9 @@ ValueSample heightSample(const engine::Version& field) {
   return sample;
 }
 
-ValueSample deviationSample(const engine::Version& field, const engine::Version& original) {
-  RowSpan all = deviationOf(field, original);
+ValueSample deviationSample(const engine::Version& field, const engine::Version& original,
+                            const engine::JobControl* job) {
+  RowSpan all = deviationOf(field, original, job);
   ValueSample sample;
   sample.sorted = std::move(all.changes);
   std::sort(sample.sorted.begin(), sample.sorted.end());

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "engine/base/job.h"
 #include "engine/field/version.h"
 #include "render/plan/picture.h"
 
@@ -32,8 +33,8 @@ struct ValueSpan {
 /// Values of a field (or of a deviation) for choosing the range of the colours: how often each occurs.
 struct ValueSample {
   std::vector<double>
-      sorted;          ///< ascending, about a million at most [height_unit]; of a deviation those not 0
-  ValueRange extreme;  ///< as ValueSpan; of a deviation without its zeros
+      sorted;  ///< ascending, about a million, four of each tile where those are more [height_unit]; of a deviation those not 0
+  ValueRange extreme;  ///< as ValueSpan
 
   [[nodiscard]] bool empty() const noexcept { return sorted.empty(); }
   /// The value below which `share` (0 .. 1) of them lie. Not empty.
@@ -45,9 +46,10 @@ struct ValueSample {
   [[nodiscard]] ValueRange symmetric(double share) const noexcept;
 };
 
-/// The same samples as those of heightSpan and deviationSpan. Any thread.
+/// The same samples as those of heightSpan and deviationSpan. Any thread. Cancelled, that of a deviation lacks some.
 [[nodiscard]] ValueSample heightSample(const engine::Version& field);
-[[nodiscard]] ValueSample deviationSample(const engine::Version& field, const engine::Version& original);
+[[nodiscard]] ValueSample deviationSample(const engine::Version& field, const engine::Version& original,
+                                          const engine::JobControl* job = nullptr);
 
 /// The span of the same values with their signs changed. For heights and deviations alike: the result of
 /// heightSpan and deviationSpan for inverted fields, except for how a percentile between two samples is

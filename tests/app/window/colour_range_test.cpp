@@ -47,6 +47,9 @@ TEST(ColourRange, follows_its_rule_and_what_is_shown) {
   display.heights.kind = RuleKind::kShare;
   EXPECT_NEAR(colours.range(display, shown)->low, 25, 1);
   EXPECT_NEAR(colours.range(display, shown)->high, 74, 1);
+  display.heights.kind = RuleKind::kAll;
+  shown.versions = {rampOf().inverted()};
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{-99, 0})) << "before it is counted again";
   // Of changes no sample is there yet; then only what changed counts.
   shown.original = rampOf();
   shown.versions = {rampOf(-3.0)};

@@ -300,6 +300,14 @@ TEST(ColourMaps, AToleranceIsTheMiddleColourAndStepsAreOneColourEach) {
   for (const double value : {-1.04, 1.04}) EXPECT_GT(apart(tolerant, value), 0.1) << value;
   EXPECT_EQ(tolerant.front(), colourTable(ColourMap::kDiverging).front());
   EXPECT_EQ(tolerant.back(), colourTable(ColourMap::kDiverging).back());
+  // One smaller than a step of the table leaves what did not change as it is, and so do steps.
+  for (const Colouring& colouring : {Colouring{.tolerance = 0.01}, Colouring{.steps = true},
+                                     Colouring{.steps = true, .tolerance = 0.01}}) {
+    const ColourTable table = tableOf(colouring, Quantity::kDeviation, range);
+    EXPECT_LT(apart(table, 0.0), 1e-6);
+    EXPECT_LT(glm::length(table[128] - zero), 1e-6F);
+    EXPECT_GT(apart(table, 0.5), 0.02);
+  }
   // Of heights it is none, and beyond the range all are within it.
   EXPECT_EQ(tableOf({.tolerance = 1.0}, Quantity::kHeight, range), colourTable(ColourMap::kViridis));
   const ColourTable all = tableOf({.tolerance = 9.0}, Quantity::kDeviation, range);
