@@ -86,9 +86,12 @@ Result<std::string> targetOf(const std::string& final_path) {
 int putInPlace(const std::string& file, const std::string& target) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return errno;
-  struct stat existing {};
-  const bool replaces = stat(target.c_str(), &existing) == 0;
-  if ((replaces && fchmod(descriptor, existing.st_mode & 07777) != 0) || fsync(descriptor) != 0) {
+  struct stat existing {
+  }, own{};
+  // Only the owner of a file may set permissions, those that it has too.
+  const bool differs = stat(target.c_str(), &existing) == 0 &&
+                       (fstat(descriptor, &own) != 0 || ((own.st_mode ^ existing.st_mode) & 07777) != 0);
+  if ((differs && fchmod(descriptor, existing.st_mode & 07777) != 0) || fsync(descriptor) != 0) {
     const int error = errno;
     close(descriptor);
     return error;
@@ -214,7 +217,8 @@ Status replaceFile(const std::string& finished, const std::string& final_path) {
   if (!target) return tl::unexpected(target.error());
   const int error = putInPlace(finished, *target);
   if (error == 0) return flushFolderOf(*target, final_path);
-  if (error != EXDEV) return writeError(final_path, error);
+  // A copy can be made on another disk, and with permissions that another's file cannot be given.
+  if (error != EXDEV && error != EPERM) return writeError(final_path, error);
   Result<InputFile> from = InputFile::open(finished);
   if (!from) return tl::unexpected(from.error());
   Result<AtomicFile> copy = AtomicFile::create(final_path);

@@ -9,6 +9,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/io/raster/marks.h"
 #include "tests/engine/io/io_support.h"
@@ -121,6 +122,29 @@ TEST(AtomicFile, AFinishedFileReplacesAnotherAsOneThatIsWritten) {
   EXPECT_EQ(filesIn(folder.file("other")), 1U);
   EXPECT_TRUE(fs::exists(folder.file("finished")));
   if (two_disks) umount(folder.file("other").c_str());
+}
+
+// What several users of a group made together, one of them puts in its place.
+TEST(AtomicFile, AFinishedFileOfAnotherUserReplacesOne) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of others";
+  constexpr uid_t kNobody = 65534;
+  const TempFolder folder;
+  ASSERT_EQ(chmod(folder.path().c_str(), 0777), 0);
+  const std::string finished = folder.file("finished"), real = folder.file("real.txt");
+  for (const mode_t mode : {0666U, 0640U}) {
+    writeBytes(finished, "new");
+    writeBytes(real, "old");
+    ASSERT_EQ(chmod(finished.c_str(), 0666), 0);
+    ASSERT_EQ(chmod(real.c_str(), mode), 0);
+    ASSERT_EQ(chown(real.c_str(), kNobody, static_cast<gid_t>(-1)), 0);
+    ASSERT_EQ(seteuid(kNobody), 0);
+    const Status status = replaceFile(finished, real);
+    ASSERT_EQ(seteuid(0), 0);
+    ASSERT_TRUE(status) << status.error().line();
+    EXPECT_EQ(readBytes(real), "new");
+    EXPECT_EQ(fs::status(real).permissions(), fs::perms{mode});
+    EXPECT_FALSE(fs::exists(finished));
+  }
 }
 
 TEST(AtomicFile, ALongNameAndNoExtensionWork) {
