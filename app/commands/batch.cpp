@@ -204,7 +204,7 @@ void printBatch(const Report& report) {
     else if (file.contains("text"))  // of an estimate
       fmt::print("{}  {}\n", file["in"].get<std::string>(), file["text"].get<std::string>());
     else
-      fmt::print("{}  {}{}\n", file["in"].get<std::string>(), file["out"].get<std::string>(),
+      fmt::print("{}  {}{}\n", file["in"].get<std::string>(), file.value("out", ""),
                  file.contains("finished_before") ? "  kept, finished before" : "");
   fmt::print("{} done, {} failed\n", report["done"].get<std::size_t>(), report["failed"].get<std::size_t>());
 }

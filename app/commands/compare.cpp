@@ -12,6 +12,7 @@
 #include "app/commands/command.h"
 #include "app/commands/compare_nominal.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/list_text.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -246,6 +247,8 @@ engine::Result<Report> compare(const CompareArguments& options, const std::vecto
   return compareOne(pair, first, job);
 }
 
+}  // namespace
+
 void printCompared(const Report& report) {
   if (report.contains("files")) {
     for (const Report& file : report["files"]) {
@@ -264,8 +267,6 @@ void printCompared(const Report& report) {
   rest.erase("in");
   printReport(rest);
 }
-
-}  // namespace
 
 void addCompare(Command root, Chosen& chosen) {
   auto options = std::make_shared<CompareArguments>();

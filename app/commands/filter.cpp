@@ -17,6 +17,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/known_steps.h"
+#include "app/commands/list_text.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/place_report.h"
@@ -609,6 +610,8 @@ bool isSuggestion(const Report& report) {
   return report.contains("commands") || report.contains("places");
 }
 
+}  // namespace
+
 void printFilter(const Report& report) {
   if (report.contains("text")) return printBatch(report);
   if (report.contains("files") && std::ranges::any_of(report["files"], isSuggestion)) {
@@ -628,6 +631,8 @@ void printFilter(const Report& report) {
   if (places) printPlaces(report);
   if (!suggested && !places) printBatch(report);
 }
+
+namespace {
 
 void addFilterRows(Command command, const std::shared_ptr<FilterArguments>& options) {
   addBatchOptions(command, options->files);

@@ -10,6 +10,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/list_text.h"
 #include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
@@ -221,6 +222,8 @@ void printOneMeasured(const Report& report) {
   printAreal(report);
 }
 
+}  // namespace
+
 void printMeasured(const Report& report) {
   if (!report.contains("files")) return printOneMeasured(report);
   for (const Report& file : report["files"]) {
@@ -231,8 +234,6 @@ void printMeasured(const Report& report) {
   fmt::print("{} measured, {} failed\n", report["done"].get<std::size_t>(),
              report["failed"].get<std::size_t>());
 }
-
-}  // namespace
 
 void addMeasure(Command root, Chosen& chosen) {
   auto options = std::make_shared<MeasureArguments>();

@@ -13,6 +13,7 @@
 #include "app/commands/shards/launcher.h"
 #include "app/commands/shards/shard_plan.h"
 #include "app/commands/shell_word.h"
+#include "app/work/outputs.h"
 #include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
@@ -32,15 +33,17 @@ engine::Result<ListShard> ListShard::begin(const std::vector<BatchTask>& tasks, 
        i += static_cast<std::size_t>(chosen->count))
     mine.tasks_.push_back(tasks[i]);
   if (folder.empty()) return mine;
-  // What does not change a result, and where the program lies, may differ between machines.
-  const std::vector<std::string> words =
-      wordsWithout(arguments, {"--json", "-q", "--quiet", "--force", "--resume"}, {"--shard", "--threads"});
+  // What does not change a result, and where the program and a table of each shard's own lie, may differ between machines.
+  const std::vector<std::string> words = wordsWithout(
+      arguments, {"--json", "-q", "--quiet", "--force", "--resume"}, {"--shard", "--threads", "--csv"});
   std::string work;
   for (std::size_t i = 1; i < words.size(); ++i) (work += words[i]) += '\n';
   mine.work_ = hashOfText(work);
   mine.file_ =
       (std::filesystem::path(folder) / "shards" / fmt::format("{}-of-{}.json", chosen->number, chosen->count))
           .string();
+  if (auto status = checkPlaces({{mine.file_, OutputKind::kText, {}, true}}, {}); !status)
+    return tl::unexpected(status.error());
   std::error_code error;
   std::filesystem::remove(mine.file_, error);
   if (error) return engine::writeError(mine.file_, error.value());

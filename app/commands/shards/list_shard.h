@@ -15,7 +15,7 @@ class ListShard {
  public:
   /// `typed`: K/N or auto; empty: all scans, and no report. `folder`: where the shard's report is kept, FOLDER/shards/K-of-N.json; empty:
   /// nowhere. An earlier one is removed, so that a shard that is cut off is not done. `arguments`: the whole command line.
-  /// Errors: kInput, as parseShard; of removing a file.
+  /// Errors: kInput, as parseShard, and a folder where no report can be written; of removing a file.
   [[nodiscard]] static engine::Result<ListShard> begin(const std::vector<BatchTask>& tasks,
                                                        const std::string& typed, const std::string& folder,
                                                        const std::vector<std::string>& arguments);
