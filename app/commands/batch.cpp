@@ -100,9 +100,7 @@ bool writesSession(const BatchTask& task) {
   return isSessionPath(isStream(task.out) ? "stdout" + withDot(task.to) : task.out);
 }
 
-engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
-                                                  const std::vector<std::string>& others,
-                                                  engine::JobControl& job) {
+engine::Result<std::vector<BatchTask>> namedTasks(const BatchOptions& options) {
   std::vector<BatchTask> tasks;
   if (!options.many()) {
     if (options.files.size() != 2)
@@ -130,9 +128,17 @@ engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
             "use two runs with two folders, or rename one");
     }
   }
+  return tasks;
+}
+
+engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
+                                                  const std::vector<std::string>& others,
+                                                  engine::JobControl& job) {
+  auto tasks = namedTasks(options);
+  if (!tasks) return tasks;
   std::vector<Output> outputs;
   std::vector<std::string> inputs = others;
-  for (const BatchTask& task : tasks) {
+  for (const BatchTask& task : *tasks) {
     outputs.push_back({task.out, OutputKind::kField, task.to, options.many()});
     inputs.push_back(task.in);
   }

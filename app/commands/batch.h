@@ -34,8 +34,10 @@ struct BatchTask {
 /// The tasks, in the order typed. In out_dir a scan keeps its name; its extension is that of `options`,
 /// otherwise its own where that format can be written, otherwise .tif. Refuses before anything is read
 /// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans with the
-/// same output file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no
-/// output may replace.
+/// same output file (naming both). Whether the outputs can be written is not looked at.
+[[nodiscard]] engine::Result<std::vector<BatchTask>> namedTasks(const BatchOptions& options);
+
+/// The same; also refuses whatever checkOutputs refuses. `others` are further inputs that no output may replace.
 [[nodiscard]] engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
                                                                 const std::vector<std::string>& others,
                                                                 engine::JobControl& job);

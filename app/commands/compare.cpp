@@ -88,6 +88,14 @@ engine::Status checkNominal(const CompareArguments& options) {
                                   "it is for two scans");
 }
 
+// Options that contradict each other, whatever is in the files.
+engine::Status checkPair(const CompareArguments& options) {
+  if (!options.edges.empty() && options.truth.empty())
+    return engine::inputError("edges need a truth", "--edges", "give --truth too");
+  if (auto status = checkNominal(options); !status) return status;
+  return checkAligned(options);
+}
+
 engine::Result<Foreseen> foreseeCompare(const CompareArguments& options, const engine::Version& a,
                                         const engine::Version& b, engine::JobControl& job) {
   const engine::Grid &of_a = a.grid(), &of_b = b.grid();
@@ -130,10 +138,7 @@ engine::Result<Foreseen> foreseeCompare(const CompareArguments& options, const e
 // `first`: A, where it was read before; else it is read into it.
 engine::Result<Report> compareOne(const CompareArguments& options, std::optional<engine::Imported>& first,
                                   engine::JobControl& job) {
-  if (!options.edges.empty() && options.truth.empty())
-    return engine::inputError("edges need a truth", "--edges", "give --truth too");
-  if (auto status = checkNominal(options); !status) return tl::unexpected(status.error());
-  if (auto status = checkAligned(options); !status) return tl::unexpected(status.error());
+  if (auto status = checkPair(options); !status) return tl::unexpected(status.error());
   if (auto status = checkOutputs({{options.deviation, OutputKind::kField, options.to}},
                                  {options.a, options.b, options.truth, options.edges, options.align.marks},
                                  options.replacing, job);
@@ -220,15 +225,26 @@ engine::Result<Report> compareAll(const CompareArguments& options, const std::ve
   std::vector<BatchTask> tasks;
   tasks.reserve(scans.size());
   for (const std::string& scan : scans) tasks.push_back({scan, {}, {}});
+  const auto pairOf = [&](const std::string& scan) {
+    CompareArguments pair = options;
+    pair.a = of_nominal ? scan : with;
+    pair.b = of_nominal ? with : scan;
+    return pair;
+  };
+  // What would refuse every scan is no failure of each of them.
+  if (auto status = checkPair(pairOf(scans.front())); !status) return tl::unexpected(status.error());
+  std::optional<engine::Imported> first;
+  if (!of_nominal) {
+    const ProgressLine progress(job);
+    auto read = loadSamples(with, options.reading, job);
+    if (!read) return tl::unexpected(read.error());
+    first = *std::move(read);
+  }
   const auto mine = ListShard::begin(tasks, options.shard,
                                      options.estimate ? std::string() : options.shard_folder, arguments);
   if (!mine) return tl::unexpected(mine.error());
-  std::optional<engine::Imported> first;
   auto report = runBatch(mine->tasks(), job, [&](const BatchTask& task, engine::JobControl& j) {
-    CompareArguments pair = options;
-    pair.a = of_nominal ? task.in : with;
-    pair.b = of_nominal ? with : task.in;
-    return compareOne(pair, first, j);
+    return compareOne(pairOf(task.in), first, j);
   });
   if (report)
     if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -261,7 +260,13 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const Batch
                                      const engine::FilterCandidate& c) {
   if (c.spec.window == 1) return {};
   const std::string in = quotedWord(task.in);
-  const std::string out = task.out.empty() ? "OUT.tif" : quotedWord(task.out);
+  std::string out = task.out.empty() ? "OUT.tif" : quotedWord(task.out);
+  if (options.files.many()) {  // the folder may have to be created
+    out = "--out-dir " + quotedWord(options.files.out_dir);
+    if (!options.files.extension.empty()) out += " --to " + quotedWord(options.files.extension);
+  }
+  // Of several scans each has marks of its own.
+  const std::string marks = options.files.many() ? task.in + ".marks.png" : "marks.png";
   const std::string reading = scanOptionsText(options.reading);
   std::vector<std::string> commands;
   std::string filter = fmt::format("fettle filter {} {} --filter {}", in, out, engine::name(c.spec.kind));
@@ -270,9 +275,9 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const Batch
   if (engine::hasRange(c.spec.kind)) filter += fmt::format(" --range-sigma {}", c.spec.range_sigma);
   std::string keep = options.keep;
   if (c.around_edges) {
-    commands.push_back(fmt::format("fettle mark {} marks.png --edges --thickness {}{}{}", in, c.thickness,
-                                   keep.empty() ? "" : " --add " + quotedWord(keep), reading));
-    keep = "marks.png";
+    commands.push_back(fmt::format("fettle mark {} {} --edges --thickness {}{}{}", in, quotedWord(marks),
+                                   c.thickness, keep.empty() ? "" : " --add " + quotedWord(keep), reading));
+    keep = marks;
   }
   if (!keep.empty()) filter += " --keep " + quotedWord(keep);
   if (options.threads != 0) filter += fmt::format(" --threads {}", options.threads);
@@ -469,19 +474,14 @@ engine::Result<Report> suggest(const FilterArguments& options, const std::vector
     const std::vector<std::string>& files = options.files.files;
     return suggestOne(options, {files[0], files.size() > 1 ? files[1] : std::string(), {}}, job);
   }
-  const auto tasks = batchTasks(options.files, {options.keep}, job);
+  auto tasks = namedTasks(options.files);
   if (!tasks) return tl::unexpected(tasks.error());
+  // Outputs are named and not written.
+  for (BatchTask& task : *tasks) task.out.clear();
   const auto mine = shardOf(options, *tasks, arguments);
   if (!mine) return tl::unexpected(mine.error());
-  // Outputs are named and not written.
-  std::map<std::string, std::string> outputs;
-  std::vector<BatchTask> reading;
-  for (const BatchTask& task : mine->tasks()) {
-    outputs[task.in] = task.out;
-    reading.push_back({task.in, {}, {}});
-  }
-  auto report = runBatch(reading, job, [&](const BatchTask& task, engine::JobControl& j) {
-    return suggestOne(options, {task.in, outputs[task.in], {}}, j);
+  auto report = runBatch(mine->tasks(), job, [&](const BatchTask& task, engine::JobControl& j) {
+    return suggestOne(options, task, j);
   });
   if (report)
     if (auto status = mine->keep(*report); !status) return tl::unexpected(status.error());

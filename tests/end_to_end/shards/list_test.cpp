@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -83,8 +84,23 @@ TEST_F(ShardsOfAList, OfSuggestingAndComparingHaveTheReportsOfOneRun) {
   // The outputs are named, and not written.
   const auto& commands = suggested["files"][3]["commands"];
   ASSERT_FALSE(commands.empty()) << suggested["files"][3]["why"];
-  EXPECT_NE(commands.back().get<std::string>().find(out + "/s3.tif"), std::string::npos);
+  EXPECT_NE(commands.back().get<std::string>().find(scans_[3] + " --out-dir " + out + " --filter"),
+            std::string::npos)
+      << commands;
   EXPECT_FALSE(std::filesystem::exists(out + "/s3.tif"));
+  // They run as they are, each with marks of its own.
+  for (const auto& command : commands) {
+    std::istringstream words(command.get<std::string>());
+    std::vector<std::string> arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    arguments.erase(arguments.begin());
+    const Outcome done = fettle(arguments);
+    EXPECT_EQ(done.status, 0) << command << done.err;
+    if (arguments.front() == "mark") {
+      EXPECT_TRUE(std::filesystem::exists(scans_[3] + ".marks.png"));
+    }
+  }
+  EXPECT_TRUE(std::filesystem::exists(out + "/s3.tif"));
 
   const auto compared = fettleJson({"gather", worn});
   ASSERT_EQ(compared["files"].size(), 5U);
@@ -93,6 +109,57 @@ TEST_F(ShardsOfAList, OfSuggestingAndComparingHaveTheReportsOfOneRun) {
   expectRefused(fettle(command({"compare", scans_[0]}, {"--deviation", folder_.file("d.tif")})),
                 "a deviation is written of two scans");
   expectRefused(fettle(command({"compare", scans_[0]}, {"--shard", "1/2"})), "--shard-dir");
+}
+
+TEST_F(ShardsOfAList, AreGatheredAsTheTextOfOneRun) {
+  const std::string out = folder_.file("suggested"), worn = folder_.file("worn"), m = folder_.file("m");
+  const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const std::vector<std::string> compare = command({"compare", scans_[0]}, {"--align", "shift"});
+  const std::vector<std::string> measure = command({"measure"}, {"--only", "height", "--noise-trials", "0"});
+  const std::vector<std::string> suggest =
+      command({"filter"}, {"--out-dir", out, "--suggest", "--tolerance", "20um"});
+  for (const char* k : {"1", "2"}) {
+    const std::string shard = k + std::string("/2");
+    (void)fettleJson(with(compare, {"--shard", shard, "--shard-dir", worn}));
+    // A table of each shard's own makes no other command of it.
+    (void)fettleJson(
+        with(measure, {"--shard", shard, "--shard-dir", m, "--csv", folder_.file(std::string(k) + ".csv")}));
+    (void)fettleJson(with(suggest, {"--shard", shard}));
+  }
+  EXPECT_EQ(fettle({"gather", worn}).out, fettle(compare).out);
+  EXPECT_EQ(fettle({"gather", m}).out, fettle(measure).out);
+  // Its seconds are measured.
+  const Outcome suggested = fettle({"gather", out});
+  EXPECT_EQ(suggested.status, 0) << suggested.err;
+  for (const std::string& scan : scans_)
+    EXPECT_NE(suggested.out.find("fettle filter " + scan + " --out-dir " + out), std::string::npos)
+        << suggested.out;
+  EXPECT_NE(suggested.out.find("5 done, 0 failed"), std::string::npos) << suggested.out;
+}
+
+TEST_F(ShardsOfAList, WhatRefusesEveryScanIsRefusedOnceAndNoShardIsDone) {
+  const std::string worn = folder_.file("worn");
+  for (const std::vector<std::string>& words :
+       {command({"compare", folder_.file("none.tif")}, {"--shard", "1/2", "--shard-dir", worn}),
+        command({"compare", scans_[0]}, {"--shard", "1/2", "--shard-dir", worn, "--edges", scans_[1]}),
+        command({"compare", scans_[0]}, {"--shard", "1/2", "--shard-dir", worn, "--rotation", "5"}),
+        command({"compare", scans_[0]}, {"--shard", "1/2", "--shard-dir", worn, "--tolerance", "5um"})}) {
+    expectRefused(fettle(words), "");
+    EXPECT_FALSE(std::filesystem::exists(worn));
+  }
+}
+
+TEST_F(ShardsOfAList, OfSuggestingWriteNothingAndAskForNoRoom) {
+  // A folder is in the place of an output, which is only named.
+  const std::string out = folder_.file("out");
+  std::filesystem::create_directory(out);
+  std::filesystem::create_directory(out + "/s1.tif");
+  const auto suggested =
+      fettleJson({"filter", scans_[0], scans_[1], "--out-dir", out, "--suggest", "--tolerance", "20um"});
+  EXPECT_EQ(suggested["done"], 2);
 }
 
 TEST_F(ShardsOfAList, ANominalShapeIsTheLastOfThoseCompared) {
@@ -109,7 +176,8 @@ TEST_F(ShardsOfAList, ANominalShapeIsTheLastOfThoseCompared) {
 TEST_F(ShardsOfAList, OfTwoCommandsAreNotPutTogether) {
   const std::string out = folder_.file("out");
   const auto shard = [&](const char* filter, const char* k, const ProcessOptions& options = {}) {
-    return fettle(command({"filter"}, {"--out-dir", out, "--filter", filter, "--shard", k, "--force"}),
+    return fettle(command({"filter"},
+                          {"--out-dir", out, "--filter", filter, "--shard", k, "--force", "--threads", "1"}),
                   options);
   };
   ASSERT_EQ(shard("tv", "1/2").status, 0);
@@ -117,7 +185,8 @@ TEST_F(ShardsOfAList, OfTwoCommandsAreNotPutTogether) {
   expectFailed(fettle({"gather", out}), "shard 2 was done by another command");
   ASSERT_EQ(shard("box", "1/2").status, 0);
   EXPECT_EQ(fettleJson({"gather", out})["done"], 5);
-  // A shard that is begun again and does not end is not done, whatever it did before.
+  // A shard that is begun again and does not end is not done, whatever it did before. Its scans are large enough to be cut off.
+  for (const std::size_t i : {1U, 3U}) ASSERT_EQ(fettle({"synth", scans_[i], "--size", "800x800"}).status, 0);
   ProcessOptions kill_it;
   kill_it.while_running = [&](int pid) {
     if (std::filesystem::exists(out + "/shards/2-of-2.json")) return false;
