@@ -246,12 +246,13 @@ engine::Result<ShardPlan> planBands(const BandWork& work, const PlanOptions& opt
   if (planned_before) {
     if (earlier)
       plan->one_file = one_file == earlier->one_file.has_value() ? earlier->one_file : std::nullopt;
-    const bool same = earlier && earlier->id() == plan->id();
+    const bool same = earlier && earlier->id() == plan->id() && earlier->inTurn() == memory.has_value();
     // Once gathered the file that the shards wrote into is gone: the same plan begins again.
     if (same && (!earlier->one_file || std::filesystem::exists(folder.whole(), error))) return *earlier;
     if (!same && !own && !options.again)
       return engine::inputError("there is another plan for this output", folder.plan(),
-                                "gather its shards, remove the folder, or give --again");
+                                memory ? "gather its shards, or remove the folder"
+                                       : "gather its shards, remove the folder, or give --again");
     std::filesystem::remove_all(folder.path(), error);
   }
   if (auto status = makeFolder(folder.path()); !status) return tl::unexpected(status.error());

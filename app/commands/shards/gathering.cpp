@@ -14,6 +14,7 @@
 
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
+#include "app/commands/shards/plan.h"
 #include "app/commands/shards/vrt_text.h"
 #include "app/commands/shell_word.h"
 #include "app/terminal.h"
@@ -82,8 +83,8 @@ struct Total {
 };
 
 std::string remedyFor(const ShardPlan& plan, const std::vector<int>& numbers) {
-  const std::string command = fettleCommand(plan.arguments);
-  if (plan.inTurn()) return fmt::format("the same command continues: {}", command);
+  if (plan.inTurn()) return fmt::format("the same command continues: {}", fettleCommand(plan.arguments));
+  const std::string command = fettleCommand(shardWords(plan.command, plan.arguments, plan.threads));
   return fmt::format("run {}: {} --shard {}/{}", numbers.size() == 1 ? "it" : "them", command,
                      numbers.size() == 1 ? std::to_string(numbers.front()) : std::string("K"), plan.shards);
 }

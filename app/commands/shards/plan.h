@@ -11,6 +11,11 @@ namespace fettle::app {
 /// report is printed.
 [[nodiscard]] std::vector<std::string> shardArguments(const std::vector<std::string>& arguments);
 
+/// The words of a shard of a plan for this `command` with these `arguments`, and its threads: without them it would take all cores, and
+/// more time and memory than were foreseen.
+[[nodiscard]] std::vector<std::string> shardWords(const std::string& command,
+                                                  const std::vector<std::string>& arguments, int threads);
+
 void printPlan(const Report& report);
 
 // The commands below `fettle plan`, each in the source of the command that it plans.

@@ -126,7 +126,7 @@ engine::Result<ShardPlan> readPlan(const std::string& path) {
                               report.at("file_bytes").get<std::uint64_t>()};
     plan.seconds = report.at("seconds_per_shard");
     plan.memory_bytes = report.at("memory_per_shard");
-    plan.threads = report.at("threads");
+    plan.threads = report.value("threads", 1);  // older plans state none
     if (plan.id() != report.at("id")) return refused("the plan is damaged");
     if (plan.threads < 1 || plan.shards < 1 || plan.shards > engine::Grid::kMaxSide || plan.width < 1 ||
         plan.height < 1)

@@ -31,8 +31,8 @@ struct SubmitArguments {
   bool run = false;
 };
 
-// Runs a script to its end, with this process's own output.
-engine::Status runScript(const std::string& path) {
+// Runs a script to its end, with this process's own output. `array`: it asks Slurm for an array.
+engine::Status runScript(const std::string& path, bool array) {
   std::string shell = "/bin/sh", script = path;
   char* const arguments[] = {shell.data(), script.data(), nullptr};
   pid_t process = 0;
@@ -44,15 +44,19 @@ engine::Status runScript(const std::string& path) {
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  return engine::failure("the script did not end well", path,
-                         "see what is printed above, and fettle status; the same command continues. Where "
-                         "Slurm refuses so large an array, give --tasks");
+  return engine::failure(
+      "the script did not end well", path,
+      std::string("see what is printed above, and fettle status; the same command continues") +
+          (array ? ". Where Slurm refuses so large an array, give --tasks" : ""));
 }
 
 engine::Result<Report> submit(const SubmitArguments& options) {
   const ShardFolder folder(options.out);
   const auto plan = readPlan(folder.plan());
   if (!plan) return tl::unexpected(plan.error());
+  if (plan->inTurn())
+    return engine::inputError("these bands are worked on in turn by one process", folder.plan(),
+                              "run the same command again, or plan with --again");
   SubmitOptions asked;
   asked.engine = options.engine == "slurm" ? ShardEngine::kSlurm
                  : options.engine == "mpi" ? ShardEngine::kMpi
@@ -78,7 +82,8 @@ engine::Result<Report> submit(const SubmitArguments& options) {
   if (!options.run) return report;
   const std::string file = folder.path() + "/submit.sh";
   if (auto status = engine::writeFileAtomically(file, script); !status) return tl::unexpected(status.error());
-  if (auto status = runScript(file); !status) return tl::unexpected(status.error());
+  const bool array = asked.engine == ShardEngine::kSlurm && plan->shards > 1;
+  if (auto status = runScript(file, array); !status) return tl::unexpected(status.error());
   return report;
 }
 

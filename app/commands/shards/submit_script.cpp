@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/shards/plan.h"
 #include "app/commands/shards/shard_folder.h"
 #include "app/commands/shell_word.h"
 #include "engine/field/tile.h"
@@ -83,16 +84,6 @@ std::string localScript(const ShardPlan& plan, const SubmitOptions& options, con
          gather + "\n";
 }
 
-// The words of a shard, with the threads that it is given; `threads` 0: as planned.
-std::vector<std::string> shardWords(const ShardPlan& plan, int threads) {
-  // Shards of a conversion have no such option.
-  if (plan.command != "filter") return plan.arguments;
-  std::vector<std::string> words = wordsWithout(plan.arguments, {}, {"--threads"});
-  words.emplace_back("--threads");
-  words.push_back(std::to_string(needsOf(plan, threads).threads));
-  return words;
-}
-
 }  // namespace
 
 ShardNeeds needsOf(const ShardPlan& plan, int threads) {
@@ -114,7 +105,9 @@ GatherNeeds needsOfGather(const ShardPlan& plan) {
 
 std::string submitScript(const ShardPlan& plan, const SubmitOptions& options) {
   std::string shard = quotedWord(options.program);
-  for (const std::string& word : shardWords(plan, options.threads)) (shard += ' ') += quotedWord(word);
+  const int threads = needsOf(plan, options.threads).threads;
+  for (const std::string& word : shardWords(plan.command, plan.arguments, threads))
+    (shard += ' ') += quotedWord(word);
   const std::string gather = fmt::format("{} gather {}", quotedWord(options.program), quotedWord(plan.out));
   std::string script =
       fmt::format("#!/bin/sh\n# {} shards of a scan, made by fettle submit.\nset -e\ncd {}\n", plan.shards,

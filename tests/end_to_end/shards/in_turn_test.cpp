@@ -63,8 +63,35 @@ TEST(ShardsInTurn, ShardsThatWerePlannedForOthersStay) {
   (void)fettleJson({"plan", "filter", scan, out, "--filter", "box", "--shards", "2"});
   (void)fettleJson({"filter", scan, out, "--filter", "box", "--shard", "1"});
   expectRefused(fettle({"filter", scan, out, "--filter", "box", "--shards-in-turn"}),
-                "there is another plan");
+                "gather its shards, or remove the folder");
   EXPECT_EQ(fettleJson({"status", out})["done"], nlohmann::json({1}));
+}
+
+TEST(ShardsInTurn, TheirPlanIsNoneForOtherProcesses) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif"), out = folder.file("out.tif");
+  writeField(scan, 4096, 1024);
+  const std::vector<std::string> words{"filter", scan, out, "--filter", "box", "--threads", "1"};
+  const auto with = [&](std::vector<std::string> all, const std::vector<std::string>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  ProcessOptions kill_it;
+  kill_it.while_running = [&](int pid) {
+    if (!std::filesystem::exists(out + ".shards/shard-1.json")) return false;
+    kill(pid, SIGKILL);
+    return true;
+  };
+  const auto in_turn = with(words, {"--shards-in-turn", "--memory", "105MB"});
+  EXPECT_NE(fettle(in_turn, kill_it).status, 0);
+  const auto bands = nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"].get<int>();
+  expectRefused(fettle({"submit", out, "--engine", "local"}), "worked on in turn by one process");
+  // A plan of as many shards would be the same work, and is another's.
+  const auto plan = with(with({"plan"}, words), {"--shards", std::to_string(bands)});
+  expectRefused(fettle(plan), "there is another plan");
+  (void)fettleJson(with(plan, {"--again"}));
+  EXPECT_EQ(fettle({"submit", out, "--engine", "local"}).status, 0);
+  expectRefused(fettle(in_turn), "there is another plan");
 }
 
 TEST(ShardsInTurn, KilledInTheMiddleTheSameCommandContinues) {
@@ -92,30 +119,31 @@ TEST(ShardsInTurn, KilledInTheMiddleTheSameCommandContinues) {
 
 TEST(ShardsInTurn, WithMoreMemoryOrNoneGivenTheBandsThatAreDoneAreKept) {
   const TempFolder folder;
-  const std::string scan = folder.file("scan.tif"), out = folder.file("out.tif");
+  const std::string scan = folder.file("scan.tif");
   writeField(scan, 4096, 1024);
-  const std::vector<std::string> filter{"filter", scan,        out, "--filter",
-                                        "box",    "--threads", "1", "--shards-in-turn"};
-  const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = filter;
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  // Cut off after a band, and again by a command of more memory, which alone would take fewer bands.
-  ProcessOptions kill_it;
-  kill_it.while_running = [&](int pid) {
-    if (!std::filesystem::exists(out + ".shards/shard-1.json")) return false;
-    kill(pid, SIGKILL);
-    return true;
-  };
-  EXPECT_NE(fettle(with({"--memory", "105MB"}), kill_it).status, 0);
-  const auto planned = nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"];
-  ASSERT_GT(planned, 2);
-  EXPECT_NE(fettle(with({"--memory", "400MB"}), kill_it).status, 0);
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"], planned);
-  const auto report = fettleJson(filter);
-  EXPECT_EQ(report["bands"], planned);
-  EXPECT_GE(report["bands_kept"], 1);
+  // Cut off after a band, and continued by a command that alone would take fewer bands.
+  for (const std::vector<std::string>& memory : {std::vector<std::string>{"--memory", "400MB"}, {}}) {
+    const std::string out = folder.file(memory.empty() ? "b.tif" : "a.tif");
+    const std::vector<std::string> filter{"filter", scan,        out, "--filter",
+                                          "box",    "--threads", "1", "--shards-in-turn"};
+    const auto with = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> words = filter;
+      words.insert(words.end(), more.begin(), more.end());
+      return words;
+    };
+    ProcessOptions kill_it;
+    kill_it.while_running = [&](int pid) {
+      if (!std::filesystem::exists(out + ".shards/shard-1.json")) return false;
+      kill(pid, SIGKILL);
+      return true;
+    };
+    EXPECT_NE(fettle(with({"--memory", "105MB"}), kill_it).status, 0);
+    const auto planned = nlohmann::json::parse(std::ifstream(out + ".shards/plan.json"))["shards"];
+    ASSERT_GT(planned, 2);
+    const auto report = fettleJson(with(memory));
+    EXPECT_EQ(report["bands"], planned);
+    EXPECT_GE(report["bands_kept"], 1);
+  }
 }
 
 TEST(ShardsInTurn, WhatIsNotWrittenRowByRowIsRefusedBeforeAnythingIsDone) {

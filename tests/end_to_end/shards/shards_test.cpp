@@ -331,6 +331,10 @@ TEST_F(Shards, AVirtualRasterOverTheFilesOfTheShardsIsForGdalTheResultOfOneRun) 
 TEST_F(Shards, SubmitPrintsAJobAndRunsItHere) {
   const Words filter{"filter", scan(), out(), "--filter", "box"};
   (void)fettleJson(Words{"plan"} + filter + Words{"--shards", "3"});
+  // What is printed takes the threads for which time and memory are foreseen.
+  const Outcome again = fettle(Words{"plan"} + filter + Words{"--shards", "3"});
+  EXPECT_NE(again.out.find("--filter box --threads 1 --shard K/3"), std::string::npos) << again.out;
+  expectFailed(fettle({"gather", out()}), "--filter box --threads 1 --shard K/3");
   const std::string slurm = fettle({"submit", out(), "--engine", "slurm", "--at-once", "2"}).out;
   EXPECT_NE(slurm.find("--array=1-3%2 --cpus-per-task=1"), std::string::npos) << slurm;
   EXPECT_NE(slurm.find("--dependency=afterany"), std::string::npos);
