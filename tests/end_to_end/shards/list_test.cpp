@@ -117,7 +117,7 @@ TEST_F(ShardsOfAList, AreGatheredAsTheTextOfOneRun) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  const std::vector<std::string> compare = command({"compare", scans_[0]}, {"--align", "shift"});
+  const std::vector<std::string> compare = command({"compare", scans_[0]}, {"--align", "level"});
   const std::vector<std::string> measure = command({"measure"}, {"--only", "height", "--noise-trials", "0"});
   const std::vector<std::string> suggest =
       command({"filter"}, {"--out-dir", out, "--suggest", "--tolerance", "20um"});
