@@ -115,13 +115,20 @@ TEST_F(ColoursTest, a_small_change_is_seen_beside_an_edge_that_moved_and_a_toler
   const int before = coloured(seen);
   EXPECT_GT(before, 100);
   (void)user.until("all within the tolerance", [&](const Screen& now) { return coloured(now) < before / 4; });
-  (void)quit(user);
+  (void)user.press("ctrl+q");
+  program->until("a question",
+                 [](const State& s) { return s["dialog"] == "unsaved" && s["settled"] == true; });
+  (void)user.press("d");
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
   // The share is kept for the next start, what was typed is not.
   const auto again = start({scan});
   User next(display, *again, "next");
   (void)opened(*again);
-  EXPECT_EQ(next.key("d")["colour_rule"], "share");
-  EXPECT_EQ(next.rest()["tolerance"], 0.0);
+  const State kept = next.rest();
+  EXPECT_EQ(kept["deviation"], true) << "as it was left";
+  EXPECT_EQ(kept["colour_rule"], "share");
+  EXPECT_EQ(kept["tolerance"], 0.0);
   (void)quit(next);
 }
 
