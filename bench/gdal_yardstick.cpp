@@ -4,45 +4,43 @@
 #include <array>
 #include <memory>
 
-#include <gdal.h>
-#include <gdal_frmts.h>
-
 #include "engine/base/stopwatch.h"
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::bench {
 
 namespace {
 
 struct Close {
-  void operator()(GDALDatasetH dataset) const noexcept { GDALClose(dataset); }
+  void operator()(GDALDatasetH dataset) const noexcept { engine::gdal().GDALClose(dataset); }
 };
 using Dataset = std::unique_ptr<void, Close>;
 
 Dataset openTiff(const std::string& path) {
-  GDALRegister_GTiff();
+  engine::gdal().GDALRegister_GTiff();
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const std::array<const char*, 2> options{"NUM_THREADS=ALL_CPUS", nullptr};
-  return Dataset(
-      GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data(), nullptr));
+  return Dataset(engine::gdal().GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(),
+                                           options.data(), nullptr));
 }
 
 // Rows per call.
 bool readBand(const std::string& path, bool whole, std::vector<char>& buffer) {
   const Dataset dataset = openTiff(path);
-  if (!dataset || GDALGetRasterCount(dataset.get()) < 1) return false;
-  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
-  const GDALDataType type = GDALGetRasterDataType(band);
-  const int width = GDALGetRasterXSize(dataset.get());
-  const int height = GDALGetRasterYSize(dataset.get());
-  const std::size_t row_bytes =
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(GDALGetDataTypeSizeBytes(type));
+  if (!dataset || engine::gdal().GDALGetRasterCount(dataset.get()) < 1) return false;
+  GDALRasterBandH band = engine::gdal().GDALGetRasterBand(dataset.get(), 1);
+  const GDALDataType type = engine::gdal().GDALGetRasterDataType(band);
+  const int width = engine::gdal().GDALGetRasterXSize(dataset.get());
+  const int height = engine::gdal().GDALGetRasterYSize(dataset.get());
+  const std::size_t row_bytes = static_cast<std::size_t>(width) *
+                                static_cast<std::size_t>(engine::gdal().GDALGetDataTypeSizeBytes(type));
   int columns = 0, rows = height;
-  if (!whole) GDALGetBlockSize(band, &columns, &rows);
+  if (!whole) engine::gdal().GDALGetBlockSize(band, &columns, &rows);
   for (int row = 0; row < height; row += rows) {
     const int now = std::min(rows, height - row);
-    if (GDALRasterIO(band, GF_Read, 0, row, width, now,
-                     buffer.data() + row_bytes * static_cast<std::size_t>(row), width, now, type, 0,
-                     0) != CE_None)
+    if (engine::gdal().GDALRasterIO(band, GF_Read, 0, row, width, now,
+                                    buffer.data() + row_bytes * static_cast<std::size_t>(row), width, now,
+                                    type, 0, 0) != CE_None)
       return false;
   }
   return true;
@@ -52,7 +50,7 @@ bool readBand(const std::string& path, bool whole, std::vector<char>& buffer) {
 
 engine::Status writeTiffAs(TiffLayout layout, const engine::Version& field, const std::string& path,
                            engine::JobControl& job) {
-  GDALRegister_GTiff();
+  engine::gdal().GDALRegister_GTiff();
   const bool packed = layout == TiffLayout::kPackedStrips;
   const bool tiled = layout == TiffLayout::kPlainTiles;
   std::vector<const char*> creation{"BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"};
@@ -61,12 +59,13 @@ engine::Status writeTiffAs(TiffLayout layout, const engine::Version& field, cons
   creation.push_back(nullptr);
   const engine::Grid& grid = field.grid();
   const engine::Error cannot = engine::inputError("the file cannot be written", path).value();
-  const Dataset dataset(GDALCreate(GDALGetDriverByName("GTiff"), path.c_str(), grid.width, grid.height, 1,
-                                   GDT_Float32, const_cast<char**>(creation.data())));
+  const Dataset dataset(engine::gdal().GDALCreate(engine::gdal().GDALGetDriverByName("GTiff"), path.c_str(),
+                                                  grid.width, grid.height, 1, GDT_Float32,
+                                                  const_cast<char**>(creation.data())));
   if (!dataset) return tl::unexpected(cannot);
   std::array<double, 6> place{0.0, grid.spacing_x, 0.0, grid.height * grid.spacing_y, 0.0, -grid.spacing_y};
-  GDALSetGeoTransform(dataset.get(), place.data());
-  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
+  engine::gdal().GDALSetGeoTransform(dataset.get(), place.data());
+  GDALRasterBandH band = engine::gdal().GDALGetRasterBand(dataset.get(), 1);
   constexpr std::int32_t kRows = 256;  // whole blocks of each layout
   std::vector<float> heights(static_cast<std::size_t>(grid.width) * kRows);
   const engine::FieldReader reader = field.reader();
@@ -74,23 +73,24 @@ engine::Status writeTiffAs(TiffLayout layout, const engine::Version& field, cons
     const std::int32_t rows = std::min(kRows, grid.height - top);
     reader.readHeights(0, grid.height - top - rows, grid.width, rows,
                        heights.data() + std::ptrdiff_t{rows - 1} * grid.width, -grid.width);
-    if (GDALRasterIO(band, GF_Write, 0, top, grid.width, rows, heights.data(), grid.width, rows, GDT_Float32,
-                     0, 0) != CE_None)
+    if (engine::gdal().GDALRasterIO(band, GF_Write, 0, top, grid.width, rows, heights.data(), grid.width,
+                                    rows, GDT_Float32, 0, 0) != CE_None)
       return tl::unexpected(cannot);
     if (job.cancelled()) return engine::cancelled();
   }
-  GDALFlushCache(dataset.get());
+  engine::gdal().GDALFlushCache(dataset.get());
   return {};
 }
 
 engine::Result<std::optional<double>> secondsOfGdal(const std::string& path, std::vector<char>& buffer) {
   {
     const Dataset dataset = openTiff(path);
-    if (!dataset || GDALGetRasterCount(dataset.get()) < 1) return std::nullopt;
-    const GDALDataType type = GDALGetRasterDataType(GDALGetRasterBand(dataset.get(), 1));
-    const std::size_t bytes = static_cast<std::size_t>(GDALGetRasterXSize(dataset.get())) *
-                              static_cast<std::size_t>(GDALGetRasterYSize(dataset.get())) *
-                              static_cast<std::size_t>(GDALGetDataTypeSizeBytes(type));
+    if (!dataset || engine::gdal().GDALGetRasterCount(dataset.get()) < 1) return std::nullopt;
+    const GDALDataType type =
+        engine::gdal().GDALGetRasterDataType(engine::gdal().GDALGetRasterBand(dataset.get(), 1));
+    const std::size_t bytes = static_cast<std::size_t>(engine::gdal().GDALGetRasterXSize(dataset.get())) *
+                              static_cast<std::size_t>(engine::gdal().GDALGetRasterYSize(dataset.get())) *
+                              static_cast<std::size_t>(engine::gdal().GDALGetDataTypeSizeBytes(type));
     if (buffer.size() < bytes) buffer.resize(bytes);
   }
   double best = 0.0;

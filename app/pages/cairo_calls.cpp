@@ -1,48 +1,17 @@
 #include "app/pages/cairo_calls.h"
 
-#include <string>
-
-#include <dlfcn.h>
-#include <fmt/format.h>
+#include "engine/base/loaded_library.h"
 
 namespace fettle::app {
 
 namespace {
 
-// One shared library; it stays loaded, since what it registers (types of GObject) cannot be taken back.
-class LoadedLibrary {
- public:
-  LoadedLibrary(const char* file, const char* package)
-      : file_(file), package_(package), handle_(dlopen(file, RTLD_NOW | RTLD_LOCAL)) {
-    // Also where the file is there and a library that it needs is not: the loader says which.
-    if (handle_ != nullptr) return;
-    const char* why = dlerror();
-    missing_ = why != nullptr ? why : fmt::format("{}: cannot be loaded", file);
-  }
-
-  // Also of the libraries that it needs itself.
-  template <class Call>
-  void find(const char* name, Call& call) {
-    if (handle_ == nullptr) return;
-    call = reinterpret_cast<Call>(dlsym(handle_, name));
-    if (call == nullptr && missing_.empty()) missing_ = fmt::format("{}: it has no {}", file_, name);
-  }
-  [[nodiscard]] engine::Status status() const {
-    if (missing_.empty()) return {};
-    return engine::failure(fmt::format("a PDF cannot be drawn: {}", missing_), "PDF",
-                           fmt::format("install the package {}, or write .html", package_));
-  }
-
- private:
-  const char* file_;
-  const char* package_;
-  void* handle_;
-  std::string missing_;
-};
+constexpr auto kNoPages = "a PDF cannot be drawn";
+constexpr auto kInstead = ", or write .html";
 
 engine::Result<CairoCalls> loaded() {
   CairoCalls calls;
-  LoadedLibrary cairo("libcairo.so.2", "libcairo2");
+  engine::LoadedLibrary cairo("libcairo.so.2", "libcairo2");
   cairo.find("cairo_create", calls.create);
   cairo.find("cairo_destroy", calls.destroy);
   cairo.find("cairo_fill", calls.fill);
@@ -83,13 +52,13 @@ engine::Result<CairoCalls> loaded() {
   cairo.find("cairo_surface_finish", calls.surface_finish);
   cairo.find("cairo_surface_status", calls.surface_status);
   cairo.find("cairo_translate", calls.translate);
-  if (auto status = cairo.status(); !status) return tl::unexpected(status.error());
-  LoadedLibrary rsvg("librsvg-2.so.2", "librsvg2-2");
+  if (auto status = cairo.status(kNoPages, "PDF", kInstead); !status) return tl::unexpected(status.error());
+  engine::LoadedLibrary rsvg("librsvg-2.so.2", "librsvg2-2");
   rsvg.find("rsvg_handle_new_from_data", calls.rsvg_handle_new_from_data);
   rsvg.find("rsvg_handle_render_document", calls.rsvg_handle_render_document);
   rsvg.find("g_object_unref", calls.g_object_unref);
   rsvg.find("g_error_free", calls.g_error_free);
-  if (auto status = rsvg.status(); !status) return tl::unexpected(status.error());
+  if (auto status = rsvg.status(kNoPages, "PDF", kInstead); !status) return tl::unexpected(status.error());
   return calls;
 }
 

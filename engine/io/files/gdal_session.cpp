@@ -7,14 +7,10 @@
 #include <mutex>
 #include <utility>
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal_frmts.h>
-#include <ogrsf_frmts.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::engine {
 
@@ -23,19 +19,20 @@ namespace {
 void setUp() {
   // Each driver by its own registration: GDALAllRegister would load plugins and enable 200 formats, some of
   // which read any path or address that a file names.
-  CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // no .aux.xml next to the user's file, read or written
-  CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
-  CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
-  CPLSetConfigOption("CPL_DEBUG", "OFF");
-  GDALSetCacheMax64(GIntBig{64} << 20);
-  GDALRegister_GTiff();
-  GDALRegister_COG();  // only for writing: importers name their driver
-  RegisterOGRGeoJSON();
-  RegisterOGRGeoPackage();
-  RegisterOGRDXF();
-  CPLSetConfigOption("DXF_INLINE_BLOCKS", "NO");  // blocks of blocks would grow without limit
+  gdal().CPLSetConfigOption("GDAL_PAM_ENABLED",
+                            "NO");  // no .aux.xml next to the user's file, read or written
+  gdal().CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
+  gdal().CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
+  gdal().CPLSetConfigOption("CPL_DEBUG", "OFF");
+  gdal().GDALSetCacheMax64(GIntBig{64} << 20);
+  gdal().GDALRegister_GTiff();
+  gdal().GDALRegister_COG();  // only for writing: importers name their driver
+  gdal().RegisterOGRGeoJSON();
+  gdal().RegisterOGRGeoPackage();
+  gdal().RegisterOGRDXF();
+  gdal().CPLSetConfigOption("DXF_INLINE_BLOCKS", "NO");  // blocks of blocks would grow without limit
   // Threads of GDAL's own have no session on their stack; their errors are reported as a failed call.
-  CPLSetErrorHandler(CPLQuietErrorHandler);
+  gdal().CPLSetErrorHandler(gdal().CPLQuietErrorHandler);
 }
 
 }  // namespace
@@ -43,18 +40,18 @@ void setUp() {
 GdalSession::GdalSession() {
   static std::once_flag once;
   std::call_once(once, setUp);
-  CPLErrorReset();
-  CPLPushErrorHandlerEx(&GdalSession::hear, this);
+  gdal().CPLErrorReset();
+  gdal().CPLPushErrorHandlerEx(&GdalSession::hear, this);
 }
 
 GdalSession::~GdalSession() {
-  CPLPopErrorHandler();
-  CPLErrorReset();
+  gdal().CPLPopErrorHandler();
+  gdal().CPLErrorReset();
 }
 
 void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
   const int system = errno;  // GDAL reports directly after the call that failed
-  auto* session = static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
+  auto* session = static_cast<GdalSession*>(gdal().CPLGetErrorHandlerUserData());
   if (session == nullptr || message == nullptr) return;
   if (severity >= CE_Failure) {
     if (!session->failed_) session->first_ = message;
@@ -87,17 +84,17 @@ MemoryFile::MemoryFile(const std::string& extension, std::string content) : cont
   static std::atomic<unsigned> count{0};
   path_ = fmt::format("/vsimem/fettle-{}{}", count++, extension);
   if (!content_.empty())
-    VSIFCloseL(VSIFileFromMemBuffer(path_.c_str(), reinterpret_cast<GByte*>(content_.data()), content_.size(),
-                                    FALSE));
+    gdal().VSIFCloseL(gdal().VSIFileFromMemBuffer(path_.c_str(), reinterpret_cast<GByte*>(content_.data()),
+                                                  content_.size(), FALSE));
 }
 
 MemoryFile::~MemoryFile() {
-  VSIUnlink(path_.c_str());
+  gdal().VSIUnlink(path_.c_str());
 }
 
 std::string_view MemoryFile::bytes() const {
   vsi_l_offset size = 0;
-  const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
+  const GByte* data = gdal().VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
   return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
 }
 

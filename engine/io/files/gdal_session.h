@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <gdal.h>
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::engine {
 
@@ -56,7 +56,7 @@ class MemoryFile {
 };
 
 struct CloseDataset {
-  void operator()(GDALDatasetH dataset) const noexcept { GDALClose(dataset); }
+  void operator()(GDALDatasetH dataset) const noexcept { gdal().GDALClose(dataset); }
 };
 using DatasetPtr = std::unique_ptr<void, CloseDataset>;
 

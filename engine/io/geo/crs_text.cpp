@@ -4,10 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <cpl_conv.h>
-#include <cpl_string.h>
-#include <gdal.h>
-
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/files/little_endian.h"
 
@@ -18,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 struct ReleaseCrs {
-  void operator()(OGRSpatialReferenceH crs) const noexcept { OSRRelease(crs); }
+  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRRelease(crs); }
 };
 using CrsPtr = std::unique_ptr<void, ReleaseCrs>;
 
@@ -26,8 +23,8 @@ std::string crsAs(OGRSpatialReferenceH crs, const char* form) {
   char* text = nullptr;
   const char* const options[] = {form, nullptr};
   std::string out;
-  if (OSRExportToWktEx(crs, &text, options) == OGRERR_NONE && text != nullptr) out = text;
-  CPLFree(text);
+  if (gdal().OSRExportToWktEx(crs, &text, options) == OGRERR_NONE && text != nullptr) out = text;
+  gdal().CPLFree(text);
   return out;
 }
 
@@ -36,12 +33,12 @@ CrsPtr registered(OGRSpatialReferenceH crs) {
   constexpr int kSameParameters = 90;  // GDAL: equivalent, the names may differ
   int count = 0;
   int* confidence = nullptr;
-  OGRSpatialReferenceH* found = OSRFindMatches(crs, nullptr, &count, &confidence);
+  OGRSpatialReferenceH* found = gdal().OSRFindMatches(crs, nullptr, &count, &confidence);
   CrsPtr match;
   if (count > 0 && confidence[0] >= kSameParameters && (count == 1 || confidence[1] < confidence[0]))
-    match.reset(OSRClone(found[0]));
-  if (found != nullptr) OSRFreeSRSArray(found);
-  CPLFree(confidence);
+    match.reset(gdal().OSRClone(found[0]));
+  if (found != nullptr) gdal().OSRFreeSRSArray(found);
+  gdal().CPLFree(confidence);
   return match;
 }
 
@@ -122,33 +119,34 @@ std::string wktOf(OGRSpatialReferenceH crs) {
 
 bool sameHorizontalCrs(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return true;
-  const CrsPtr first(OSRNewSpatialReference(a.c_str())), second(OSRNewSpatialReference(b.c_str()));
+  const CrsPtr first(gdal().OSRNewSpatialReference(a.c_str())),
+      second(gdal().OSRNewSpatialReference(b.c_str()));
   if (!first || !second) return true;
-  for (const CrsPtr* crs : {&first, &second}) OSRStripVertical(crs->get());
+  for (const CrsPtr* crs : {&first, &second}) gdal().OSRStripVertical(crs->get());
   // A program may list the axes in another order: files keep x before y all the same.
   const char* const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
                                  "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
-  return OSRIsSameEx(first.get(), second.get(), options) != 0;
+  return gdal().OSRIsSameEx(first.get(), second.get(), options) != 0;
 }
 
 std::string crsName(const std::string& wkt) {
-  const CrsPtr crs(wkt.empty() ? nullptr : OSRNewSpatialReference(wkt.c_str()));
-  const char* const name = crs ? OSRGetName(crs.get()) : nullptr;
+  const CrsPtr crs(wkt.empty() ? nullptr : gdal().OSRNewSpatialReference(wkt.c_str()));
+  const char* const name = crs ? gdal().OSRGetName(crs.get()) : nullptr;
   return name != nullptr && *name != '\0' ? name : "no coordinate system";
 }
 
 std::string wktOfPrj(const std::string& text) {
-  const CrsPtr crs(OSRNewSpatialReference(nullptr));
-  char** lines = CSLTokenizeString2(text.c_str(), "\r\n", 0);
-  const bool understood = OSRImportFromESRI(crs.get(), lines) == OGRERR_NONE;
-  CSLDestroy(lines);
+  const CrsPtr crs(gdal().OSRNewSpatialReference(nullptr));
+  char** lines = gdal().CSLTokenizeString2(text.c_str(), "\r\n", 0);
+  const bool understood = gdal().OSRImportFromESRI(crs.get(), lines) == OGRERR_NONE;
+  gdal().CSLDestroy(lines);
   if (!understood) return {};
   const CrsPtr known = registered(crs.get());
   return wktOf(known ? known.get() : crs.get());
 }
 
 std::string prjOf(const std::string& wkt) {
-  const CrsPtr crs(OSRNewSpatialReference(wkt.c_str()));
+  const CrsPtr crs(gdal().OSRNewSpatialReference(wkt.c_str()));
   if (!crs) return {};
   // PROJ writes units as small as a micrometre with digits that no reader accepts: "1E-06.0".
   for (const char* form : {"FORMAT=WKT1_ESRI", "FORMAT=WKT1_GDAL"}) {
@@ -162,13 +160,13 @@ std::string wktOfGeoKeys(const GeoKeys& keys) {
   if (!keysAreSound(keys)) return {};
   const MemoryFile file(".tif", tiffOf(keys));
   // GDAL ignores vertical systems in keys of version 1.0, which are those of LAS 1.2.
-  CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+  gdal().CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
   const char* const drivers[] = {"GTiff", nullptr};
   const DatasetPtr dataset(
-      GDALOpenEx(file.path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
-  OGRSpatialReferenceH crs = dataset ? GDALGetSpatialRef(dataset.get()) : nullptr;
-  CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", nullptr);
-  if (crs == nullptr || (OSRIsProjected(crs) == 0 && OSRIsGeographic(crs) == 0)) return {};
+      gdal().GDALOpenEx(file.path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+  OGRSpatialReferenceH crs = dataset ? gdal().GDALGetSpatialRef(dataset.get()) : nullptr;
+  gdal().CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", nullptr);
+  if (crs == nullptr || (gdal().OSRIsProjected(crs) == 0 && gdal().OSRIsGeographic(crs) == 0)) return {};
   return wktOf(crs);
 }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <ogr_srs_api.h>
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::engine {
 

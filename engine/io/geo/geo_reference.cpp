@@ -6,9 +6,9 @@
 #include <memory>
 #include <numbers>
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <ogr_srs_api.h>
+
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::engine {
 
@@ -20,7 +20,7 @@ std::ptrdiff_t digitsOf(double value) {
 }
 
 struct DestroyCrs {
-  void operator()(OGRSpatialReferenceH crs) const noexcept { OSRDestroySpatialReference(crs); }
+  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRDestroySpatialReference(crs); }
 };
 
 // A degree of latitude and of longitude on the WGS 84 ellipsoid [m], series after Snyder, "Map Projections: A
@@ -77,10 +77,10 @@ GeoTransform geoTransformOf(const Grid& grid) {
 }
 
 void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vector<std::string>& warnings) {
-  const std::unique_ptr<void, DestroyCrs> crs(OSRNewSpatialReference(wkt.c_str()));
+  const std::unique_ptr<void, DestroyCrs> crs(gdal().OSRNewSpatialReference(wkt.c_str()));
   if (!crs) return;
   char* name = nullptr;  // owned by the coordinate system
-  if (OSRIsGeographic(crs.get()) != 0) {
+  if (gdal().OSRIsGeographic(crs.get()) != 0) {
     if (std::abs(y) > 90.0) {
       warnings.push_back(fmt::format(
           "coordinates that are no degrees? The coordinate system has degrees, and the field would "
@@ -99,12 +99,12 @@ void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vecto
         "from west to east and {:.1f} % too little from south to north, reproject to metres for true shapes",
         mean, y, 100.0 * (mean / east - 1.0), 100.0 * (1.0 - mean / north)));
   } else {
-    const double metres = OSRGetLinearUnits(crs.get(), &name);
+    const double metres = gdal().OSRGetLinearUnits(crs.get(), &name);
     if (std::isfinite(metres) && metres > 0.0) units.lateral = lengthUnitFromMetres(metres, name ? name : "");
   }
-  if (OSRIsCompound(crs.get()) != 0 || OSRIsVertical(crs.get()) != 0) {
+  if (gdal().OSRIsCompound(crs.get()) != 0 || gdal().OSRIsVertical(crs.get()) != 0) {
     name = nullptr;
-    const double metres = OSRGetTargetLinearUnits(crs.get(), "VERT_CS", &name);
+    const double metres = gdal().OSRGetTargetLinearUnits(crs.get(), "VERT_CS", &name);
     if (std::isfinite(metres) && metres > 0.0 && !units.height)
       units.height = lengthUnitFromMetres(metres, name ? name : "");
   }

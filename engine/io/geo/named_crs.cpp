@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <ogr_srs_api.h>
 
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/geo/crs_text.h"
 
@@ -16,7 +16,7 @@ namespace fettle::engine {
 namespace {
 
 struct ReleaseNamed {
-  void operator()(OGRSpatialReferenceH crs) const noexcept { OSRRelease(crs); }
+  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRRelease(crs); }
 };
 
 }  // namespace
@@ -24,17 +24,17 @@ struct ReleaseNamed {
 Result<std::string> crsOf(const std::string& text) {
   const GdalSession quiet;
   constexpr std::string_view kRegistry = "EPSG:";
-  const std::unique_ptr<void, ReleaseNamed> crs(OSRNewSpatialReference(nullptr));
+  const std::unique_ptr<void, ReleaseNamed> crs(gdal().OSRNewSpatialReference(nullptr));
   if (text.starts_with(kRegistry)) {
     int code = 0;
     const char *const digits = text.data() + kRegistry.size(), *const end = text.data() + text.size();
     if (const auto [read, problem] = std::from_chars(digits, end, code);
-        problem == std::errc() && read == end && OSRImportFromEPSG(crs.get(), code) == OGRERR_NONE)
+        problem == std::errc() && read == end && gdal().OSRImportFromEPSG(crs.get(), code) == OGRERR_NONE)
       return wktOf(crs.get());
   } else if (text.find('[') != std::string::npos) {
     std::string wkt = text;
     char* rest = wkt.data();
-    if (OSRImportFromWkt(crs.get(), &rest) == OGRERR_NONE) return text;
+    if (gdal().OSRImportFromWkt(crs.get(), &rest) == OGRERR_NONE) return text;
   }
   return inputError(fmt::format("{} names no coordinate system", text.substr(0, 60)), "crs",
                     "give WKT, or a code as EPSG:28992");

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <ogr_srs_api.h>
 #include <pugixml.hpp>
 
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/files/text_reader.h"
@@ -44,10 +44,10 @@ std::optional<double> noDataOf(const pugi::xml_node& node) {
 }
 
 std::string wktOfText(const char* text) {
-  OGRSpatialReferenceH crs = *text == '\0' ? nullptr : OSRNewSpatialReference(text);
+  OGRSpatialReferenceH crs = *text == '\0' ? nullptr : gdal().OSRNewSpatialReference(text);
   if (crs == nullptr) return {};
   std::string wkt = wktOf(crs);
-  OSRRelease(crs);
+  gdal().OSRRelease(crs);
   return wkt;
 }
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <ogr_srs_api.h>
 
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/files/little_endian.h"
 #include "engine/io/files/text_reader.h"
@@ -129,16 +129,16 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
 // Whether two texts name the same system, ignoring vertical systems, which one of them may lack.
 bool sameSystem(const std::string& a, const std::string& b) {
   const auto horizontal = [](const std::string& wkt) {
-    OGRSpatialReferenceH crs = OSRNewSpatialReference(wkt.c_str());
-    if (crs != nullptr) OSRStripVertical(crs);
+    OGRSpatialReferenceH crs = gdal().OSRNewSpatialReference(wkt.c_str());
+    if (crs != nullptr) gdal().OSRStripVertical(crs);
     return crs;
   };
   OGRSpatialReferenceH one = horizontal(a), other = horizontal(b);
   const char* const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
                                  "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
-  const bool same = one != nullptr && other != nullptr && OSRIsSameEx(one, other, options) != 0;
-  OSRRelease(one);
-  OSRRelease(other);
+  const bool same = one != nullptr && other != nullptr && gdal().OSRIsSameEx(one, other, options) != 0;
+  gdal().OSRRelease(one);
+  gdal().OSRRelease(other);
   return same;
 }
 

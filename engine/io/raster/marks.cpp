@@ -9,11 +9,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gdal.h>
-#include <ogr_srs_api.h>
 
 #include "engine/field/mark_setter.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/format.h"
 #include "engine/io/geo/crs_text.h"
@@ -52,11 +51,12 @@ Result<Version> fromPng(const Version& field, const InputFile& file) {
 // What a TIFF states about its place, also in NAME.tif.aux.xml.
 MarksPlace placeOf(GDALDatasetH dataset, const Sidecar& sidecar) {
   MarksPlace place;
-  place.width = GDALGetRasterXSize(dataset);
-  place.height = GDALGetRasterYSize(dataset);
+  place.width = gdal().GDALGetRasterXSize(dataset);
+  place.height = gdal().GDALGetRasterYSize(dataset);
   GeoTransform gt{};
-  if (GDALGetGeoTransform(dataset, gt.data()) == CE_None) place.transform = gt;
-  if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset); crs != nullptr) place.crs_wkt = wktOf(crs);
+  if (gdal().GDALGetGeoTransform(dataset, gt.data()) == CE_None) place.transform = gt;
+  if (OGRSpatialReferenceH crs = gdal().GDALGetSpatialRef(dataset); crs != nullptr)
+    place.crs_wkt = wktOf(crs);
   if (place.crs_wkt.empty()) place.crs_wkt = sidecar.crs_wkt;
   return place;
 }
@@ -69,30 +69,31 @@ class MarkBand {
       : band_(band),
         first_(first),
         numbers_(static_cast<std::size_t>(columns)),
-        type_(GDALGetRasterDataType(band)) {
-    const char* const pixels = GDALGetMetadataItem(band, "PIXELTYPE", "IMAGE_STRUCTURE");
+        type_(gdal().GDALGetRasterDataType(band)) {
+    const char* const pixels = gdal().GDALGetMetadataItem(band, "PIXELTYPE", "IMAGE_STRUCTURE");
     signed_byte_ = pixels != nullptr && std::strcmp(pixels, "SIGNEDBYTE") == 0;
     int has = 0;
     double none = 0.0;
     if (type_ == GDT_Int64)
-      none = static_cast<double>(GDALGetRasterNoDataValueAsInt64(band, &has));
+      none = static_cast<double>(gdal().GDALGetRasterNoDataValueAsInt64(band, &has));
     else if (type_ == GDT_UInt64)
-      none = static_cast<double>(GDALGetRasterNoDataValueAsUInt64(band, &has));
+      none = static_cast<double>(gdal().GDALGetRasterNoDataValueAsUInt64(band, &has));
     else
-      none = GDALGetRasterNoDataValue(band, &has);
+      none = gdal().GDALGetRasterNoDataValue(band, &has);
     std::vector<std::string> ignored;
     no_data_ = chooseNoData(has != 0 ? std::optional(none) : std::nullopt, sidecar, ignored);
   }
 
   [[nodiscard]] bool holdsIntegers() const noexcept {
-    return type_ != GDT_Unknown && GDALDataTypeIsInteger(type_) != 0 && GDALDataTypeIsComplex(type_) == 0;
+    return type_ != GDT_Unknown && gdal().GDALDataTypeIsInteger(type_) != 0 &&
+           gdal().GDALDataTypeIsComplex(type_) == 0;
   }
   // A stored row; false where it cannot be read.
   [[nodiscard]] bool read(std::int32_t row) {
     const auto columns = static_cast<int>(numbers_.size());
     // A double has every number of 32 bits; of 64 it still tells 0 from others.
-    if (GDALRasterIO(band_, GF_Read, first_, row, columns, 1, numbers_.data(), columns, 1, GDT_Float64, 0,
-                     0) != CE_None)
+    if (gdal().GDALRasterIO(band_, GF_Read, first_, row, columns, 1, numbers_.data(), columns, 1, GDT_Float64,
+                            0, 0) != CE_None)
       return false;
     if (type_ != GDT_Byte && values_.size() <= kMostMarkValues) {
       double before = std::numeric_limits<double>::quiet_NaN();
@@ -128,24 +129,24 @@ Result<Version> fromTiff(const Version& field, const InputFile& file) {
                       "write them with 0 as black, e.g. as PNG");
   if (directory->cut)
     return inputError("the marks reach past the end of the file", file.path(), "the file is cut short");
-  GdalSession gdal;
+  GdalSession session;
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
-  const DatasetPtr dataset(GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
-                                      drivers.data(), nullptr, nullptr));
-  if (!dataset) return inputError("the TIFF cannot be opened: " + gdal.reason("damaged header"), file.path());
+  const DatasetPtr dataset(gdal().GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
+                                             drivers.data(), nullptr, nullptr));
+  if (!dataset) return inputError("the TIFF cannot be opened: " + session.reason("damaged header"), file.path());
   std::vector<std::string> ignored;
   const Sidecar sidecar = readAuxXml(file.path(), ignored);
   const auto part = partOfMarks(field.grid(), placeOf(dataset.get(), sidecar), file.path());
   if (!part) return tl::unexpected(part.error());
   const std::int32_t width = field.grid().width, height = field.grid().height;
-  MarkBand band(GDALGetRasterBand(dataset.get(), 1), part->first_column, width, sidecar);
-  if (GDALGetRasterCount(dataset.get()) != 1 || !band.holdsIntegers())
+  MarkBand band(gdal().GDALGetRasterBand(dataset.get(), 1), part->first_column, width, sidecar);
+  if (gdal().GDALGetRasterCount(dataset.get()) != 1 || !band.holdsIntegers())
     return inputError("marks are one band of integers", file.path(), "is this the scan itself?");
   MarkSetter setter(field);
   std::vector<unsigned char> row(static_cast<std::size_t>(width));
   for (std::int32_t r = height - 1; r >= 0; --r) {
-    if (!band.read(part->first_row + (part->top_down ? height - 1 - r : r)) || gdal.failed())
-      return inputError("the marks cannot be read: " + gdal.reason("the file is damaged"), file.path(),
+    if (!band.read(part->first_row + (part->top_down ? height - 1 - r : r)) || session.failed())
+      return inputError("the marks cannot be read: " + session.reason("the file is damaged"), file.path(),
                         "the file is cut short or damaged");
     if (band.looksLikeScan())
       return inputError(fmt::format("marks have at most {} different numbers", kMostMarkValues), file.path(),
@@ -179,39 +180,39 @@ Status toPng(const Version& field, AtomicFile& file) {
 }
 
 Status toTiff(const Version& field, const AtomicFile& file) {
-  GdalSession gdal;
+  GdalSession session;
   const auto full = [&] {
     return tl::unexpected(
-        file.explained(failure("the file cannot be written: " + gdal.reason("the library gives no reason"),
+        file.explained(failure("the file cannot be written: " + session.reason("the library gives no reason"),
                                file.finalPath(), "check the disk or choose another folder")
                            .value()));
   };
   const std::array<const char*, 3> options{"COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", nullptr};
   const std::int32_t width = field.grid().width;
   const std::int32_t height = field.grid().height;
-  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), file.temporaryPath().c_str(), width, height, 1,
-                                GDT_Byte, options.data()));
+  DatasetPtr dataset(gdal().GDALCreate(gdal().GDALGetDriverByName("GTiff"), file.temporaryPath().c_str(),
+                                       width, height, 1, GDT_Byte, options.data()));
   if (!dataset) return full();
   GeoTransform gt = geoTransformOf(field.grid());
-  if (GDALSetGeoTransform(dataset.get(), gt.data()) != CE_None) return full();
+  if (gdal().GDALSetGeoTransform(dataset.get(), gt.data()) != CE_None) return full();
   if (const std::string& wkt = field.grid().crs_wkt; !wkt.empty())
-    if (OGRSpatialReferenceH crs = OSRNewSpatialReference(wkt.c_str()); crs != nullptr) {
-      OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
-      const bool set = GDALSetSpatialRef(dataset.get(), crs) == CE_None;
-      OSRDestroySpatialReference(crs);
+    if (OGRSpatialReferenceH crs = gdal().OSRNewSpatialReference(wkt.c_str()); crs != nullptr) {
+      gdal().OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
+      const bool set = gdal().GDALSetSpatialRef(dataset.get(), crs) == CE_None;
+      gdal().OSRDestroySpatialReference(crs);
       if (!set) return full();
     }
-  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
+  GDALRasterBandH band = gdal().GDALGetRasterBand(dataset.get(), 1);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(width));
   for (std::int32_t r = height - 1; r >= 0; --r) {
     readRow(field.reader(), r, row);
-    if (GDALRasterIO(band, GF_Write, 0, height - 1 - r, width, 1, row.data(), width, 1, GDT_Byte, 0, 0) !=
-        CE_None)
+    if (gdal().GDALRasterIO(band, GF_Write, 0, height - 1 - r, width, 1, row.data(), width, 1, GDT_Byte, 0,
+                            0) != CE_None)
       return full();
   }
-  GDALFlushCache(dataset.get());
+  gdal().GDALFlushCache(dataset.get());
   dataset.reset();
-  return gdal.failed() ? Status(full()) : Status{};
+  return session.failed() ? Status(full()) : Status{};
 }
 
 }  // namespace

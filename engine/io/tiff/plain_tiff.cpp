@@ -84,10 +84,10 @@ struct CloseOutline {
 
 // Gives every block its place behind the header, as writing them one after another would.
 Result<PlainLayout> placeBlocks(const Grid& grid, OutlineFile& outline, const std::string& path) {
-  const GdalSession gdal;
+  const GdalSession session;
   const auto refused = [&]() -> tl::unexpected<Error> {
     if (outline.error != 0) return writeError(path, outline.error);
-    return cannotWriteTiff(gdal, path);
+    return cannotWriteTiff(session, path);
   };
   const std::unique_ptr<TIFF, CloseOutline> file(TIFFClientOpen(path.c_str(), "r+m", &outline, readOutline,
                                                                 writeOutline, seekOutline, closeOutline,
@@ -111,7 +111,7 @@ Result<PlainLayout> placeBlocks(const Grid& grid, OutlineFile& outline, const st
     if (offset != expected) return failure("the samples have no place in one piece", path);
   }
   outline.leaves_out = false;
-  if (TIFFFlush(file.get()) != 1 || gdal.failed()) return refused();
+  if (TIFFFlush(file.get()) != 1 || session.failed()) return refused();
   layout.bytes = static_cast<std::uint64_t>(outline.end);
   return layout;
 }
@@ -162,7 +162,7 @@ Result<PlainLayout> createPlainTiff(const Grid& grid, const std::string& path) {
 }
 
 Result<PlainLayout> layoutOfPlainTiff(const std::string& path, std::int32_t width, std::int32_t height) {
-  const GdalSession gdal;
+  const GdalSession session;
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return cannotOpen(path, "do the shard again");
   // libtiff closes what it has taken.

@@ -16,15 +16,14 @@
 #include <utility>
 #include <vector>
 
-#include <cpl_string.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <gdal.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tiffio.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/format.h"
 #include "engine/io/tiff/block_packer.h"
@@ -159,23 +158,23 @@ class BlockWriter {
 Status writePlain(const Version& field, TiffCompression compression, const std::string& temporary,
                   const std::string& path, JobControl& job) {
   if (Status status = writeTiffHeader(field.grid(), compression, temporary, path); !status) return status;
-  const GdalSession gdal;
+  const GdalSession session;
   const std::unique_ptr<TIFF, CloseTiff> file(TIFFOpen(temporary.c_str(), "r+"));
-  if (!file) return cannotWriteTiff(gdal, path);
+  if (!file) return cannotWriteTiff(session, path);
   if (Status status = BlockWriter(field, compression, path, job).write(file.get()); !status) return status;
-  if (TIFFFlush(file.get()) != 1 || gdal.failed())
-    return cannotWriteTiff(gdal, path);  // the positions of the blocks
+  if (TIFFFlush(file.get()) != 1 || session.failed())
+    return cannotWriteTiff(session, path);  // the positions of the blocks
   return {};
 }
 
 // The same samples in the order that suits a network, with overviews. Means: what lies between two samples of
 // an overview contributes to it.
 Status writeCloudOptimised(const std::string& from, const std::string& to, TiffCompression compression,
-                           const GdalSession& gdal, const std::string& path, JobControl& job) {
+                           const GdalSession& session, const std::string& path, JobControl& job) {
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const DatasetPtr source(
-      GDALOpenEx(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
-  if (!source) return cannotWriteTiff(gdal, path);
+      gdal().GDALOpenEx(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
+  if (!source) return cannotWriteTiff(session, path);
   std::unique_ptr<char*, FreeCslList> creation;
   for (const auto& [key, value] :
        {std::pair{"COMPRESS", tiffCodingOf(compression).gdal},
@@ -185,9 +184,9 @@ Status writeCloudOptimised(const std::string& from, const std::string& to, TiffC
         {"OVERVIEW_RESAMPLING", "AVERAGE"},
         {"BIGTIFF", "IF_SAFER"},
         {"NUM_THREADS", "ALL_CPUS"}})
-    creation.reset(CSLSetNameValue(creation.release(), key, value));
+    creation.reset(gdal().CSLSetNameValue(creation.release(), key, value));
   if (compression == TiffCompression::kDeflate)
-    creation.reset(CSLSetNameValue(creation.release(), "LEVEL", "6"));
+    creation.reset(gdal().CSLSetNameValue(creation.release(), "LEVEL", "6"));
   job.begin("overviews", 100);
   struct ProgressTarget {
     JobControl& job;
@@ -199,10 +198,10 @@ Status writeCloudOptimised(const std::string& from, const std::string& to, TiffC
     if (percent > at.percent) at.job.advance(percent - std::exchange(at.percent, percent));
     return at.job.cancelled() ? 0 : 1;
   };
-  const DatasetPtr copy(GDALCreateCopy(GDALGetDriverByName("COG"), to.c_str(), source.get(), FALSE,
-                                       creation.get(), progress, &target));
+  const DatasetPtr copy(gdal().GDALCreateCopy(gdal().GDALGetDriverByName("COG"), to.c_str(), source.get(),
+                                              FALSE, creation.get(), progress, &target));
   if (job.cancelled()) return cancelled();
-  if (!copy || gdal.failed()) return cannotWriteTiff(gdal, path);
+  if (!copy || session.failed()) return cannotWriteTiff(session, path);
   return {};
 }
 
@@ -221,9 +220,9 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
     if (Status status = writePlain(field, TiffCompression::kDeflate, plain->temporaryPath(), path, job);
         !status)
       return tl::unexpected(plain->explained(status.error()));
-    const GdalSession gdal;
+    const GdalSession session;
     if (Status status =
-            writeCloudOptimised(plain->temporaryPath(), file->temporaryPath(), compression, gdal, path, job);
+            writeCloudOptimised(plain->temporaryPath(), file->temporaryPath(), compression, session, path, job);
         !status)
       return tl::unexpected(file->explained(status.error()));
   } else if (Status status = writePlain(field, options.tiff_compression.value_or(TiffCompression::kNone),

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gdal.h>
-#include <ogr_srs_api.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/geo/geo_reference.h"
 #include "engine/io/tiff/tiff_metadata.h"
 
@@ -37,22 +36,22 @@ std::optional<LengthUnit> unitOfCrs(const Grid& grid) {
   return units.lateral;
 }
 
-Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal, const std::string& path) {
+Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& session, const std::string& path) {
   GeoTransform gt = geoTransformOf(grid);
-  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-  bool done = GDALSetGeoTransform(dataset, gt.data()) == CE_None;
+  GDALRasterBandH band = gdal().GDALGetRasterBand(dataset, 1);
+  bool done = gdal().GDALSetGeoTransform(dataset, gt.data()) == CE_None;
   if (done && !grid.crs_wkt.empty()) {
-    OGRSpatialReferenceH crs = OSRNewSpatialReference(grid.crs_wkt.c_str());
+    OGRSpatialReferenceH crs = gdal().OSRNewSpatialReference(grid.crs_wkt.c_str());
     if (crs != nullptr) {
-      OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
-      done = GDALSetSpatialRef(dataset, crs) == CE_None;
-      OSRDestroySpatialReference(crs);
+      gdal().OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
+      done = gdal().GDALSetSpatialRef(dataset, crs) == CE_None;
+      gdal().OSRDestroySpatialReference(crs);
     }
   }
-  done = done && GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None &&
-         GDALSetRasterUnitType(band, grid.height_unit.name.c_str()) == CE_None;
+  done = done && gdal().GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None &&
+         gdal().GDALSetRasterUnitType(band, grid.height_unit.name.c_str()) == CE_None;
   if (done) writeOwnMetadata(dataset, grid, unitOfCrs(grid));
-  if (!done || gdal.failed()) return cannotWriteTiff(gdal, path);
+  if (!done || session.failed()) return cannotWriteTiff(session, path);
   return {};
 }
 
@@ -71,21 +70,21 @@ TiffBlocks::TiffBlocks(const Grid& grid, TiffCompression compression)
       across((grid.width + columns - 1) / columns),
       down((grid.height + rows - 1) / rows) {}
 
-tl::unexpected<Error> cannotWriteTiff(const GdalSession& gdal, const std::string& path) {
-  if (gdal.diskError() != 0) return writeError(path, gdal.diskError());
-  return failure("the file cannot be written: " + gdal.reason("the library gives no reason"), path,
+tl::unexpected<Error> cannotWriteTiff(const GdalSession& session, const std::string& path) {
+  if (session.diskError() != 0) return writeError(path, session.diskError());
+  return failure("the file cannot be written: " + session.reason("the library gives no reason"), path,
                  "check the disk or choose another folder");
 }
 
 Status writeTiffHeader(const Grid& grid, TiffCompression compression, const std::string& temporary,
                        const std::string& path) {
-  const GdalSession gdal;
+  const GdalSession session;
   const TiffCoding& coding = tiffCodingOf(compression);
   const TiffBlocks blocks(grid, compression);
   const std::string columns = fmt::format("{}", blocks.columns), rows = fmt::format("{}", blocks.rows);
   std::unique_ptr<char*, FreeCslList> creation;
   const auto set = [&](const char* key, const char* value) {
-    creation.reset(CSLSetNameValue(creation.release(), key, value));
+    creation.reset(gdal().CSLSetNameValue(creation.release(), key, value));
   };
   set("COMPRESS", coding.gdal);
   if (coding.predictor != nullptr) set("PREDICTOR", coding.predictor);
@@ -94,12 +93,12 @@ Status writeTiffHeader(const Grid& grid, TiffCompression compression, const std:
   set("TILED", blocks.tiled ? "YES" : "NO");
   set("BLOCKYSIZE", rows.c_str());
   if (blocks.tiled) set("BLOCKXSIZE", columns.c_str());
-  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), temporary.c_str(), grid.width, grid.height, 1,
-                                GDT_Float32, creation.get()));
-  if (!dataset) return cannotWriteTiff(gdal, path);
-  if (Status status = describe(dataset.get(), grid, gdal, path); !status) return status;
+  DatasetPtr dataset(gdal().GDALCreate(gdal().GDALGetDriverByName("GTiff"), temporary.c_str(), grid.width,
+                                       grid.height, 1, GDT_Float32, creation.get()));
+  if (!dataset) return cannotWriteTiff(session, path);
+  if (Status status = describe(dataset.get(), grid, session, path); !status) return status;
   dataset.reset();
-  if (gdal.failed()) return cannotWriteTiff(gdal, path);
+  if (session.failed()) return cannotWriteTiff(session, path);
   return {};
 }
 

@@ -6,11 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include <cpl_string.h>
-
 #include "engine/base/error.h"
 #include "engine/field/grid.h"
 #include "engine/io/export.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 
 namespace fettle::engine {
@@ -34,11 +33,11 @@ struct TiffBlocks {
 };
 
 struct FreeCslList {
-  void operator()(char** list) const noexcept { CSLDestroy(list); }
+  void operator()(char** list) const noexcept { gdal().CSLDestroy(list); }
 };
 
 /// Why a file of this path could not be written, by what GDAL or libtiff said.
-[[nodiscard]] tl::unexpected<Error> cannotWriteTiff(const GdalSession& gdal, const std::string& path);
+[[nodiscard]] tl::unexpected<Error> cannotWriteTiff(const GdalSession& session, const std::string& path);
 
 /// All of a file but its samples, by GDAL: the header, and blocks that are nowhere yet. `path` names the file in errors.
 [[nodiscard]] Status writeTiffHeader(const Grid& grid, TiffCompression compression,

@@ -103,16 +103,16 @@ void placeSpan(const TiffScan& scan, const TiffPiece& piece, RowSpan rows, Field
 }
 
 Result<Grid> gridOfTiff(const InputFile& file, const ImportOptions& options) {
-  GdalSession gdal;
-  Result<TiffScan> scan = openTiffScan(file, options, gdal, TiffExtent::kPart);
+  GdalSession session;
+  Result<TiffScan> scan = openTiffScan(file, options, session, TiffExtent::kPart);
   if (!scan) return tl::unexpected(scan.error());
   return std::move(scan->grid);
 }
 
 Result<Imported> readTiffRows(const InputFile& file, const ImportOptions& options, RowSpan rows,
                               JobControl& job) {
-  GdalSession gdal;
-  const Result<TiffScan> scan = openTiffScan(file, options, gdal, TiffExtent::kPart);
+  GdalSession session;
+  const Result<TiffScan> scan = openTiffScan(file, options, session, TiffExtent::kPart);
   if (!scan) return tl::unexpected(scan.error());
   const std::int32_t top = scan->top_down ? scan->grid.height - rows.end() : rows.first;
   TiffSamples samples(file, *scan, top, top + rows.count);
@@ -153,8 +153,8 @@ bool looksLikeTiff(std::string_view head, std::string_view) {
 
 Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, JobControl& job) {
   const std::string& path = file.path();
-  GdalSession gdal;
-  Result<TiffScan> scan = openTiffScan(file, options, gdal);
+  GdalSession session;
+  Result<TiffScan> scan = openTiffScan(file, options, session);
   if (!scan) return tl::unexpected(scan.error());
   TiffSamples samples(file, *scan);
   Result<FieldBuilder> builder =

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/geo/geo_reference.h"
 
 namespace fettle::engine {
@@ -35,7 +36,7 @@ std::optional<double> positiveNumber(std::string_view text) {
 }
 
 std::optional<LengthUnit> unitItem(GDALDatasetH dataset, const char* key) {
-  const char* item = GDALGetMetadataItem(dataset, key, nullptr);
+  const char* item = gdal().GDALGetMetadataItem(dataset, key, nullptr);
   if (item == nullptr) return std::nullopt;
   const std::string_view text = item;
   const std::size_t space = text.rfind(' ');
@@ -48,7 +49,7 @@ std::optional<LengthUnit> unitItem(GDALDatasetH dataset, const char* key) {
 // Whether the unit that was noted is that of other coordinates than the file has now. Files of earlier versions do not say
 // which coordinate system they had: of degrees a length is not the unit.
 bool isOfOtherCoordinates(GDALDatasetH dataset, const LengthUnit& of_crs) {
-  const char* then = GDALGetMetadataItem(dataset, kCrsUnit, nullptr);
+  const char* then = gdal().GDALGetMetadataItem(dataset, kCrsUnit, nullptr);
   return then != nullptr ? of_crs.name != then : of_crs.name == "deg";
 }
 
@@ -63,16 +64,16 @@ bool isStated(const Grid& grid, const std::optional<LengthUnit>& of_crs) {
 void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, const std::optional<LengthUnit>& of_crs) {
   const auto text = [](const LengthUnit& unit) { return fmt::format("{} {}", unit.name, unit.mm); };
   if (!isStated(grid, of_crs)) {
-    GDALSetMetadataItem(dataset, kLateral, text(grid.lateral_unit).c_str(), nullptr);
-    GDALSetMetadataItem(dataset, kCrsUnit, of_crs ? of_crs->name.c_str() : kNone, nullptr);
+    gdal().GDALSetMetadataItem(dataset, kLateral, text(grid.lateral_unit).c_str(), nullptr);
+    gdal().GDALSetMetadataItem(dataset, kCrsUnit, of_crs ? of_crs->name.c_str() : kNone, nullptr);
   }
-  GDALSetMetadataItem(dataset, kHeightUnitItem, text(grid.height_unit).c_str(), nullptr);
+  gdal().GDALSetMetadataItem(dataset, kHeightUnitItem, text(grid.height_unit).c_str(), nullptr);
   if (grid.height_per_count > 0.0)
-    GDALSetMetadataItem(dataset, kPerCount, fmt::format("{}", grid.height_per_count).c_str(), nullptr);
+    gdal().GDALSetMetadataItem(dataset, kPerCount, fmt::format("{}", grid.height_per_count).c_str(), nullptr);
   const auto there = placementOf(geoTransformOf(grid), grid.width, grid.height, {});
   if (!there || there->origin_x != grid.origin_x || there->origin_y != grid.origin_y)
-    GDALSetMetadataItem(dataset, kOrigin, fmt::format("{} {}", grid.origin_x, grid.origin_y).c_str(),
-                        nullptr);
+    gdal().GDALSetMetadataItem(dataset, kOrigin, fmt::format("{} {}", grid.origin_x, grid.origin_y).c_str(),
+                               nullptr);
 }
 
 void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid, std::pair<double, double> spacing,
@@ -87,9 +88,9 @@ void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid, std::
           unit->name, of_crs->name));
   }
   if (auto unit = unitItem(dataset, kHeightUnitItem)) units.height = unit;
-  if (const char* item = GDALGetMetadataItem(dataset, kPerCount, nullptr); item != nullptr)
+  if (const char* item = gdal().GDALGetMetadataItem(dataset, kPerCount, nullptr); item != nullptr)
     grid.height_per_count = positiveNumber(item).value_or(grid.height_per_count);
-  if (const char* item = GDALGetMetadataItem(dataset, kOrigin, nullptr); item != nullptr) {
+  if (const char* item = gdal().GDALGetMetadataItem(dataset, kOrigin, nullptr); item != nullptr) {
     double x = 0.0, y = 0.0;
     const char* const end = item + std::strlen(item);
     const char* at = item;

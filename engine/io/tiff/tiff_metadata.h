@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <gdal.h>
-
 #include "engine/field/grid.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {

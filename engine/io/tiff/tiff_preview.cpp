@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/field/builder.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/format.h"
 #include "engine/io/import.h"
 #include "engine/io/tiff/tiff_samples.h"
@@ -65,12 +66,12 @@ struct Overview {
 };
 std::optional<Overview> overviewOf(const TiffScan& scan, std::int64_t max_samples) {
   std::optional<Overview> best;
-  for (int i = 0; i < GDALGetOverviewCount(scan.band); ++i) {
+  for (int i = 0; i < gdal().GDALGetOverviewCount(scan.band); ++i) {
     Overview o;
-    o.band = GDALGetOverview(scan.band, i);
+    o.band = gdal().GDALGetOverview(scan.band, i);
     if (o.band == nullptr) continue;
-    o.lattice.columns = GDALGetRasterBandXSize(o.band);
-    o.lattice.rows = GDALGetRasterBandYSize(o.band);
+    o.lattice.columns = gdal().GDALGetRasterBandXSize(o.band);
+    o.lattice.rows = gdal().GDALGetRasterBandYSize(o.band);
     const std::int64_t samples = std::int64_t{o.lattice.columns} * o.lattice.rows;
     if (o.lattice.columns < kFewestRows || o.lattice.rows < kFewestRows || samples > max_samples ||
         (best && samples <= std::int64_t{best->lattice.columns} * best->lattice.rows))
@@ -85,21 +86,22 @@ std::optional<Overview> overviewOf(const TiffScan& scan, std::int64_t max_sample
 template <class T>
 Status readOverview(const TiffScan& scan, const Overview& overview, FieldBuilder& builder,
                     const std::string& path, JobControl& job) {
-  const GdalSession gdal;
+  const GdalSession session;
   const std::int32_t columns = overview.lattice.columns;
   Lattice own = overview.lattice;
   own.step_columns = own.step_rows = 1;
   std::vector<T> row(static_cast<std::size_t>(columns));
   std::vector<std::uint8_t> mask(scan.mask != nullptr ? row.size() : 0);
-  GDALRasterBandH mask_band = scan.mask != nullptr ? GDALGetMaskBand(overview.band) : nullptr;
+  GDALRasterBandH mask_band = scan.mask != nullptr ? gdal().GDALGetMaskBand(overview.band) : nullptr;
   job.begin("reading", static_cast<std::uint64_t>(own.rows));
   for (std::int32_t r = 0; r < own.rows; ++r) {
-    CPLErr error =
-        GDALRasterIO(overview.band, GF_Read, 0, r, columns, 1, row.data(), columns, 1, scan.type, 0, 0);
+    CPLErr error = gdal().GDALRasterIO(overview.band, GF_Read, 0, r, columns, 1, row.data(), columns, 1,
+                                       scan.type, 0, 0);
     if (error == CE_None && mask_band != nullptr)
-      error = GDALRasterIO(mask_band, GF_Read, 0, r, columns, 1, mask.data(), columns, 1, GDT_Byte, 0, 0);
-    if (error != CE_None || gdal.failed())
-      return inputError("the overview cannot be read: " + gdal.reason("the file is damaged"), path,
+      error =
+          gdal().GDALRasterIO(mask_band, GF_Read, 0, r, columns, 1, mask.data(), columns, 1, GDT_Byte, 0, 0);
+    if (error != CE_None || session.failed())
+      return inputError("the overview cannot be read: " + session.reason("the file is damaged"), path,
                         "the file is cut short or damaged");
     if (job.cancelled()) return cancelled();
     place<T>(scan, own, {{0, r, columns, 1}, row.data(), 0, mask_band != nullptr ? mask.data() : nullptr},
@@ -131,8 +133,8 @@ std::optional<Lattice> latticeOf(const TiffScan& scan, const TiffSamples& sample
 
 Result<std::optional<Preview>> previewTiff(const InputFile& file, const ImportOptions& options,
                                            std::int64_t max_samples, JobControl& job) {
-  GdalSession gdal;
-  const Result<TiffScan> scan = openTiffScan(file, options, gdal);
+  GdalSession session;
+  const Result<TiffScan> scan = openTiffScan(file, options, session);
   if (!scan) return tl::unexpected(scan.error());
   if (scan->grid.samples() / 4 <= max_samples) return std::nullopt;
   const std::optional<Overview> overview = overviewOf(*scan, max_samples);

@@ -14,6 +14,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/field/tile.h"
+#include "engine/io/files/gdal_calls.h"
 
 namespace fettle::engine {
 
@@ -27,14 +28,14 @@ constexpr std::int64_t kSmall = std::int64_t{1} << 18;
 // Rows of a window that is not a block.
 constexpr std::int32_t kRows = kTileSide;
 
-Status unreadable(const GdalSession& gdal, const std::string& path) {
-  return inputError("the samples cannot be read: " + gdal.reason("the file is damaged"), path,
+Status unreadable(const GdalSession& session, const std::string& path) {
+  return inputError("the samples cannot be read: " + session.reason("the file is damaged"), path,
                     "the file is cut short or damaged");
 }
 
 std::optional<std::uint64_t> numberOf(GDALRasterBandH band, const char* what, int column, int row) {
   const std::string name = fmt::format("{}_{}_{}", what, column, row);
-  const char* text = GDALGetMetadataItem(band, name.c_str(), "TIFF");
+  const char* text = gdal().GDALGetMetadataItem(band, name.c_str(), "TIFF");
   if (text == nullptr) return std::nullopt;
   std::uint64_t number = 0;
   const char* end = text + std::strlen(text);
@@ -48,8 +49,8 @@ DatasetPtr openTiffForReading(const InputFile& file, bool threads) {
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const std::array<const char*, 3> options{"GEOREF_SOURCES=INTERNAL,WORLDFILE",
                                            threads ? "NUM_THREADS=ALL_CPUS" : nullptr, nullptr};
-  return DatasetPtr(GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(),
-                               options.data(), nullptr));
+  return DatasetPtr(gdal().GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
+                                      drivers.data(), options.data(), nullptr));
 }
 
 // State of one reading thread.
@@ -63,18 +64,18 @@ struct TiffSamples::Worker {
 };
 
 TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan)
-    : TiffSamples(file, scan, 0, GDALGetRasterYSize(scan.dataset.get())) {}
+    : TiffSamples(file, scan, 0, gdal().GDALGetRasterYSize(scan.dataset.get())) {}
 
 TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan, std::int32_t first_row,
                          std::int32_t end_row)
     : file_(file),
       scan_(scan),
-      width_(GDALGetRasterXSize(scan.dataset.get())),
-      height_(GDALGetRasterYSize(scan.dataset.get())),
+      width_(gdal().GDALGetRasterXSize(scan.dataset.get())),
+      height_(gdal().GDALGetRasterYSize(scan.dataset.get())),
       first_row_(first_row),
       end_row_(end_row),
-      number_bytes_(static_cast<std::size_t>(GDALGetDataTypeSizeBytes(scan.type))) {
-  GDALGetBlockSize(scan.band, &block_columns_, &block_rows_);
+      number_bytes_(static_cast<std::size_t>(gdal().GDALGetDataTypeSizeBytes(scan.type))) {
+  gdal().GDALGetBlockSize(scan.band, &block_columns_, &block_rows_);
   across_ = (width_ + block_columns_ - 1) / block_columns_;
   down_ = (height_ + block_rows_ - 1) / block_rows_;
   const std::uint64_t block_bytes = static_cast<std::uint64_t>(block_columns_) *
@@ -209,33 +210,34 @@ Status TiffSamples::unpackRows(const TiffWindow& window, std::int32_t rows, Work
 
 Status TiffSamples::readBlock(const TiffWindow& window, Worker& worker) const {
   if (!offsets_.empty()) return unpackRows(window, window.rows, worker);
-  GdalSession gdal;
+  GdalSession session;
   worker.numbers.resize(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_) *
                         number_bytes_);
-  CPLErr error = GDALReadBlock(worker.band, window.column / block_columns_, window.row / block_rows_,
-                               worker.numbers.data());
+  CPLErr error = gdal().GDALReadBlock(worker.band, window.column / block_columns_, window.row / block_rows_,
+                                      worker.numbers.data());
   if (error == CE_None && worker.band_mask != nullptr) {
     worker.mask.resize(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
-    error = GDALRasterIO(worker.band_mask, GF_Read, window.column, window.row, window.columns, window.rows,
-                         worker.mask.data(), window.columns, window.rows, GDT_Byte, 0, 0);
+    error = gdal().GDALRasterIO(worker.band_mask, GF_Read, window.column, window.row, window.columns,
+                                window.rows, worker.mask.data(), window.columns, window.rows, GDT_Byte, 0, 0);
   }
-  if (error != CE_None || gdal.failed()) return unreadable(gdal, file_.path());
+  if (error != CE_None || session.failed()) return unreadable(session, file_.path());
   return {};
 }
 
 Status TiffSamples::readRows(const TiffWindow& window, Worker& worker) const {
-  GdalSession gdal;
+  GdalSession session;
   const std::size_t samples =
       static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows);
   worker.numbers.resize(samples * number_bytes_);
-  CPLErr error = GDALRasterIO(worker.band, GF_Read, window.column, window.row, window.columns, window.rows,
-                              worker.numbers.data(), window.columns, window.rows, scan_.type, 0, 0);
+  CPLErr error =
+      gdal().GDALRasterIO(worker.band, GF_Read, window.column, window.row, window.columns, window.rows,
+                          worker.numbers.data(), window.columns, window.rows, scan_.type, 0, 0);
   if (error == CE_None && worker.band_mask != nullptr) {
     worker.mask.resize(samples);
-    error = GDALRasterIO(worker.band_mask, GF_Read, window.column, window.row, window.columns, window.rows,
-                         worker.mask.data(), window.columns, window.rows, GDT_Byte, 0, 0);
+    error = gdal().GDALRasterIO(worker.band_mask, GF_Read, window.column, window.row, window.columns,
+                                window.rows, worker.mask.data(), window.columns, window.rows, GDT_Byte, 0, 0);
   }
-  if (error != CE_None || gdal.failed()) return unreadable(gdal, file_.path());
+  if (error != CE_None || session.failed()) return unreadable(session, file_.path());
   return {};
 }
 
@@ -269,14 +271,14 @@ Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job,
     tbb::parallel_for(std::size_t{0}, windows.size(), [&](std::size_t i) {
       Worker& worker = workers.local();
       if (strategy_ == ReadStrategy::kBlocks && offsets_.empty() && worker.band == nullptr) {
-        const GdalSession gdal;
+        const GdalSession session;
         worker.own = openTiffForReading(file_, false);
         if (!worker.own) {
-          fail(unreadable(gdal, file_.path()));
+          fail(unreadable(session, file_.path()));
           return;
         }
-        worker.band = GDALGetRasterBand(worker.own.get(), 1);
-        if (scan_.mask != nullptr) worker.band_mask = GDALGetMaskBand(worker.band);
+        worker.band = gdal().GDALGetRasterBand(worker.own.get(), 1);
+        if (scan_.mask != nullptr) worker.band_mask = gdal().GDALGetMaskBand(worker.band);
       }
       one(windows[i], worker);
     });

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/field_limits.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/geo/crs_text.h"
 #include "engine/io/geo/geo_reference.h"
 #include "engine/io/geo/sidecar.h"
@@ -27,11 +28,11 @@ std::optional<double> declaredNoData(GDALRasterBandH band, GDALDataType type) {
   int has = 0;
   double value = 0.0;
   if (type == GDT_Int64)
-    value = static_cast<double>(GDALGetRasterNoDataValueAsInt64(band, &has));
+    value = static_cast<double>(gdal().GDALGetRasterNoDataValueAsInt64(band, &has));
   else if (type == GDT_UInt64)
-    value = static_cast<double>(GDALGetRasterNoDataValueAsUInt64(band, &has));
+    value = static_cast<double>(gdal().GDALGetRasterNoDataValueAsUInt64(band, &has));
   else
-    value = GDALGetRasterNoDataValue(band, &has);
+    value = gdal().GDALGetRasterNoDataValue(band, &has);
   return has != 0 ? std::optional(value) : std::nullopt;
 }
 
@@ -39,24 +40,24 @@ std::optional<double> declaredNoData(GDALRasterBandH band, GDALDataType type) {
 Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const TiffDirectory& directory,
                                    const ImportOptions& options, const std::string& path,
                                    std::vector<std::string>& warnings) {
-  const int bands = GDALGetRasterCount(dataset);
+  const int bands = gdal().GDALGetRasterCount(dataset);
   if (bands < 1) return inputError("the file holds no raster", path);
-  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-  const bool alpha =
-      bands == 2 && GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset, 2)) == GCI_AlphaBand;
+  GDALRasterBandH band = gdal().GDALGetRasterBand(dataset, 1);
+  const bool alpha = bands == 2 && gdal().GDALGetRasterColorInterpretation(
+                                       gdal().GDALGetRasterBand(dataset, 2)) == GCI_AlphaBand;
   if (bands > 1 && !alpha)
     return inputError(fmt::format("the file holds {} bands, heights have one", bands), path,
                       "extract one, e.g. with gdal_translate -b 1");
   if (alpha) warnings.emplace_back("the second band is transparency and was left out");
   // GDAL makes a palette for these, only of integers: for floats the order of white is not defined.
-  const bool white_is_0 = directory.photometric == 0 && isInteger(GDALGetRasterDataType(band));
+  const bool white_is_0 = directory.photometric == 0 && isInteger(gdal().GDALGetRasterDataType(band));
   if (white_is_0 && !options.z_scale)
     return inputError("0 is white in this TIFF (MINISWHITE), so that its numbers may be heights or depths",
                       path, "give --z-scale 1 to take them as heights, --z-scale -1 as depths");
-  if (GDALGetRasterColorTable(band) != nullptr && !white_is_0)
+  if (gdal().GDALGetRasterColorTable(band) != nullptr && !white_is_0)
     return inputError("the file is a picture with a palette, not heights", path,
                       "export the heights themselves");
-  if (GDALDataTypeIsComplex(GDALGetRasterDataType(band)) != 0)
+  if (gdal().GDALDataTypeIsComplex(gdal().GDALGetRasterDataType(band)) != 0)
     return inputError("the samples are complex numbers", path, "export a real height");
   return band;
 }
@@ -65,8 +66,8 @@ void readGeoReference(GDALDatasetH dataset, const TiffDirectory& directory,
                       std::optional<GeoTransform>& transform, std::string& wkt, StatedUnits& units,
                       std::vector<std::string>& warnings) {
   GeoTransform gt{};
-  if (GDALGetGeoTransform(dataset, gt.data()) == CE_None) transform = gt;
-  if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset); crs != nullptr) wkt = wktOf(crs);
+  if (gdal().GDALGetGeoTransform(dataset, gt.data()) == CE_None) transform = gt;
+  if (OGRSpatialReferenceH crs = gdal().GDALGetSpatialRef(dataset); crs != nullptr) wkt = wktOf(crs);
   if (transform || !directory.x_per_unit || !directory.y_per_unit || directory.resolution_unit == 1) return;
   const double per_unit[2] = {*directory.x_per_unit, *directory.y_per_unit};
   if (directory.resolution_unit == 3) {
@@ -85,7 +86,7 @@ void readGeoReference(GDALDatasetH dataset, const TiffDirectory& directory,
 
 }  // namespace
 
-Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options, GdalSession& gdal,
+Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options, GdalSession& session,
                               TiffExtent extent) {
   const std::string& path = file.path();
   const auto checkSize = [&](std::uint64_t across, std::uint64_t down, std::uint64_t extra_bytes) {
@@ -106,19 +107,20 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   std::vector<std::string> warnings;
   DatasetPtr dataset = openTiffForReading(file, true);
   if (!dataset)
-    return inputError("the TIFF cannot be opened: " + gdal.reason("damaged header"), path,
+    return inputError("the TIFF cannot be opened: " + session.reason("damaged header"), path,
                       "the file is damaged or of a kind that the library does not support");
   const Result<GDALRasterBandH> band = heightBand(dataset.get(), *directory, options, path, warnings);
   if (!band) return tl::unexpected(band.error());
-  const int width = GDALGetRasterXSize(dataset.get());
-  const int height = GDALGetRasterYSize(dataset.get());
+  const int width = gdal().GDALGetRasterXSize(dataset.get());
+  const int height = gdal().GDALGetRasterYSize(dataset.get());
   if (Status s = checkSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 0); !s)
     return tl::unexpected(s.error());
-  if (char** pages = GDALGetMetadata(dataset.get(), "SUBDATASETS"); pages != nullptr && pages[0] != nullptr)
+  if (char** pages = gdal().GDALGetMetadata(dataset.get(), "SUBDATASETS");
+      pages != nullptr && pages[0] != nullptr)
     warnings.emplace_back("the file holds several pictures, the first was read");
 
-  const GDALDataType type = GDALGetRasterDataType(*band);
-  const char* pixel_type = GDALGetMetadataItem(*band, "PIXELTYPE", "IMAGE_STRUCTURE");
+  const GDALDataType type = gdal().GDALGetRasterDataType(*band);
+  const char* pixel_type = gdal().GDALGetMetadataItem(*band, "PIXELTYPE", "IMAGE_STRUCTURE");
   const bool signed_byte = pixel_type != nullptr && std::strcmp(pixel_type, "SIGNEDBYTE") == 0;
 
   StatedUnits units;
@@ -145,7 +147,7 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   }
   const Sidecar sidecar = readAuxXml(path, warnings);
   if (grid.crs_wkt.empty()) grid.crs_wkt = sidecar.crs_wkt;
-  const char* const unit = GDALGetRasterUnitType(*band);
+  const char* const unit = gdal().GDALGetRasterUnitType(*band);
   units.height =
       heightUnitNamed(unit != nullptr && *unit != '\0' ? unit : sidecar.height_unit, options, warnings);
   if (!grid.crs_wkt.empty())
@@ -156,9 +158,9 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   determineUnits(grid, units, options, warnings);
 
   int has = 0;
-  scan.rule.scale = GDALGetRasterScale(*band, &has);
+  scan.rule.scale = gdal().GDALGetRasterScale(*band, &has);
   if (has == 0) scan.rule.scale = 1.0;
-  scan.rule.offset = GDALGetRasterOffset(*band, &has);
+  scan.rule.offset = gdal().GDALGetRasterOffset(*band, &has);
   if (has == 0) scan.rule.offset = 0.0;
   if (options.z_scale) {
     if (scan.rule.scale != 1.0 || scan.rule.offset != 0.0)
@@ -171,11 +173,11 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   if (isInteger(type)) grid.height_per_count = scan.rule.offset == 0.0 ? std::abs(scan.rule.scale) : 0.0;
   scan.rule.declared_no_data = chooseNoData(declaredNoData(*band, type), sidecar, warnings);
   scan.rule.user_no_data = options.no_data;
-  const int mask_flags = GDALGetMaskFlags(*band);
+  const int mask_flags = gdal().GDALGetMaskFlags(*band);
   if ((mask_flags & GMF_PER_DATASET) != 0 && (mask_flags & GMF_ALPHA) == 0)
-    scan.mask = GDALGetMaskBand(*band);
+    scan.mask = gdal().GDALGetMaskBand(*band);
 
-  gdal.clear();
+  session.clear();
   scan.directory = *directory;
   scan.dataset = std::move(dataset);
   scan.band = *band;

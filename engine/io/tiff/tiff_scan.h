@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <gdal.h>
-
 #include "engine/field/grid.h"
+#include "engine/io/files/gdal_calls.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/height_rule.h"
@@ -39,7 +38,7 @@ enum class TiffExtent : std::uint8_t {
 /// Opens a TIFF and refuses what is not a height field, before memory is allocated for it. Errors: as
 /// importField. `gdal` must exist as long as the scan is used.
 [[nodiscard]] Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options,
-                                            GdalSession& gdal, TiffExtent extent = TiffExtent::kWhole);
+                                            GdalSession& session, TiffExtent extent = TiffExtent::kWhole);
 
 /// Calls `use` with a zero of the type of the scan's samples; false for types that are not heights.
 bool withSampleType(const TiffScan& scan, auto&& use) {
