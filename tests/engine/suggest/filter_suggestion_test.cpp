@@ -164,33 +164,43 @@ TEST(FilterSuggestion, KnowsWhatFiltersCostBesideEachOther) {
   };
   const Version large = scanOfSide(1024), small = scanOfSide(256);
   struct Timed {
-    std::string what;
-    double ratio;
+    FilterSpec spec;
+    std::string_view word;
+    double expected;
+    const Version* scan;
+    double least = std::numeric_limits<double>::infinity();  // [ns per sample]
+    [[nodiscard]] double ratio() const { return least / expected; }
+    [[nodiscard]] std::string what() const {
+      return fmt::format("{} {}: {:.1f} ns, {}", word, spec.window, least, expected);
+    }
   };
   std::vector<Timed> all;
   for (const Filter& filter : filters())
     for (const FilterTrial& trial : filter.trials) {
       if (trial.around_edges) continue;
-      const Version& scan = trial.cost > 100.0 ? small : large;
       FilterSpec spec;
       spec.kind = filter.kind;
       spec.window = trial.window;
       spec.threads = 1;
       if (hasRange(filter.kind)) spec.range_sigma = trial.noises * 0.02;
-      double least = std::numeric_limits<double>::infinity();
-      for (int i = 0; i < 3; ++i) {
-        const double start = processorSeconds();
-        ASSERT_TRUE(applyFilter(scan, scan, spec, job));
-        least = std::min(least, processorSeconds() - start);
-      }
-      const double cost = 1e9 * least / static_cast<double>(scan.grid().samples());
-      all.push_back({fmt::format("{} {}: {:.1f} ns, {}", filter.word, trial.window, cost, trial.cost),
-                     cost / trial.cost});
+      all.push_back({spec, filter.word, trial.cost, trial.cost > 100.0 ? &small : &large});
     }
-  std::ranges::sort(all, {}, &Timed::ratio);
-  const double middle = all[all.size() / 2].ratio;
-  EXPECT_GT(all.front().ratio, middle / 3.0) << all.front().what;
-  EXPECT_LT(all.back().ratio, middle * 3.0) << all.back().what;
+  // What else the machine does only adds to a time: the least of more rounds comes nearer to the cost, and a wrong figure stays wrong.
+  constexpr int kMostRounds = 20;
+  double middle = 0.0;
+  for (int round = 1; round <= kMostRounds; ++round) {
+    for (Timed& timed : all) {
+      const double start = processorSeconds();
+      ASSERT_TRUE(applyFilter(*timed.scan, *timed.scan, timed.spec, job));
+      const double took = 1e9 * (processorSeconds() - start);
+      timed.least = std::min(timed.least, took / static_cast<double>(timed.scan->grid().samples()));
+    }
+    std::ranges::sort(all, {}, &Timed::ratio);
+    middle = all[all.size() / 2].ratio();
+    if (round >= 3 && all.front().ratio() > middle / 3.0 && all.back().ratio() < middle * 3.0) break;
+  }
+  EXPECT_GT(all.front().ratio(), middle / 3.0) << all.front().what();
+  EXPECT_LT(all.back().ratio(), middle * 3.0) << all.back().what();
 }
 
 TEST(FilterSuggestion, PicksTheNearestWhenNoneIsWithinTheTolerance) {
