@@ -62,6 +62,17 @@ Report builtIn(const std::string& id, const std::string& name, const std::string
 engine::Result<Report> devices() {
   Report rows = Report::array();
   for (const DeviceInfo& d : haptic::listDevices()) rows.push_back(pluggedIn(d));
+  for (const haptic::LibraryDevice& d : haptic::listLibraryDevices()) {
+    Report row = entry(d.words, d.name, haptic::deviceKindName(d.kind), d.state, d.remedy, d.profile);
+    if (d.state != "ready")
+      for (const char* key : {"workspace_radius_mm", "max_force_n", "max_stiffness_n_per_mm",
+                              "max_damping_n_s_per_mm", "rate_hz"})
+        row[key] = nullptr;  // not known
+    row["serial"] = "";
+    row["usb_id"] = row["form"] = nullptr;
+    row["limits_of"] = d.state == "ready" ? Report(d.profile.name) : Report();
+    rows.push_back(std::move(row));
+  }
   // A connected device needs no path: the first one found is used.
   for (const haptic::KnownDriver& driver : haptic::knownDrivers()) {
     if (driver.kind != DeviceKind::kOther) continue;
@@ -83,10 +94,15 @@ std::string known(const Report& value, double factor, const char* unit) {
 void printDevices(const Report& report) {
   bool any = false;
   for (const Report& d : report["devices"]) {
-    any = any || d["kind"] != "built in";
+    any =
+        any || (d["kind"] != "built in" && d["state"] != "library missing" && d["state"] != "not connected");
     fmt::print("{}\n  {}, {}: {}\n", d["id"].get<std::string>(), d["name"].get<std::string>(),
                d["kind"].get<std::string>(), d["state"].get<std::string>());
     if (d["state"] == "no driver") continue;
+    if (d["rate_hz"].is_null()) {
+      fmt::print("  {}\n", d["remedy"].get<std::string>());
+      continue;
+    }
     if (d["force"].get<bool>())
       fmt::print("  force up to {}, stiffness {}, damping {}; {} Hz\n", known(d["max_force_n"], 1.0, "N"),
                  known(d["max_stiffness_n_per_mm"], 1.0, "N/mm"),

@@ -25,6 +25,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not l
 std::array<Entry, 8> entries;
 std::atomic<bool> held_at_zero{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
+std::atomic<int> own_zeros{0};
 
 }  // namespace
 
@@ -69,6 +70,17 @@ void holdDevicesAtZero(HeldAtZero held) noexcept {
 
 bool devicesHeldAtZero() noexcept {
   return held_at_zero.load(std::memory_order_relaxed);
+}
+
+// Relaxed: a hint for a handler, ordered by nothing.
+OwnZeros::OwnZeros() noexcept {
+  own_zeros.fetch_add(1, std::memory_order_relaxed);
+}
+OwnZeros::~OwnZeros() {
+  own_zeros.fetch_sub(1, std::memory_order_relaxed);
+}
+bool OwnZeros::any() noexcept {
+  return own_zeros.load(std::memory_order_relaxed) > 0;
 }
 
 int zeroAllDevices() noexcept {

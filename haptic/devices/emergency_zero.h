@@ -31,4 +31,15 @@ void holdDevicesAtZero(HeldAtZero held) noexcept;
 /// For the ports. Any thread, wait-free.
 [[nodiscard]] bool devicesHeldAtZero() noexcept;
 
+/// While one lives, a thread of a maker's library sends what devicesHeldAtZero() says within some milliseconds: no report can be written
+/// for it, but the program's end can wait that long.
+class OwnZeros {
+ public:
+  OwnZeros() noexcept;
+  ~OwnZeros();
+  OwnZeros& operator=(OwnZeros&&) = delete;
+  /// Whether one lives. Async-signal-safe.
+  [[nodiscard]] static bool any() noexcept;
+};
+
 }  // namespace fettle::haptic

@@ -14,6 +14,8 @@
 
 #include "haptic/devices/hid/hid_port.h"
 #include "haptic/devices/hid/space_mouse.h"
+#include "haptic/devices/vendor/force_dimension.h"
+#include "haptic/devices/vendor/open_haptics.h"
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/devices/virtual/replay_device.h"
 #include "haptic/devices/wooden/serial_port.h"
@@ -125,12 +127,24 @@ Opened openMouse(const std::string&, double) {
   return std::make_unique<MouseStylus>();
 }
 
+Opened openOpenHaptics(const std::string& name, double) {
+  return OpenHaptics::open(name);
+}
+
+Opened openForceDimension(const std::string& index, double) {
+  return ForceDimension::open(index);
+}
+
 constexpr KnownDriver kDrivers[] = {
     {"woodenhaptics", "", "WoodenHaptics, AluHaptics, Polhem (mbed boards, HID)", DeviceKind::kWoodenHaptics,
      true, false, openWoodenHid},
     {"serial", "", "the same family, current boards (USB serial)", DeviceKind::kWoodenSerial, true, false,
      openWoodenSerial},
     {"spacemouse", "", "3Dconnexion SpaceMouse", DeviceKind::kSpaceMouse, false, false, openSpaceMouse},
+    {"openhaptics", "", "3D Systems Touch, Phantom (OpenHaptics)", DeviceKind::kOpenHaptics, true, false,
+     openOpenHaptics},
+    {"forcedimension", "", "Force Dimension omega, delta, sigma, Novint Falcon", DeviceKind::kForceDimension,
+     true, false, openForceDimension},
     {"mouse", "", "mouse as a stylus", DeviceKind::kOther, false, true, openMouse},
     {"hand", "STROKES", "simulated hand in closed loop, on the way of a strokes file", DeviceKind::kOther,
      true, false, openHand, true},
@@ -174,6 +188,10 @@ std::string_view deviceKindName(DeviceKind kind) noexcept {
       return "woodenhaptics-serial";
     case DeviceKind::kSpaceMouse:
       return "spacemouse";
+    case DeviceKind::kOpenHaptics:
+      return "openhaptics";
+    case DeviceKind::kForceDimension:
+      return "forcedimension";
   }
   return "other";
 }
@@ -199,6 +217,36 @@ std::vector<DeviceInfo> listDevices() {
   std::stable_partition(devices.begin(), devices.end(),
                         [](const DeviceInfo& d) { return d.kind != DeviceKind::kOther; });
   return devices;
+}
+
+std::vector<LibraryDevice> listLibraryDevices() {
+  std::vector<LibraryDevice> rows;
+  const auto none = [&](DeviceKind kind, bool library, const engine::Error& error) {
+    const KnownDriver& driver = *driverOf(kind);
+    rows.push_back({kind,
+                    std::string(driver.word),
+                    std::string(driver.title),
+                    library ? "not connected" : "library missing",
+                    fmt::format("{}: {}", error.what, error.remedy),
+                    {}});
+  };
+  const auto ready = [&](DeviceKind kind, const std::string& argument, const DeviceProfile& profile) {
+    rows.push_back({kind, fmt::format("{}{}{}", driverOf(kind)->word, argument.empty() ? "" : ":", argument),
+                    profile.name, "ready", "", profile});
+  };
+  if (const auto touch = OpenHaptics::probe(""))
+    ready(DeviceKind::kOpenHaptics, "", *touch);
+  else
+    none(DeviceKind::kOpenHaptics, hdapi().has_value(), touch.error());
+  const auto found = ForceDimension::probe();
+  if (!found)
+    none(DeviceKind::kForceDimension, dhd().has_value(), found.error());
+  else if (found->empty())
+    none(DeviceKind::kForceDimension, true,
+         {engine::ErrorKind::kFailed, "its library finds none", "", "plug one in and switch it on"});
+  for (std::size_t i = 0; found && i < found->size(); ++i)
+    ready(DeviceKind::kForceDimension, fmt::format("{}", i), (*found)[i]);
+  return rows;
 }
 
 std::vector<HandTarget> handPath(std::span<const StrokeSample> strokes) {

@@ -19,9 +19,12 @@ enum class DeviceKind : std::uint8_t {
   kWoodenHaptics,  ///< over HID
   kWoodenSerial,   ///< a serial board that may be one
   kSpaceMouse,
+  kOpenHaptics,  ///< through its maker's library, here and below
+  kForceDimension,
 };
 
-/// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse".
+/// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse", "openhaptics",
+/// "forcedimension".
 [[nodiscard]] std::string_view deviceKindName(DeviceKind kind) noexcept;
 
 /// One connected device, as `fettle devices` shows it.
@@ -47,6 +50,20 @@ struct DeviceInfo {
 /// All connected HID devices, and serial boards that may be force devices; those that Fettle can use first. A
 /// device is listed even if bus, interface or maker are unknown. Takes some milliseconds.
 [[nodiscard]] std::vector<DeviceInfo> listDevices();
+
+/// What a maker's library says of its devices.
+struct LibraryDevice {
+  DeviceKind kind = DeviceKind::kOther;
+  std::string words;  ///< argument of openDevice()
+  std::string name;
+  std::string state;      ///< "ready", "not connected" or "library missing"
+  std::string remedy;     ///< empty where it is ready
+  DeviceProfile profile;  ///< of one that is ready: limits that Fettle applies
+};
+
+/// A row for each device that the libraries of OpenHaptics and Force Dimension open, and for each of both that opens none. Loads these
+/// libraries, which a program that uses no such device never does; opening a device may take seconds.
+[[nodiscard]] std::vector<LibraryDevice> listLibraryDevices();
 
 /// One device that Fettle can drive: what openDevice(), `fettle devices`, the help of --device and
 /// docs/devices.md (a test compares it) know of it.

@@ -119,8 +119,9 @@ void LastResort::fire() noexcept {
   // writer thread may have been about to send a force at the first zeros; it has sent it by the second round,
   // and sends only zeros from then on.
   holdDevicesAtZero(HeldAtZero::kYes);
-  if (zeroAllDevices() == 0) return;
-  const timespec writer_delay{0, 2'000'000};
+  if (zeroAllDevices() == 0 && !OwnZeros::any()) return;
+  // Two ticks of a writer thread; a maker's library may block for a tick before it asks for a force.
+  const timespec writer_delay{0, OwnZeros::any() ? 5'000'000 : 2'000'000};
   nanosleep(&writer_delay, nullptr);
   zeroAllDevices();
 }

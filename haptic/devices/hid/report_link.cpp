@@ -1,7 +1,5 @@
 #include "haptic/devices/hid/report_link.h"
 
-#include <pthread.h>
-
 #include <array>
 #include <chrono>
 #include <ctime>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/stopwatch.h"
+#include "haptic/devices/link_thread.h"
 
 namespace fettle::haptic {
 
@@ -23,15 +22,6 @@ constexpr int kDrainLimit = 128;
 
 void add(std::atomic<std::uint64_t>& counter) noexcept {
   counter.fetch_add(1, std::memory_order_relaxed);
-}
-
-// Above ordinary programs when the system allows it, below the loop, which never waits for these threads.
-constexpr int kPriority = 60;
-
-void nameThread(const char* name) noexcept {
-  pthread_setname_np(pthread_self(), name);
-  const sched_param priority{.sched_priority = kPriority};
-  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority));
 }
 
 }  // namespace
@@ -122,7 +112,7 @@ bool ReportLink::waitForPlug() noexcept {
 }
 
 void ReportLink::runReader() noexcept {
-  nameThread("fettle-hid-in");
+  becomeLinkThread("fettle-hid-in");
   do {
     std::optional<OpenedPorts> ports = source_->open();
     if (!ports || !ports->reading) continue;
@@ -195,7 +185,7 @@ PortWrite ReportLink::send(ReportPort& port, OutputRule::Send what, const glm::d
 }
 
 void ReportLink::runWriter() noexcept {
-  nameThread("fettle-hid-out");
+  becomeLinkThread("fettle-hid-out");
   std::unique_ptr<ReportPort> port;
   OutputRule rule(Pacing::kNone, times_);
   std::uint64_t generation = 0;

@@ -26,10 +26,10 @@ TEST(LiveDevices, PluggedInOnesComeAndGoWithEachCallAndBuiltInOnesAreAlwaysThere
   const TempFolder folder;
   fake::FakeWoody woody(folder.path().string(), "woody", Firmware::kP14, "SN7");
   nlohmann::json devices = devicesIn(folder);
-  EXPECT_EQ(devices.size(), 3U);
+  EXPECT_EQ(devices.size(), 5U) << "makers' libraries have a row each where they are missing";
   EXPECT_EQ(std::count_if(devices.begin(), devices.end(), [](auto& d) { return d["kind"] == "built in"; }),
             3);
-  EXPECT_EQ(devices[0]["state"], "needs a window");
+  EXPECT_EQ(devices[2]["state"], "needs a window");
   woody.plug();
   ASSERT_TRUE(eventually([&] { return !find(devicesIn(folder), "woodenhaptics").is_null(); }));
   devices = devicesIn(folder);

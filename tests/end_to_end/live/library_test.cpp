@@ -1,0 +1,179 @@
+// The program with devices behind their makers' libraries: `fettle devices`, a session, and what the device applies when it is attacked.
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/live/session.h"
+#include "tests/haptic/devices/fake_vendor/shared_page.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Maker {
+  const char* word;
+  const char* variable;
+  const char* library;
+  double max_force_n;
+};
+void PrintTo(const Maker& maker, std::ostream* out) {
+  *out << maker.word;
+}
+constexpr Maker kTouch{"openhaptics", "FETTLE_LIBHD", FETTLE_FAKE_HD, 3.3};
+constexpr Maker kOmega{"forcedimension", "FETTLE_LIBDHD", FETTLE_FAKE_DHD, 12.0};
+
+nlohmann::json rowOf(const std::string& kind) {
+  const TempFolder folder;
+  LiveProgram program({"devices", "--json"}, folder.path().string());
+  EXPECT_EQ(program.wait(), 0) << program.err();
+  const nlohmann::json report = program.report();
+  for (const auto& row : report["devices"])
+    if (row["kind"] == kind) return row;
+  return nullptr;
+}
+
+class LibraryDevice : public testing::TestWithParam<Maker> {
+ protected:
+  void SetUp() override {
+    setenv(GetParam().variable, GetParam().library, 1);
+    setenv("FAKE_VENDOR_PAGE", folder_.file("page").c_str(), 1);
+    setenv("FAKE_VENDOR_LOG", folder_.file("broken").c_str(), 1);
+    page_ = fake::SharedPage::map(folder_.file("page").c_str());
+    ASSERT_NE(page_, nullptr);
+  }
+  // The program armed, and the hand pressing into the surface.
+  void press() {
+    const std::string scan = folder_.file("flat.tif");
+    ASSERT_EQ(
+        runProcess({FETTLE_PROGRAM, "synth", scan, "--part", "plate", "--size", "201x201", "--quiet"}).status,
+        0);
+    program_ = std::make_unique<LiveProgram>(
+        std::vector<std::string>{"record", scan, folder_.file("s.csv"), folder_.file("o.tif"), "--device",
+                                 GetParam().word, "--keys", "--json"},
+        folder_.path().string());
+    ASSERT_TRUE(eventually([&] {
+      program_->press('a');
+      return program_->says(" s: active", 2s);
+    })) << program_->err();
+    pressDown();
+    ASSERT_TRUE(eventually([&] { return now() > 0.2; })) << program_->err();
+  }
+  void pressDown() {
+    for (double up = page_->up_mm; up > -2.0; up -= 0.1) {
+      page_->up_mm = up;
+      std::this_thread::sleep_for(2ms);  // the speed of the hand
+    }
+  }
+  [[nodiscard]] double now() const {
+    const std::size_t n = page_->forces;
+    return n == 0 ? 0.0 : static_cast<double>(page_->force_n[n - 1].load());
+  }
+  // Prints the row of docs/safety.md; the guard's limits hold at the device.
+  void expectWithinLimits(const char* attack) {
+    double peak = 0.0, rise = 0.0, before = 0.0;
+    for (std::size_t i = 0; i < page_->forces; ++i) {
+      const double f = static_cast<double>(page_->force_n[i].load());
+      peak = std::max(peak, f);
+      rise = std::max(rise, f - before);
+      before = f;
+    }
+    std::printf("| %-45s | %-14s | %6.3f | %7.4f | %6.3f |\n", attack, GetParam().word, peak, rise, now());
+    std::fflush(stdout);
+    EXPECT_LE(peak, GetParam().max_force_n * 1.001);
+    EXPECT_GT(peak, 0.2);
+    // One tick of rise; where the machine held the loop up, as many ticks at once as the guard allows.
+    EXPECT_LE(rise, 2.0);
+    EXPECT_EQ(now(), 0.0);
+  }
+  [[nodiscard]] std::string broken() const {
+    std::ifstream file(folder_.file("broken"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  TempFolder folder_;
+  fake::SharedPage* page_ = nullptr;
+  std::unique_ptr<LiveProgram> program_;
+};
+INSTANTIATE_TEST_SUITE_P(Makers, LibraryDevice, testing::Values(kTouch, kOmega),
+                         [](const auto& i) { return std::string(i.param.word); });
+
+TEST_P(LibraryDevice, IsListedReadyOrNotConnected) {
+  nlohmann::json row = rowOf(GetParam().word);
+  EXPECT_EQ(row["state"], "ready");
+  EXPECT_EQ(row["max_force_n"], GetParam().max_force_n);
+  page_->plugged = false;
+  row = rowOf(GetParam().word);
+  EXPECT_EQ(row["state"], "not connected");
+  EXPECT_TRUE(row["max_force_n"].is_null());
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, WithoutItsLibraryIsSaidWhereItWasLookedForAndWhatToInstall) {
+  setenv(GetParam().variable, "/nowhere/lib.so", 1);
+  nlohmann::json row = rowOf(GetParam().word);
+  EXPECT_EQ(row["state"], "library missing");
+  EXPECT_NE(row["remedy"].get<std::string>().find("/nowhere/lib.so"), std::string::npos) << row;
+  EXPECT_NE(row["remedy"].get<std::string>().find("install "), std::string::npos) << row;
+  setenv(GetParam().variable, "libm.so.6", 1);  // a library that is another
+  row = rowOf(GetParam().word);
+  EXPECT_NE(row["remedy"].get<std::string>().find("it has no "), std::string::npos) << row;
+}
+
+TEST_P(LibraryDevice, UnpluggedWhilePressingAndBack) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  page_->plugged = false;
+  EXPECT_TRUE(program_->says("fault, unplugged")) << program_->err();
+  page_->up_mm = 30.0;
+  page_->plugged = true;
+  EXPECT_TRUE(program_->says("device connected")) << program_->err();
+  program_->press('q');
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectWithinLimits("unplugged while pressing, back");
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, GarbageWhilePressing) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  page_->garbage = true;
+  EXPECT_TRUE(eventually([&] { return now() == 0.0; }));
+  page_->garbage = false;
+  program_->press('q');
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectWithinLimits("poses NaN and 1e30");
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, StandsWhilePressing) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  page_->stalled = true;
+  EXPECT_TRUE(program_->says("fault")) << program_->err();
+  page_->stalled = false;
+  EXPECT_TRUE(eventually([&] { return now() == 0.0; }));
+  program_->press('q');
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectWithinLimits("library's thread or call stands");
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, CtrlCWhilePressing) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  program_->signal(SIGINT);
+  program_->wait();
+  expectWithinLimits("Ctrl-C while pressing");
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, CrashWhilePressing) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  program_->signal(SIGSEGV);
+  program_->wait();
+  expectWithinLimits("SIGSEGV while pressing");
+}
+
+}  // namespace
+}  // namespace fettle::tests
