@@ -5,8 +5,8 @@
 
 #include "app/commands/command.h"
 #include "app/commands/filter_arguments.h"
-#include "engine/base/job.h"
 #include "engine/base/error.h"
+#include "engine/base/job.h"
 
 namespace fettle::app {
 

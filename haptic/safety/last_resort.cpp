@@ -56,11 +56,10 @@ void onSignal(int signal, siginfo_t* info, void* context) {
   for (std::size_t i = 0; i < kCovered.size(); ++i) {
     if (kCovered[i].signal != signal) continue;
     const struct sigaction& before = g_before[i];
-    if (kCovered[i].own_fault)
-      restoreAndRaise(i);
-    else if ((before.sa_flags & SA_SIGINFO) != 0)
+    const bool continues = !kCovered[i].own_fault;
+    if (continues && (before.sa_flags & SA_SIGINFO) != 0)
       before.sa_sigaction(signal, info, context);
-    else if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN)
+    else if (continues && before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN)
       before.sa_handler(signal);
     else
       restoreAndRaise(i);

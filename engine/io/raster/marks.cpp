@@ -133,7 +133,8 @@ Result<Version> fromTiff(const Version& field, const InputFile& file) {
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const DatasetPtr dataset(gdal().GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
                                              drivers.data(), nullptr, nullptr));
-  if (!dataset) return inputError("the TIFF cannot be opened: " + session.reason("damaged header"), file.path());
+  if (!dataset)
+    return inputError("the TIFF cannot be opened: " + session.reason("damaged header"), file.path());
   std::vector<std::string> ignored;
   const Sidecar sidecar = readAuxXml(file.path(), ignored);
   const auto part = partOfMarks(field.grid(), placeOf(dataset.get(), sidecar), file.path());

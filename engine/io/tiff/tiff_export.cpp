@@ -221,8 +221,8 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
         !status)
       return tl::unexpected(plain->explained(status.error()));
     const GdalSession session;
-    if (Status status =
-            writeCloudOptimised(plain->temporaryPath(), file->temporaryPath(), compression, session, path, job);
+    if (Status status = writeCloudOptimised(plain->temporaryPath(), file->temporaryPath(), compression,
+                                            session, path, job);
         !status)
       return tl::unexpected(file->explained(status.error()));
   } else if (Status status = writePlain(field, options.tiff_compression.value_or(TiffCompression::kNone),
