@@ -33,12 +33,13 @@ Report entry(const std::string& id, const std::string& name, std::string_view ki
 }
 
 Report pluggedIn(const DeviceInfo& d) {
-  const haptic::DeviceProblem problem = haptic::deviceProblem(d.open_error);
+  const haptic::DeviceProblem problem =
+      d.open_error != 0 ? haptic::deviceProblem(d.open_error) : haptic::DeviceProblem{d.answer, d.advice};
   const bool usable = d.kind != DeviceKind::kOther;
   Report row = entry(d.path, d.name, haptic::deviceKindName(d.kind),
-                     !usable             ? "no driver"
-                     : d.open_error == 0 ? "ready"
-                                         : problem.what,
+                     !usable                ? "no driver"
+                     : problem.what.empty() ? "ready"
+                                            : problem.what,
                      usable ? problem.remedy : "", d.profile);
   if (!usable)
     for (const char* key : {"workspace_radius_mm", "max_force_n", "max_stiffness_n_per_mm",
@@ -59,19 +60,21 @@ Report builtIn(const std::string& id, const std::string& name, const std::string
   return row;
 }
 
+Report makerOf(const haptic::MakerInfo& m) {
+  return {{"id", std::string(m.word)},
+          {"name", std::string(m.title)},
+          {"state", m.problem.empty() ? m.devices.empty() ? "no device" : "ready" : m.problem},
+          {"remedy", m.remedy.empty() ? Report() : Report(m.remedy)},
+          {"source", m.source.empty() ? Report() : Report(m.source)}};
+}
+
 engine::Result<Report> devices() {
   Report rows = Report::array();
   for (const DeviceInfo& d : haptic::listDevices()) rows.push_back(pluggedIn(d));
-  for (const haptic::LibraryDevice& d : haptic::listLibraryDevices()) {
-    Report row = entry(d.words, d.name, haptic::deviceKindName(d.kind), d.state, d.remedy, d.profile);
-    if (d.state != "ready")
-      for (const char* key : {"workspace_radius_mm", "max_force_n", "max_stiffness_n_per_mm",
-                              "max_damping_n_s_per_mm", "rate_hz"})
-        row[key] = nullptr;  // not known
-    row["serial"] = "";
-    row["usb_id"] = row["form"] = nullptr;
-    row["limits_of"] = d.state == "ready" ? Report(d.profile.name) : Report();
-    rows.push_back(std::move(row));
+  Report makers = Report::array();
+  for (const haptic::MakerInfo& m : haptic::listMakers()) {
+    for (const DeviceInfo& d : m.devices) rows.push_back(pluggedIn(d));
+    makers.push_back(makerOf(m));
   }
   // A connected device needs no path: the first one found is used.
   for (const haptic::KnownDriver& driver : haptic::knownDrivers()) {
@@ -84,7 +87,7 @@ engine::Result<Report> devices() {
         std::string(driver.title), driver.needs_window ? "needs a window" : "ready",
         driver.needs_window ? "the cursor points at the picture: see fettle view --help" : "", profile));
   }
-  return Report{{"devices", rows}};
+  return Report{{"devices", rows}, {"makers", makers}};
 }
 
 std::string known(const Report& value, double factor, const char* unit) {
@@ -94,15 +97,10 @@ std::string known(const Report& value, double factor, const char* unit) {
 void printDevices(const Report& report) {
   bool any = false;
   for (const Report& d : report["devices"]) {
-    any =
-        any || (d["kind"] != "built in" && d["state"] != "library missing" && d["state"] != "not connected");
+    any = any || d["kind"] != "built in";
     fmt::print("{}\n  {}, {}: {}\n", d["id"].get<std::string>(), d["name"].get<std::string>(),
                d["kind"].get<std::string>(), d["state"].get<std::string>());
     if (d["state"] == "no driver") continue;
-    if (d["rate_hz"].is_null()) {
-      fmt::print("  {}\n", d["remedy"].get<std::string>());
-      continue;
-    }
     if (d["force"].get<bool>())
       fmt::print("  force up to {}, stiffness {}, damping {}; {} Hz\n", known(d["max_force_n"], 1.0, "N"),
                  known(d["max_stiffness_n_per_mm"], 1.0, "N/mm"),
@@ -114,6 +112,13 @@ void printDevices(const Report& report) {
                  known(d["resolution_mm"], 1.0, "mm"));
     if (!d["remedy"].is_null()) fmt::print("  {}\n", d["remedy"].get<std::string>());
     if (d["kind"] != "built in") fmt::print("  not tested on hardware, only with a simulated device\n");
+  }
+  for (const Report& m : report["makers"]) {
+    if (m["state"] == "ready") continue;
+    fmt::print("{}\n  {}: {}\n", m["id"].get<std::string>(), m["name"].get<std::string>(),
+               m["state"].get<std::string>());
+    if (!m["source"].is_null() && m["remedy"].is_null()) fmt::print("  {}\n", m["source"].get<std::string>());
+    if (!m["remedy"].is_null()) fmt::print("  {}\n", m["remedy"].get<std::string>());
   }
   if (!any) fmt::print("\nNo force device or 3D mouse is connected.\n");
 }

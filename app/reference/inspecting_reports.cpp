@@ -570,7 +570,15 @@ std::vector<ReportSchema> inspecting() {
             {"serial", "string", ""},
             {"usb_id", "string?", "vendor:product"},
             {"form", "string?", ""},
-            {"limits_of", "string?", "the profile whose limits count"}}}}}}},
+            {"limits_of", "string?", "the profile whose limits count"}}},
+          {"makers",
+           "[object]",
+           "software of makers that their devices need",
+           {{"id", "string", "word of --device"},
+            {"name", "string", ""},
+            {"state", "string", "ready, no device, or why not"},
+            {"remedy", "string?", "what to install, and where it was looked for"},
+            {"source", "string?", "library or address that answers"}}}}}}},
   };
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "engine/base/error.h"
@@ -14,8 +13,6 @@ class LoadedLibrary {
  public:
   /// `file`: its name with the number of its interface, "libcairo.so.2"; `package`: the Debian package that has it.
   LoadedLibrary(const char* file, const char* package);
-  /// The first of `files`, names or paths, that can be loaded; `remedy`: where it comes from, as "install the package libcairo2".
-  LoadedLibrary(std::span<const std::string> files, std::string remedy);
 
   /// Sets `call` to the function of that name, also of the libraries that it needs itself; null where there is none.
   template <class Call>
@@ -23,7 +20,7 @@ class LoadedLibrary {
     call = reinterpret_cast<Call>(address(name));
   }
 
-  /// Whether it was loaded and all that was looked for was found. Errors (kFailed): the loader's reason for each file, also where it
+  /// Whether it was loaded and all that was looked for was found. Errors (kFailed): the loader's reason, also where the file
   /// is there and a library that it needs is not. `what` cannot be done then, on `where`; `instead`: what can be done besides the
   /// remedy, as ", or write .html", or empty.
   [[nodiscard]] Status status(const char* what, const char* where, const char* instead) const;
@@ -31,9 +28,9 @@ class LoadedLibrary {
  private:
   void* address(const char* name);
 
-  std::string file_;  // that was loaded
-  std::string remedy_;
-  void* handle_ = nullptr;
+  const char* file_;
+  const char* package_;
+  void* handle_;
   std::string missing_;
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <ctime>
 
 namespace fettle::haptic {
 
@@ -25,7 +26,9 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not l
 std::array<Entry, 8> entries;
 std::atomic<bool> held_at_zero{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
-std::atomic<int> own_zeros{0};
+
+enum LinkZero : int { kNoLink, kHoldsForce, kHoldsZero };
+std::array<std::atomic<int>, 8> link_zeros{};
 
 }  // namespace
 
@@ -65,6 +68,10 @@ void disarmEmergencyZero(int number) noexcept {
 // Both relaxed: the second round of zeros in LastResort::fire follows any report that was encoded before the
 // flag was seen.
 void holdDevicesAtZero(HeldAtZero held) noexcept {
+  for (std::atomic<int>& link : link_zeros) {  // a zero of an earlier hold does not count
+    int zero = kHoldsZero;
+    link.compare_exchange_strong(zero, kHoldsForce, std::memory_order_relaxed);
+  }
   held_at_zero.store(held == HeldAtZero::kYes, std::memory_order_relaxed);
 }
 
@@ -72,15 +79,38 @@ bool devicesHeldAtZero() noexcept {
   return held_at_zero.load(std::memory_order_relaxed);
 }
 
-// Relaxed: a hint for a handler, ordered by nothing.
-OwnZeros::OwnZeros() noexcept {
-  own_zeros.fetch_add(1, std::memory_order_relaxed);
+void ZeroWhenHeld::arm() noexcept {
+  for (std::size_t i = 0; i < link_zeros.size() && number_ < 0; ++i) {
+    int free = kNoLink;
+    if (link_zeros[i].compare_exchange_strong(free, kHoldsForce, std::memory_order_relaxed))
+      number_ = static_cast<int>(i);
+  }
 }
-OwnZeros::~OwnZeros() {
-  own_zeros.fetch_sub(1, std::memory_order_relaxed);
+
+void ZeroWhenHeld::disarm() noexcept {
+  if (number_ >= 0) link_zeros[static_cast<std::size_t>(number_)].store(kNoLink, std::memory_order_relaxed);
+  number_ = -1;
 }
-bool OwnZeros::any() noexcept {
-  return own_zeros.load(std::memory_order_relaxed) > 0;
+
+// Relaxed: the wait below reads nothing else. Only a zero after the hold counts: until then a force may follow.
+void ZeroWhenHeld::zeroSent() noexcept {
+  if (number_ >= 0 && devicesHeldAtZero())
+    link_zeros[static_cast<std::size_t>(number_)].store(kHoldsZero, std::memory_order_relaxed);
+}
+
+int waitForHeldZeros() noexcept {
+  const int kept = errno;
+  int missing = 0;
+  for (int ms = 0; ms <= 20; ++ms) {
+    missing = 0;
+    for (const std::atomic<int>& link : link_zeros)
+      missing += link.load(std::memory_order_relaxed) == kHoldsForce ? 1 : 0;
+    if (missing == 0 || ms == 20) break;
+    const timespec a_millisecond{0, 1'000'000};
+    nanosleep(&a_millisecond, nullptr);
+  }
+  errno = kept;
+  return missing;
 }
 
 int zeroAllDevices() noexcept {

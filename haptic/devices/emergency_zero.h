@@ -31,15 +31,27 @@ void holdDevicesAtZero(HeldAtZero held) noexcept;
 /// For the ports. Any thread, wait-free.
 [[nodiscard]] bool devicesHeldAtZero() noexcept;
 
-/// While one lives, a thread of a maker's library sends what devicesHeldAtZero() says within some milliseconds: no report can be written
-/// for it, but the program's end can wait that long.
-class OwnZeros {
+/// A device that is reached only through calls of a library or a service, which no signal handler may make:
+/// its link thread sends the zero itself, once it sees devicesHeldAtZero(), and reports that here. Link thread,
+/// wait-free. At most 8 at a time; beyond that only the device's own watchdog acts.
+class ZeroWhenHeld {
  public:
-  OwnZeros() noexcept;
-  ~OwnZeros();
-  OwnZeros& operator=(OwnZeros&&) = delete;
-  /// Whether one lives. Async-signal-safe.
-  [[nodiscard]] static bool any() noexcept;
+  ZeroWhenHeld() = default;
+  ~ZeroWhenHeld() { disarm(); }
+  ZeroWhenHeld& operator=(ZeroWhenHeld&&) = delete;
+
+  /// The device may hold a force from now on.
+  void arm() noexcept;
+  void disarm() noexcept;
+  /// A zero has reached the device.
+  void zeroSent() noexcept;
+
+ private:
+  int number_ = -1;
 };
+
+/// Waits until the links of all armed ZeroWhenHeld have sent a zero since holdDevicesAtZero(), 20 ms at most: a
+/// link that crashed itself never will. Returns how many have not. Async-signal-safe; keeps errno.
+int waitForHeldZeros() noexcept;
 
 }  // namespace fettle::haptic

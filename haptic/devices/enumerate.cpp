@@ -14,8 +14,7 @@
 
 #include "haptic/devices/hid/hid_port.h"
 #include "haptic/devices/hid/space_mouse.h"
-#include "haptic/devices/vendor/force_dimension.h"
-#include "haptic/devices/vendor/open_haptics.h"
+#include "haptic/devices/vendor/made_devices.h"
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/devices/virtual/replay_device.h"
 #include "haptic/devices/wooden/serial_port.h"
@@ -123,16 +122,21 @@ Opened openReplay(const std::string& file, double) {
   return std::make_unique<ReplayDevice>(std::move(*strokes));
 }
 
+// A name of the maker's set-up, a number, an id; else the first that is found.
+Opened openTouch(const std::string& which, double) {
+  return openOpenHaptics(which);
+}
+
+Opened openOmega(const std::string& which, double) {
+  return openForceDimension(which);
+}
+
+Opened openHaply(const std::string& which, double) {
+  return openInverse3(which);
+}
+
 Opened openMouse(const std::string&, double) {
   return std::make_unique<MouseStylus>();
-}
-
-Opened openOpenHaptics(const std::string& name, double) {
-  return OpenHaptics::open(name);
-}
-
-Opened openForceDimension(const std::string& index, double) {
-  return ForceDimension::open(index);
 }
 
 constexpr KnownDriver kDrivers[] = {
@@ -141,10 +145,11 @@ constexpr KnownDriver kDrivers[] = {
     {"serial", "", "the same family, current boards (USB serial)", DeviceKind::kWoodenSerial, true, false,
      openWoodenSerial},
     {"spacemouse", "", "3Dconnexion SpaceMouse", DeviceKind::kSpaceMouse, false, false, openSpaceMouse},
-    {"openhaptics", "", "3D Systems Touch, Phantom (OpenHaptics)", DeviceKind::kOpenHaptics, true, false,
-     openOpenHaptics},
-    {"forcedimension", "", "Force Dimension omega, delta, sigma, Novint Falcon", DeviceKind::kForceDimension,
-     true, false, openForceDimension},
+    {"touch", "", "3D Systems Touch, Phantom (OpenHaptics)", DeviceKind::kOpenHaptics, true, false,
+     openTouch},
+    {"forcedimension", "", "Force Dimension omega, delta, sigma; Novint Falcon", DeviceKind::kForceDimension,
+     true, false, openOmega},
+    {"inverse3", "", "Haply Inverse3", DeviceKind::kInverse3, true, false, openHaply},
     {"mouse", "", "mouse as a stylus", DeviceKind::kOther, false, true, openMouse},
     {"hand", "STROKES", "simulated hand in closed loop, on the way of a strokes file", DeviceKind::kOther,
      true, false, openHand, true},
@@ -189,9 +194,11 @@ std::string_view deviceKindName(DeviceKind kind) noexcept {
     case DeviceKind::kSpaceMouse:
       return "spacemouse";
     case DeviceKind::kOpenHaptics:
-      return "openhaptics";
+      return "touch";
     case DeviceKind::kForceDimension:
       return "forcedimension";
+    case DeviceKind::kInverse3:
+      return "inverse3";
   }
   return "other";
 }
@@ -219,34 +226,40 @@ std::vector<DeviceInfo> listDevices() {
   return devices;
 }
 
-std::vector<LibraryDevice> listLibraryDevices() {
-  std::vector<LibraryDevice> rows;
-  const auto none = [&](DeviceKind kind, bool library, const engine::Error& error) {
+std::vector<MakerInfo> listMakers() {
+  constexpr std::pair<DeviceKind, MadeDevices (*)()> kMakers[] = {
+      {DeviceKind::kOpenHaptics, listOpenHaptics},
+      {DeviceKind::kForceDimension, listForceDimension},
+      {DeviceKind::kInverse3, listInverse3},
+  };
+  std::vector<MakerInfo> makers;
+  for (const auto& [kind, list] : kMakers) {
     const KnownDriver& driver = *driverOf(kind);
-    rows.push_back({kind,
-                    std::string(driver.word),
-                    std::string(driver.title),
-                    library ? "not connected" : "library missing",
-                    fmt::format("{}: {}", error.what, error.remedy),
-                    {}});
-  };
-  const auto ready = [&](DeviceKind kind, const std::string& argument, const DeviceProfile& profile) {
-    rows.push_back({kind, fmt::format("{}{}{}", driverOf(kind)->word, argument.empty() ? "" : ":", argument),
-                    profile.name, "ready", "", profile});
-  };
-  if (const auto touch = OpenHaptics::probe(""))
-    ready(DeviceKind::kOpenHaptics, "", *touch);
-  else
-    none(DeviceKind::kOpenHaptics, hdapi().has_value(), touch.error());
-  const auto found = ForceDimension::probe();
-  if (!found)
-    none(DeviceKind::kForceDimension, dhd().has_value(), found.error());
-  else if (found->empty())
-    none(DeviceKind::kForceDimension, true,
-         {engine::ErrorKind::kFailed, "its library finds none", "", "plug one in and switch it on"});
-  for (std::size_t i = 0; found && i < found->size(); ++i)
-    ready(DeviceKind::kForceDimension, fmt::format("{}", i), (*found)[i]);
-  return rows;
+    MadeDevices made = list();
+    MakerInfo maker{kind,
+                    driver.word,
+                    driver.title,
+                    std::move(made.problem),
+                    std::move(made.remedy),
+                    std::move(made.source),
+                    {}};
+    for (MadeDevice& m : made.devices) {
+      DeviceInfo d;
+      d.kind = kind;
+      d.path = m.argument.empty() ? std::string(driver.word) : fmt::format("{}:{}", driver.word, m.argument);
+      d.name = std::move(m.name);
+      d.serial = std::move(m.serial);
+      d.readable = m.problem.empty();
+      d.gives_position = true;
+      d.gives_force = true;
+      d.profile = std::move(m.profile);
+      d.answer = std::move(m.problem);
+      d.advice = std::move(m.remedy);
+      maker.devices.push_back(std::move(d));
+    }
+    makers.push_back(std::move(maker));
+  }
+  return makers;
 }
 
 std::vector<HandTarget> handPath(std::span<const StrokeSample> strokes) {

@@ -19,12 +19,12 @@ enum class DeviceKind : std::uint8_t {
   kWoodenHaptics,  ///< over HID
   kWoodenSerial,   ///< a serial board that may be one
   kSpaceMouse,
-  kOpenHaptics,  ///< through its maker's library, here and below
+  kOpenHaptics,  ///< through what its maker installs, see listMakers(); likewise the two below
   kForceDimension,
+  kInverse3,
 };
 
-/// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse", "openhaptics",
-/// "forcedimension".
+/// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse", "touch", "forcedimension", "inverse3".
 [[nodiscard]] std::string_view deviceKindName(DeviceKind kind) noexcept;
 
 /// One connected device, as `fettle devices` shows it.
@@ -45,25 +45,29 @@ struct DeviceInfo {
   bool gives_force = false;
   std::string_view form;  ///< "W8", "P14", "S" where known; else empty
   DeviceProfile profile;  ///< limits that Fettle applies; of kinds other than kOther
+  std::string answer;     ///< of listMakers(): why it cannot be opened; empty: it can
+  std::string advice;     ///< of listMakers(): what the user has to do; may be empty
 };
 
 /// All connected HID devices, and serial boards that may be force devices; those that Fettle can use first. A
 /// device is listed even if bus, interface or maker are unknown. Takes some milliseconds.
 [[nodiscard]] std::vector<DeviceInfo> listDevices();
 
-/// What a maker's library says of its devices.
-struct LibraryDevice {
+/// What one maker's own software reports, which is loaded or asked only here and when such a device is opened.
+struct MakerInfo {
   DeviceKind kind = DeviceKind::kOther;
-  std::string words;  ///< argument of openDevice()
-  std::string name;
-  std::string state;      ///< "ready", "not connected" or "library missing"
-  std::string remedy;     ///< empty where it is ready
-  DeviceProfile profile;  ///< of one that is ready: limits that Fettle applies
+  std::string_view word;   ///< of the driver
+  std::string_view title;  ///< of the driver
+  std::string problem;  ///< why there are no devices of it, as "libHD.so is not installed"; empty: it answers
+  std::string remedy;   ///< what to install, and where it was looked for
+  std::string source;   ///< the library's file, or the service's address; may be empty
+  /// Devices that it reports. `path` is a word of openDevice() with its argument; `answer` is why one cannot be
+  /// opened, in the library's words.
+  std::vector<DeviceInfo> devices;
 };
 
-/// A row for each device that the libraries of OpenHaptics and Force Dimension open, and for each of both that opens none. Loads these
-/// libraries, which a program that uses no such device never does; opening a device may take seconds.
-[[nodiscard]] std::vector<LibraryDevice> listLibraryDevices();
+/// In the order of knownDrivers(). Takes some milliseconds; a service that does not answer, half a second.
+[[nodiscard]] std::vector<MakerInfo> listMakers();
 
 /// One device that Fettle can drive: what openDevice(), `fettle devices`, the help of --device and
 /// docs/devices.md (a test compares it) know of it.

@@ -9,7 +9,7 @@
 namespace fettle::haptic {
 
 /// Published limits of known force devices (CHAI3D's device table; for the WoodenHaptics the makers'
-/// configurations), for drivers of them and for users' profiles. Fettle has no driver for most of them.
+/// configurations), for drivers of them and for users' profiles.
 struct KnownDevice {
   std::string_view name;
   double workspace_radius_mm;  ///< half of the smallest side where the workspace is no ball

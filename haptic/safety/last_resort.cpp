@@ -56,10 +56,11 @@ void onSignal(int signal, siginfo_t* info, void* context) {
   for (std::size_t i = 0; i < kCovered.size(); ++i) {
     if (kCovered[i].signal != signal) continue;
     const struct sigaction& before = g_before[i];
-    const bool continues = !kCovered[i].own_fault;
-    if (continues && (before.sa_flags & SA_SIGINFO) != 0)
+    if (kCovered[i].own_fault)
+      restoreAndRaise(i);
+    else if ((before.sa_flags & SA_SIGINFO) != 0)
       before.sa_sigaction(signal, info, context);
-    else if (continues && before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN)
+    else if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN)
       before.sa_handler(signal);
     else
       restoreAndRaise(i);
@@ -118,9 +119,10 @@ void LastResort::fire() noexcept {
   // writer thread may have been about to send a force at the first zeros; it has sent it by the second round,
   // and sends only zeros from then on.
   holdDevicesAtZero(HeldAtZero::kYes);
-  if (zeroAllDevices() == 0 && !OwnZeros::any()) return;
-  // Two ticks of a writer thread; a maker's library may block for a tick before it asks for a force.
-  const timespec writer_delay{0, OwnZeros::any() ? 5'000'000 : 2'000'000};
+  const int written = zeroAllDevices();
+  waitForHeldZeros();
+  if (written == 0) return;
+  const timespec writer_delay{0, 2'000'000};
   nanosleep(&writer_delay, nullptr);
   zeroAllDevices();
 }

@@ -1,165 +1,259 @@
-#include "haptic/devices/vendor/force_dimension.h"
+// Sources of what is relied on here: the Force Dimension SDK's reference, and independent bindings that agree on
+// it (docs/decisions/makers-libraries.md).
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
-#include <system_error>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/vec3.hpp>
 
-#include "engine/base/lower_case.h"
 #include "engine/base/stopwatch.h"
-#include "haptic/devices/emergency_zero.h"
 #include "haptic/devices/known_devices.h"
-#include "haptic/devices/link_thread.h"
+#include "haptic/devices/vendor/linked_device.h"
+#include "haptic/devices/vendor/made_devices.h"
+#include "haptic/devices/vendor/vendor_library.h"
 
 namespace fettle::haptic {
 
 namespace {
 
-constexpr std::int64_t kDhdTick = 1'000'000;          // longest wait for a force
-constexpr std::int64_t kDhdPlugWait = 1'000'000'000;  // between attempts to open it
-constexpr int kFailuresThatLose = 10;  // one after the other: unplugged, not a call that failed
+constexpr LibraryPlaces kDhdPlaces{"libdhd.so", "FETTLE_LIBDHD", "",
+                                   "the Force Dimension SDK (forcedimension.com/software/sdk)"};
 
-// The library's axes to DeviceSpace::kDesk and back, [m] to [mm]: a quarter turn about z.
-glm::dvec3 dhdToDesk(const std::array<double, 3>& m) noexcept {
-  return 1000.0 * glm::dvec3{m[1], -m[0], m[2]};
-}
-glm::dvec3 deskToDhd(const glm::dvec3& n) noexcept {
-  return {-n.y, n.x, n.z};
+// The calls of libdhd.so that are used here, by their documented C types. Negative = failed.
+struct DhdCalls {
+  int (*get_device_count)() = nullptr;
+  int (*open_id)(char) = nullptr;
+  int (*close)(char) = nullptr;
+  const char* (*get_system_name)(char) = nullptr;
+  int (*get_position)(double*, double*, double*, char) = nullptr;  // m
+  int (*get_button)(int, char) = nullptr;
+  int (*enable_force)(unsigned char, char) = nullptr;
+  int (*set_force)(double, double, double, char) = nullptr;  // N; 1 = skipped, too soon after the last
+  const char* (*error_get_last_str)() = nullptr;
+};
+
+struct ForceDimension {
+  VendorLibrary library;
+  DhdCalls calls;
+};
+
+std::shared_ptr<const ForceDimension> loadForceDimension() {
+  auto loaded = std::make_shared<ForceDimension>(ForceDimension{VendorLibrary(kDhdPlaces), {}});
+  VendorLibrary& l = loaded->library;
+  DhdCalls& c = loaded->calls;
+  if (!l.loaded()) return loaded;
+  l.find("dhdGetDeviceCount", c.get_device_count);
+  l.find("dhdOpenID", c.open_id);
+  l.find("dhdClose", c.close);
+  l.find("dhdGetSystemName", c.get_system_name);
+  l.find("dhdGetPosition", c.get_position);
+  l.find("dhdGetButton", c.get_button);
+  l.find("dhdEnableForce", c.enable_force);
+  l.find("dhdSetForce", c.set_force);
+  l.find("dhdErrorGetLastStr", c.error_get_last_str);
+  return loaded;
 }
 
-std::string lastError(const Dhd& dhd) {
-  const char* const text = dhd.dhdErrorGetLastStr();
-  return text == nullptr ? "no reason given" : text;
+std::shared_ptr<const ForceDimension> forceDimension() {
+  static std::mutex mutex;
+  static std::shared_ptr<const ForceDimension> found;
+  const std::lock_guard lock(mutex);
+  if (!found || !found->library.loaded()) found = loadForceDimension();
+  return found;
 }
 
-// By the name's beginning; sigma and lambda move like a delta, but their reach is not known: limits of an unknown device.
-DeviceProfile dhdProfile(const Dhd& dhd, char id) {
-  const char* const text = dhd.dhdGetSystemName(id);
-  const std::string name = text == nullptr ? "" : text;
-  const std::string lower = engine::lowerCase(name);
-  DeviceProfile profile;
-  for (const auto& [begins, known] :
-       {std::pair{"omega", "omega.3"}, {"delta", "delta.3"}, {"falcon", "falcon"}, {"novint", "falcon"}})
-    if (lower.starts_with(begins)) profile = *knownProfile(known);
-  profile.name = name.empty() ? "Force Dimension device" : name;
+// SDK: x towards the person, y right, z up; 0 in the middle of the workspace. Desk: x right, y away, z up.
+glm::dvec3 fromSdk(const glm::dvec3& p) noexcept {
+  return {p.y, -p.x, p.z};
+}
+glm::dvec3 toSdk(const glm::dvec3& f) noexcept {
+  return {-f.y, f.x, f.z};
+}
+
+std::string sdkText(const char* words) {
+  return words == nullptr ? "" : words;
+}
+
+std::string lowerCase(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+// It has no absolute encoders: its pose is not known before it was moved through its whole range.
+bool isFalcon(const std::string& name) {
+  return lowerCase(name).find("falcon") != std::string::npos;
+}
+
+// A device without a row - sigma, lambda - has the limits of an unknown one: the library states none.
+DeviceProfile sdkProfile(const std::string& name) {
+  const std::string lower = lowerCase(name);
+  const char* const known = isFalcon(name)                             ? "falcon"
+                            : lower.find("omega") != std::string::npos ? "omega.3"
+                            : lower.find("delta") != std::string::npos ? "delta.3"
+                                                                       : "";
+  DeviceProfile profile = knownProfile(known).value_or(DeviceProfile{});
+  profile.name = name.empty() ? "Force Dimension" : name;
   profile.space = DeviceSpace::kDesk;
   profile.gives_force = true;
   return profile;
 }
 
-engine::Result<DeviceProfile> probedDhd(const Dhd& dhd, char index) {
-  const int id = dhd.dhdOpenID(index);
-  if (id < 0)
-    return engine::failure(fmt::format("Force Dimension's library opens no device: {}", lastError(dhd)),
-                           fmt::format("{}", int{index}),
-                           "close the program that uses it, or give the user rights to its USB device");
-  DeviceProfile profile = dhdProfile(dhd, static_cast<char>(id));
-  dhd.dhdClose(static_cast<char>(id));
-  return profile;
+class ForceDimensionCounterpart final : public Counterpart {
+ public:
+  ForceDimensionCounterpart(std::shared_ptr<const ForceDimension> library, int number, double max_force_n)
+      : library_(std::move(library)),
+        calls_(library_->calls),
+        id_(static_cast<char>(number)),
+        max_force_n_(max_force_n) {}
+
+  void serve(ExchangeSlots& slots) noexcept override;
+
+ private:
+  enum class Outcome : std::uint8_t { kGood, kFailed };
+  [[nodiscard]] Outcome sendForce(ExchangeSlots& slots) const noexcept;
+  [[nodiscard]] Outcome readPose(ExchangeSlots& slots) const noexcept;
+  void exchangeUntilGone(ExchangeSlots& slots) const noexcept;
+  void sendLastZero() const noexcept;
+
+  const std::shared_ptr<const ForceDimension> library_;
+  const DhdCalls& calls_;
+  const char id_;
+  const double max_force_n_;
+};
+
+ForceDimensionCounterpart::Outcome ForceDimensionCounterpart::sendForce(ExchangeSlots& slots) const noexcept {
+  const glm::dvec3 force = toSdk(slots.forceToSend());
+  const int result = calls_.set_force(force.x, force.y, force.z, id_);
+  if (result < 0) {
+    slots.notSent();
+    return Outcome::kFailed;
+  }
+  constexpr int kSkipped = 1;
+  if (result == kSkipped)
+    slots.deferred();
+  else
+    slots.sent();
+  return Outcome::kGood;
+}
+
+ForceDimensionCounterpart::Outcome ForceDimensionCounterpart::readPose(ExchangeSlots& slots) const noexcept {
+  glm::dvec3 position{NAN};
+  if (calls_.get_position(&position.x, &position.y, &position.z, id_) < 0) {
+    slots.badInput();
+    return Outcome::kFailed;
+  }
+  std::uint32_t buttons = 0;
+  for (int k = 0; k < 4; ++k)
+    if (calls_.get_button(k, id_) > 0) buttons |= 1U << static_cast<unsigned>(k);
+  slots.takeInput(1000.0 * fromSdk(position), buttons);
+  return Outcome::kGood;
+}
+
+void ForceDimensionCounterpart::exchangeUntilGone(ExchangeSlots& slots) const noexcept {
+  // A disturbed transfer fails once or twice; a device that was unplugged fails from then on.
+  constexpr int kFailuresOfAGoneDevice = 20;
+  constexpr std::int64_t kLongestPauseNs = 1'000'000;
+  int failures = 0;
+  while (!slots.stopping() && failures < kFailuresOfAGoneDevice) {
+    const std::int64_t start = engine::steadyNs();
+    const Outcome sent = sendForce(slots);
+    const Outcome read = readPose(slots);
+    failures = sent == Outcome::kGood && read == Outcome::kGood ? 0 : failures + 1;
+    // The person has moved a Falcon through its range.
+    if (slots.state() == LinkState::kUncalibrated && slots.takeCalibrationRequest())
+      slots.setState(LinkState::kConnected);
+    // With the loop's next force, or after a millisecond without one.
+    slots.waitForForce(start + kLongestPauseNs);
+  }
+}
+
+void ForceDimensionCounterpart::sendLastZero() const noexcept {
+  for (int i = 0; i < 20; ++i) {
+    const int result = calls_.set_force(0.0, 0.0, 0.0, id_);
+    if (result <= 0) break;  // 1: skipped, too soon after the last; each call waits for a part of a tick
+  }
+}
+
+void ForceDimensionCounterpart::serve(ExchangeSlots& slots) noexcept {
+  if (calls_.get_device_count() <= id_ || calls_.open_id(id_) < 0) return;
+  const char* const name = calls_.get_system_name(id_);
+  bool falcon = false;
+  try {
+    falcon = isFalcon(sdkText(name));
+  } catch (const std::exception&) {  // no memory for a name
+    calls_.close(id_);
+    return;
+  }
+  if (calls_.enable_force(1, id_) >= 0) {
+    slots.opened(falcon ? LinkState::kUncalibrated : LinkState::kConnected, max_force_n_);
+    exchangeUntilGone(slots);
+    sendLastZero();
+    calls_.enable_force(0, id_);
+  }
+  calls_.close(id_);
+}
+
+MadeDevice describeById(const DhdCalls& calls, int number) {
+  MadeDevice d;
+  d.argument = fmt::format("{}", number);
+  d.name = fmt::format("Force Dimension device {}", number);
+  d.profile = sdkProfile("");
+  const char id = static_cast<char>(number);
+  if (calls.open_id(id) < 0) {
+    d.problem = sdkText(calls.error_get_last_str());
+    if (d.problem.empty()) d.problem = "it cannot be opened";
+    d.remedy = "close the program that uses it, and allow this user the device's USB port (the SDK's manual)";
+    return d;
+  }
+  const std::string name = sdkText(calls.get_system_name(id));
+  calls.close(id);
+  if (!name.empty()) d.name = name;
+  d.profile = sdkProfile(name);
+  if (isFalcon(name)) d.remedy = "move it through its whole range by hand, then press c in a session";
+  return d;
 }
 
 }  // namespace
 
-engine::Result<std::vector<DeviceProfile>> ForceDimension::probe() {
-  const auto calls = dhd();
-  if (!calls) return tl::unexpected(calls.error());
-  std::vector<DeviceProfile> found;
-  const int count = (*calls)->dhdGetDeviceCount();
-  for (int i = 0; i < std::min(count, 16); ++i) {
-    auto profile = probedDhd(**calls, static_cast<char>(i));
-    if (!profile) return tl::unexpected(profile.error());
-    found.push_back(*std::move(profile));
+MadeDevices listForceDimension() {
+  const std::shared_ptr<const ForceDimension> sdk = forceDimension();
+  MadeDevices made;
+  made.problem = sdk->library.problem();
+  made.source = sdk->library.path();
+  if (!made.problem.empty()) {
+    made.remedy = sdk->library.remedy();
+    return made;
   }
-  return found;
+  const int count = std::min(sdk->calls.get_device_count(), 16);
+  for (int i = 0; i < count; ++i) made.devices.push_back(describeById(sdk->calls, i));
+  return made;
 }
 
-engine::Result<std::unique_ptr<Device>> ForceDimension::open(const std::string& index) {
-  const auto calls = dhd();
-  if (!calls) return tl::unexpected(calls.error());
+engine::Result<std::unique_ptr<Device>> openForceDimension(const std::string& which) {
+  std::shared_ptr<const ForceDimension> sdk = forceDimension();
+  if (!sdk->library.problem().empty())
+    return engine::inputError(sdk->library.problem(), "forcedimension", sdk->library.remedy());
   int number = 0;
-  if (!index.empty()) {
-    const auto [end, problem] = std::from_chars(index.data(), index.data() + index.size(), number);
-    if (problem != std::errc() || end != index.data() + index.size() || number < 0 || number > 15)
-      return engine::inputError("the library numbers devices 0 to 15", index,
-                                "give one that fettle devices shows, as forcedimension:0");
+  const char* const end = which.data() + which.size();
+  if (!which.empty()) {
+    const auto [after, error] = std::from_chars(which.data(), end, number);
+    if (error != std::errc{} || after != end || number < 0 || number > 15)
+      return engine::inputError("a Force Dimension device is named by its number, 0 to 15",
+                                "forcedimension:" + which, "see fettle devices");
   }
-  DeviceProfile unknown;
-  unknown.name = "Force Dimension device";
-  unknown.gives_force = true;
-  return std::make_unique<ForceDimension>(**calls, static_cast<char>(number),
-                                          probedDhd(**calls, static_cast<char>(number)).value_or(unknown));
-}
-
-ForceDimension::ForceDimension(const Dhd& dhd, char index, const DeviceProfile& profile)
-    : dhd_(dhd), index_(index), profile_(profile) {}
-
-ForceDimension::~ForceDimension() {
-  stop();
-}
-
-engine::Status ForceDimension::start() {
-  if (thread_.joinable()) return {};
-  stopping_.store(false, std::memory_order_relaxed);
-  try {
-    thread_ = std::thread([this] { run(); });
-  } catch (const std::system_error&) {
-    return engine::failure("no thread can be started for the device", "", "free memory or raise ulimit -u");
-  }
-  return {};
-}
-
-void ForceDimension::stop() noexcept {
-  stopping_.store(true, std::memory_order_relaxed);
-  stopped_.post();
-  if (thread_.joinable()) thread_.join();
-}
-
-void ForceDimension::run() noexcept {
-  becomeLinkThread("fettle-dhd");
-  const OwnZeros own_zeros;
-  while (!stopping_.load(std::memory_order_relaxed)) {
-    const int opened = dhd_.dhdOpenID(index_);
-    if (opened < 0) {
-      stopped_.waitFor(kDhdPlugWait);
-      continue;
-    }
-    const char id = static_cast<char>(opened);
-    dhd_.dhdEnableForce(1, id);
-    serve(id);
-    exchange_.setLink(LinkState::kDisconnected);
-    dhd_.dhdSetForce(0.0, 0.0, 0.0, id);
-    dhd_.dhdEnableForce(0, id);
-    dhd_.dhdClose(id);
-  }
-}
-
-bool ForceDimension::readPose(char id) noexcept {
-  std::array<double, 3> position{};
-  if (dhd_.dhdGetPosition(&position[0], &position[1], &position[2], id) < 0) return false;
-  std::uint32_t buttons = 0;
-  for (int i = 0; i < 2; ++i)
-    if (dhd_.dhdGetButton(i, id) == 1) buttons |= 1U << static_cast<unsigned>(i);
-  // Garbage is left out, as a report that did not come: the guard sees for how long.
-  if (exchange_.received(dhdToDesk(position), buttons, engine::steadyNs()))
-    exchange_.setLink(LinkState::kConnected);
-  return true;
-}
-
-void ForceDimension::serve(char id) noexcept {
-  int failures = 0;
-  while (!stopping_.load(std::memory_order_relaxed)) {
-    const bool read = readPose(id);
-    const glm::dvec3 force = deskToDhd(exchange_.force(engine::steadyNs()));
-    const bool accepted = dhd_.dhdSetForce(force.x, force.y, force.z, id) >= 0;
-    exchange_.sent(accepted);
-    failures = read && accepted ? 0 : failures + 1;
-    if (failures > 0) exchange_.fault();
-    if (failures >= kFailuresThatLose) return;
-    exchange_.waitForForce(kDhdTick);
-  }
+  const bool there = sdk->calls.get_device_count() > number;
+  DeviceProfile profile = there ? describeById(sdk->calls, number).profile : sdkProfile("");
+  const double max_force_n = profile.max_force_n;
+  return std::make_unique<LinkedDevice>(
+      std::move(profile), std::make_unique<ForceDimensionCounterpart>(std::move(sdk), number, max_force_n));
 }
 
 }  // namespace fettle::haptic

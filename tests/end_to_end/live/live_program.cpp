@@ -25,7 +25,11 @@ LiveProgram::LiveProgram(std::vector<std::string> arguments, const std::string& 
     if (pipe2(p->data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");
   const ProgramImage program(std::move(arguments), {{"FETTLE_FAKE_HID", hid_folder},
                                                     {"LD_LIBRARY_PATH", FETTLE_FAKE_HIDAPI_FOLDER},
-                                                    {"HOME", hid_folder}});  // no user's own configuration
+                                                    {"HOME", hid_folder},  // no user's own configuration
+                                                    // Nor makers' software of this machine.
+                                                    {"FETTLE_LIBHD", hid_folder + "/libHD.so"},
+                                                    {"FETTLE_LIBDHD", hid_folder + "/libdhd.so"},
+                                                    {"FETTLE_INVERSE3", "localhost:1"}});
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ == 0) {

@@ -1,433 +1,206 @@
-// The drivers of makers' libraries, threads and all, on replacements of these libraries that check each call. Nothing here asserts a time:
-// things are waited for, with a deadline far beyond any machine's load.
-#include <atomic>
+// Devices behind their makers' software: what leaves for one, and the messages of one, without any of it.
 #include <chrono>
-#include <cstdlib>
-#include <memory>
+#include <limits>
 #include <mutex>
-#include <string>
+#include <random>
 #include <thread>
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
-#include <glm/geometric.hpp>
 
-#include "haptic/devices/emergency_zero.h"
-#include "haptic/devices/enumerate.h"
-#include "haptic/devices/vendor/force_dimension.h"
-#include "haptic/devices/vendor/open_haptics.h"
-#include "tests/haptic/devices/fake_vendor/fake_dhd.h"
-#include "tests/haptic/devices/fake_vendor/fake_hd.h"
-#include "tests/support/eventually.h"
+#include <nlohmann/json.hpp>
+
+#include "engine/base/stopwatch.h"
+#include "haptic/devices/vendor/inverse3_codec.h"
+#include "haptic/devices/vendor/linked_device.h"
 
 namespace fettle::haptic {
 namespace {
 
-using namespace std::chrono_literals;
-using tests::eventually;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-template <class Fake>
-Fake& fakeOf(const char* file, const char* function) {
-  void* const library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-  const auto call = reinterpret_cast<Fake* (*)()>(dlsym(library, function));
-  return *call();
-}
-fake::FakeHd& hd() {
-  return fakeOf<fake::FakeHd>(FETTLE_FAKE_HD, "fake_hd");
-}
-fake::FakeDhd& dhdFake() {
-  return fakeOf<fake::FakeDhd>(FETTLE_FAKE_DHD, "fake_dhd");
+// One exchange: what would be sent now.
+glm::dvec3 sendsNow(ExchangeSlots& slots) {
+  const glm::dvec3 force = slots.forceToSend();
+  slots.sent();
+  return force;
 }
 
-// Both libraries as if they were loaded just now: the process keeps them from test to test.
-class VendorTest : public testing::Test {
- protected:
-  void SetUp() override {
-    setenv("FETTLE_LIBHD", FETTLE_FAKE_HD, 1);
-    setenv("FETTLE_LIBDHD", FETTLE_FAKE_DHD, 1);
-    fake::FakeHd& touch = hd();
-    touch.plugged = true;
-    touch.stalled = touch.garbage = touch.warm = false;
-    touch.buttons = 0;
-    touch.nominal_n = 3.3;
-    touch.low[1] = -60.0;
-    for (fake::Triple* t : {&touch.position, &touch.other_position, &touch.force}) t->set(0.0, 0.0, 0.0);
-    touch.rules.forget();
-    fake::FakeDhd& omega = dhdFake();
-    omega.count = 1;
-    omega.stalled = omega.garbage = omega.too_early = false;
-    for (auto& unit : omega.units) {
-      unit.position.set(0.0, 0.0, 0.0);
-      unit.force.set(0.0, 0.0, 0.0);
-      unit.buttons = 0;
-    }
-    omega.rules.forget();
+TEST(ExchangeSlots, AForceLeavesOnlyForADeviceThatIsConnectedAndCalibrated) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+  slots.opened(LinkState::kUncalibrated, 5.0);
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+  slots.setState(LinkState::kConnected);
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0, 0.0, 1.0));
+  slots.lost();
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+}
+
+TEST(ExchangeSlots, AForceIsNeverMoreThanTheDeviceStatesAndKeepsItsDirection) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 2.0);
+  slots.write({3.0, 0.0, 4.0});
+  const glm::dvec3 force = sendsNow(slots);
+  EXPECT_NEAR(force.x, 1.2, 1e-12);
+  EXPECT_NEAR(force.z, 1.6, 1e-12);
+  EXPECT_EQ(slots.counters().scaled_forces, 1U);
+  for (const double limit : {kNaN, -1.0, 0.0}) {
+    slots.opened(LinkState::kConnected, limit);
+    slots.write({3.0, 0.0, 4.0});
+    EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0)) << limit;
   }
-};
-using OpenHapticsTest = VendorTest;
-using ForceDimensionTest = VendorTest;
-using LibraryDevicesTest = VendorTest;
-using FakeLibrariesTest = VendorTest;
+  slots.opened(LinkState::kConnected, 2.0);
+  slots.write({kNaN, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+}
 
-// A loop on a thread of its own, some 1 kHz: reads, writes the force that was set, and notes what it saw.
-class Loop {
+TEST(ExchangeSlots, AForceThatIsNotRenewedIsReplacedByZero) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 5.0);
+  slots.write({0.0, 0.0, 1.0});
+  slots.waitForForce(engine::steadyNs());  // takes the wake-up of the write
+  slots.waitForForce(engine::steadyNs() + 11'000'000);
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+  EXPECT_EQ(slots.counters().forced_zeros, 1U);
+}
+
+TEST(ExchangeSlots, StoppingAndAFatalSignalSendZerosOnly) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 5.0);
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots).z, 1.0);
+  holdDevicesAtZero(HeldAtZero::kYes);
+  EXPECT_EQ(waitForHeldZeros(), 1);  // no exchange since: after 20 ms nothing more can be done
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+  EXPECT_EQ(waitForHeldZeros(), 0);
+  holdDevicesAtZero(HeldAtZero::kNo);
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots).z, 1.0);
+  slots.requestStop();
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0));
+  slots.lost();
+  EXPECT_EQ(waitForHeldZeros(), 0);
+}
+
+TEST(ExchangeSlots, PosesThatCannotBeAreLeftOut) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 5.0);
+  slots.takeInput({1.0, 2.0, 3.0}, 2);
+  for (const double wrong : {kNaN, std::numeric_limits<double>::infinity(), 1e30, -2001.0})
+    slots.takeInput({0.0, wrong, 0.0}, 1);
+  const DeviceInput input = slots.read();
+  EXPECT_EQ(input.position_mm, glm::dvec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(input.buttons, 2U);
+  EXPECT_EQ(input.sequence, 1U);
+  EXPECT_EQ(slots.counters().bad_inputs, 4U);
+}
+
+TEST(ExchangeSlots, ARunningExchangeIsSeenAsWaiting) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 5.0);
+  slots.write({0.0, 0.0, 1.0});
+  EXPECT_TRUE(slots.read().output_pending);
+  static_cast<void>(slots.forceToSend());
+  EXPECT_GT(slots.read().output_waits_ns, 0);
+  slots.sent();
+  EXPECT_EQ(slots.read().output_waits_ns, 0);
+  EXPECT_FALSE(slots.read().output_pending);
+}
+
+// A library call that does not return before it is let go.
+class Hanging final : public Counterpart {
  public:
-  explicit Loop(Device& device) : device_(device), thread_([this] { run(); }) {}
-  ~Loop() {
-    stop_ = true;
-    thread_.join();
-  }
-  void setForce(const glm::dvec3& f) {
-    const std::lock_guard lock(mutex_);
-    force_ = f;
-  }
-  void setWrites(bool writes) { writes_ = writes; }
-  [[nodiscard]] DeviceInput input() const {
-    const std::lock_guard lock(mutex_);
-    return input_;
+  explicit Hanging(std::shared_ptr<std::mutex> gate) : gate_(std::move(gate)) {}
+  void serve(ExchangeSlots& slots) noexcept override {
+    slots.opened(LinkState::kConnected, 5.0);
+    const std::lock_guard held(*gate_);
   }
 
  private:
-  void run() {
-    while (!stop_) {
-      glm::dvec3 force;
-      {
-        const std::lock_guard lock(mutex_);
-        force = force_;
-      }
-      const DeviceInput in = device_.read();
-      if (writes_) device_.write(force);
-      {
-        const std::lock_guard lock(mutex_);
-        input_ = in;
-      }
-      std::this_thread::sleep_for(1ms);  // the loop's period
-    }
-  }
-  Device& device_;
-  mutable std::mutex mutex_;
-  glm::dvec3 force_{0.0};
-  DeviceInput input_;
-  std::atomic<bool> writes_{true}, stop_{false};
-  std::thread thread_;
+  std::shared_ptr<std::mutex> gate_;
 };
 
-std::unique_ptr<Device> opened(const std::string& words) {
-  auto device = openDevice(words);
-  EXPECT_TRUE(device) << device.error().line();
-  return device ? *std::move(device) : nullptr;
+TEST(LinkedDevice, ACallThatHangsHoldsUpNobodyForLong) {
+  const auto gate = std::make_shared<std::mutex>();
+  std::unique_lock held(*gate);
+  LinkedDevice device(DeviceProfile{}, std::make_unique<Hanging>(gate), 50'000'000);
+  ASSERT_TRUE(device.start());
+  while (device.counters().connects == 0) std::this_thread::yield();
+  const engine::Stopwatch watch;
+  device.stop();
+  EXPECT_GE(watch.ms(), 50.0);
+  const engine::Status again = device.start();
+  ASSERT_FALSE(again);
+  EXPECT_NE(again.error().what.find("has not returned"), std::string::npos);
+  held.unlock();
+  engine::Status status = again;
+  while (!status) status = device.start();
+  device.stop();
 }
 
-bool near(const fake::Triple& got, double x, double y, double z) {
-  return std::abs(got.x - x) < 1e-9 && std::abs(got.y - y) < 1e-9 && std::abs(got.z - z) < 1e-9;
-}
-bool near(const glm::dvec3& a, const glm::dvec3& b) {
-  return glm::length(a - b) < 1e-9;
-}
-bool connected(const Loop& loop) {
-  return eventually([&] { return loop.input().link == LinkState::kConnected && loop.input().sequence > 0; });
+TEST(Inverse3Codec, TakesTheStateOfEachDeviceAndTheButtonsOfTheGrip) {
+  const auto message = decodeInverse3(
+      R"({"inverse3":[{"device_id":"A","status":{"calibrated":false},"state":{"cursor_position":{"x":0.1,"y":-2,"z":3e-1}}},
+                      {"device_id":"B","state":{}}],
+          "wireless_verse_grip":[{"device_id":"G","state":{"buttons":{"a":true,"b":false,"c":true}}}]})");
+  ASSERT_TRUE(message);
+  ASSERT_EQ(message->devices.size(), 2U);
+  EXPECT_EQ(message->devices[0].device_id, "A");
+  EXPECT_EQ(*message->devices[0].position_m, glm::dvec3(0.1, -2.0, 0.3));
+  EXPECT_FALSE(*message->devices[0].calibrated);
+  EXPECT_FALSE(message->devices[1].position_m);
+  EXPECT_FALSE(message->devices[1].calibrated);
+  EXPECT_EQ(message->buttons, 5U);
+  EXPECT_EQ(decodeInverse3(R"({"inverse3":[],"verse_grip":[{"state":{"button":true}}]})")->buttons, 1U);
 }
 
-std::string allRules(const fake::Rules& rules) {
-  std::string text;
-  for (const std::string& rule : rules.broken()) text += rule + "; ";
-  return text;
-}
-
-TEST_F(OpenHapticsTest, TurnsPosesAndForcesIntoTheFrameOfTheDesk) {
-  hd().position.set(11.0, 22.0, 33.0);
-  hd().low[1] = -40.0;  // the middle of the workspace is 10 mm above the library's zero
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  {
-    Loop loop(*device);
-    loop.setForce({0.5, 1.0, -0.25});  // right, away, down
-    ASSERT_TRUE(connected(loop));
-    EXPECT_TRUE(eventually([&] { return near(loop.input().position_mm, {11.0, -33.0, 12.0}); }));
-    EXPECT_TRUE(eventually([&] { return near(hd().force, 0.5, -0.25, -1.0); }));
-    hd().buttons = 3;
-    EXPECT_TRUE(eventually([&] { return loop.input().buttons == (kPrimaryButton | kSecondaryButton); }));
+TEST(Inverse3Codec, WhatIsNoMessageIsRefused) {
+  for (const char* wrong : {"", "{", "[]", "null", "1", R"({"inverse3":{}})", R"({"inverse3":[1]})",
+                            R"({"inverse3":[{"device_id":7}]})", R"({"inverse3":[{}]})", "\xff\xfe"})
+    EXPECT_FALSE(decodeInverse3(wrong)) << wrong;
+  for (const char* no_pose :
+       {R"({"x":1,"y":2})", R"({"x":"1","y":2,"z":3})", R"({"x":null,"y":2,"z":3})", R"([1,2,3])", "7"}) {
+    const auto message = decodeInverse3(R"({"inverse3":[{"device_id":"A","state":{"cursor_position":)" +
+                                        std::string(no_pose) + "}}]}");
+    ASSERT_TRUE(message) << no_pose;
+    EXPECT_FALSE(message->devices[0].position_m) << no_pose;
   }
-  device->stop();
-  EXPECT_TRUE(near(hd().force, 0.0, 0.0, 0.0)) << "an explicit zero at the end";
-  EXPECT_FALSE(hd().scheduler_runs);
-  EXPECT_EQ(hd().open_devices, 0);
-  EXPECT_EQ(allRules(hd().rules), "");
 }
 
-TEST_F(OpenHapticsTest, ItsLimitsAreTheTablesAndNeverMoreThanItStates) {
-  hd().nominal_n = 2.5;
-  const auto device = opened("openhaptics");
-  EXPECT_EQ(device->profile().name, "Touch");
-  EXPECT_EQ(device->profile().max_force_n, 2.5);
-  EXPECT_EQ(device->profile().max_stiffness_n_per_mm, 0.4);
-  EXPECT_EQ(device->profile().workspace_radius_mm, 35.0);
-  hd().nominal_n = 40.0;
-  EXPECT_EQ(opened("openhaptics")->profile().max_force_n, 3.3);
-  EXPECT_EQ(allRules(hd().rules), "");
-}
-
-TEST_F(OpenHapticsTest, AForceThatIsNotRenewedIsReplacedByZero) {
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); }));
-  loop.setWrites(false);
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 0.0, 0.0, 0.0); }));
-  EXPECT_TRUE(eventually([&] { return device->counters().forced_zeros > 0; }));
-  loop.setForce({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
-  loop.setWrites(true);
-  const unsigned long frames = hd().frames;
-  EXPECT_TRUE(eventually([&] { return hd().frames > frames + 20; }));
-  EXPECT_TRUE(near(hd().force, 0.0, 0.0, 0.0));
-  EXPECT_EQ(allRules(hd().rules), "");
-}
-
-TEST_F(OpenHapticsTest, UnpluggedItComesBackByItself) {
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(connected(loop));
-  hd().plugged = false;
-  EXPECT_TRUE(eventually([&] { return loop.input().link == LinkState::kDisconnected; }));
-  EXPECT_TRUE(eventually([&] { return hd().open_devices == 0; }));
-  EXPECT_EQ(loop.input().buttons, 0U);
-  hd().plugged = true;
-  EXPECT_TRUE(eventually([&] { return loop.input().link == LinkState::kConnected; }));
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); }));
-  EXPECT_EQ(device->counters().connects, 2U);
-  EXPECT_EQ(device->counters().disconnects, 1U);
-  EXPECT_EQ(allRules(hd().rules), "");
-}
-
-TEST_F(OpenHapticsTest, OneThatComesLaterHasTheLimitsOfAnUnknownDevice) {
-  hd().plugged = false;
-  const auto device = opened("openhaptics");
-  EXPECT_EQ(device->profile().max_force_n, DeviceProfile{}.max_force_n);
-  EXPECT_TRUE(device->profile().gives_force);
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  hd().plugged = true;
-  EXPECT_TRUE(connected(loop));
-}
-
-TEST_F(OpenHapticsTest, GarbageIsLeftOutAsIfItHadNotCome) {
-  hd().position.set(1.0, 2.0, 3.0);
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(connected(loop));
-  const glm::dvec3 before = loop.input().position_mm;
-  hd().garbage = true;
-  EXPECT_TRUE(eventually([&] { return device->counters().bad_inputs > 10; }));
-  const std::uint64_t sequence = loop.input().sequence;
-  EXPECT_TRUE(eventually([&] { return device->counters().bad_inputs > 30; }));
-  EXPECT_EQ(loop.input().sequence, sequence) << "the guard sees that nothing comes";
-  EXPECT_TRUE(near(loop.input().position_mm, before));
-  hd().garbage = false;
-  EXPECT_TRUE(eventually([&] { return loop.input().sequence > sequence; }));
-  EXPECT_EQ(allRules(hd().rules), "");
-}
-
-TEST_F(OpenHapticsTest, AServoThreadThatStandsIsSeenByTheLoop) {
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  {
-    Loop loop(*device);
-    loop.setForce({1.0, 0.0, 0.0});
-    ASSERT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); }));
-    hd().stalled = true;
-    EXPECT_TRUE(
-        eventually([&] { return loop.input().output_waits_ns > 50'000'000 && loop.input().output_pending; }));
-    EXPECT_EQ(loop.input().link, LinkState::kConnected);
-    hd().stalled = false;
-    EXPECT_TRUE(eventually([&] { return loop.input().output_waits_ns < 10'000'000; }));
-    hd().stalled = true;
+TEST(Inverse3Codec, BrokenMessagesAreRefusedOrReadAndNeverMore) {
+  const std::string whole =
+      R"({"inverse3":[{"device_id":"A","state":{"cursor_position":{"x":0.1,"y":0.2,"z":0.3}}}]})";
+  std::minstd_rand random(7);
+  for (int i = 0; i < 2000; ++i) {
+    std::string broken = whole;
+    for (int k = 0; k < 3; ++k) broken[random() % broken.size()] = static_cast<char>(random() % 256);
+    broken.resize(1 + random() % broken.size());
+    if (const auto message = decodeInverse3(broken))
+      for (const Inverse3State& state : message->devices)
+        if (state.position_m) {
+          EXPECT_TRUE(std::isfinite(state.position_m->x));
+        }
   }
-  device->stop();  // it does not wait for a thread that stands
-  EXPECT_EQ(hd().open_devices, 0);
-  EXPECT_EQ(allRules(hd().rules), "");
 }
 
-TEST_F(OpenHapticsTest, MotorsThatAreTooWarmRest) {
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  hd().warm = true;
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return device->counters().faults > 0; }));
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 0.0, 0.0, 0.0); }));
-  hd().warm = false;
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); })) << "and give force again";
-  EXPECT_EQ(device->counters().disconnects, 0U);
-}
-
-TEST_F(OpenHapticsTest, OfTwoTheNamedOneIsOpened) {
-  hd().position.set(1.0, 1.0, 1.0);
-  hd().other_position.set(7.0, 8.0, 9.0);
-  const auto device = opened("openhaptics:right");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  ASSERT_TRUE(connected(loop));
-  EXPECT_TRUE(near(loop.input().position_mm, {7.0, -9.0, 8.0}));
-}
-
-TEST_F(OpenHapticsTest, WhatIsHeldAtZeroGivesZero) {
-  const auto device = opened("openhaptics");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); }));
-  EXPECT_TRUE(OwnZeros::any()) << "the program's end waits for its thread";
-  holdDevicesAtZero(HeldAtZero::kYes);
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 0.0, 0.0, 0.0); }));
-  holdDevicesAtZero(HeldAtZero::kNo);
-  EXPECT_TRUE(eventually([&] { return near(hd().force, 1.0, 0.0, 0.0); }));
-}
-
-TEST_F(ForceDimensionTest, TurnsPosesAndForcesIntoTheFrameOfTheDesk) {
-  dhdFake().units[0].position.set(0.011, 0.022, 0.033);  // towards the user, right, up
-  const auto device = opened("forcedimension");
-  EXPECT_EQ(device->profile().name, "omega.3");
-  EXPECT_EQ(device->profile().max_force_n, 12.0);
-  ASSERT_TRUE(device->start());
-  {
-    Loop loop(*device);
-    loop.setForce({0.5, 1.0, -0.25});  // right, away, down
-    ASSERT_TRUE(connected(loop));
-    EXPECT_TRUE(eventually([&] { return near(loop.input().position_mm, {22.0, -11.0, 33.0}); }));
-    EXPECT_TRUE(eventually([&] { return near(dhdFake().units[0].force, -1.0, 0.5, -0.25); }));
-    dhdFake().units[0].buttons = 2;
-    EXPECT_TRUE(eventually([&] { return loop.input().buttons == kSecondaryButton; }));
-  }
-  device->stop();
-  EXPECT_TRUE(near(dhdFake().units[0].force, 0.0, 0.0, 0.0)) << "an explicit zero at the end";
-  EXPECT_FALSE(dhdFake().units[0].open);
-  EXPECT_EQ(allRules(dhdFake().rules), "");
-}
-
-TEST_F(ForceDimensionTest, AForceThatIsNotRenewedIsReplacedByZero) {
-  const auto device = opened("forcedimension");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return near(dhdFake().units[0].force, 0.0, 1.0, 0.0); }));
-  loop.setWrites(false);
-  EXPECT_TRUE(eventually([&] { return near(dhdFake().units[0].force, 0.0, 0.0, 0.0); }));
-  EXPECT_EQ(allRules(dhdFake().rules), "");
-}
-
-TEST_F(ForceDimensionTest, UnpluggedItComesBackByItself) {
-  const auto device = opened("forcedimension");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(connected(loop));
-  dhdFake().count = 0;
-  EXPECT_TRUE(eventually([&] { return loop.input().link == LinkState::kDisconnected; }));
-  EXPECT_TRUE(eventually([&] { return !dhdFake().units[0].open; }));
-  dhdFake().count = 1;
-  EXPECT_TRUE(eventually([&] { return loop.input().link == LinkState::kConnected; }));
-  EXPECT_EQ(device->counters().connects, 2U);
-  EXPECT_EQ(allRules(dhdFake().rules), "");
-}
-
-TEST_F(ForceDimensionTest, GarbageIsLeftOutAsIfItHadNotCome) {
-  const auto device = opened("forcedimension");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return near(dhdFake().units[0].force, 0.0, 1.0, 0.0); }));
-  dhdFake().garbage = true;
-  EXPECT_TRUE(eventually([&] { return device->counters().bad_inputs > 10; }));
-  const std::uint64_t sequence = loop.input().sequence;
-  EXPECT_TRUE(eventually([&] { return device->counters().bad_inputs > 30; }));
-  EXPECT_EQ(loop.input().sequence, sequence) << "the guard sees that nothing comes";
-  EXPECT_EQ(loop.input().link, LinkState::kConnected) << "calls that answer are no unplugging";
-  dhdFake().garbage = false;
-  EXPECT_TRUE(eventually([&] { return loop.input().sequence > sequence; }));
-  EXPECT_EQ(allRules(dhdFake().rules), "");
-}
-
-TEST_F(ForceDimensionTest, ACallThatBlocksIsSeenByTheLoopAndHoldsNothingUp) {
-  const auto device = opened("forcedimension");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  loop.setForce({1.0, 0.0, 0.0});
-  ASSERT_TRUE(eventually([&] { return near(dhdFake().units[0].force, 0.0, 1.0, 0.0); }));
-  dhdFake().stalled = true;
-  EXPECT_TRUE(eventually([&] { return loop.input().output_waits_ns > 50'000'000; }));
-  dhdFake().stalled = false;
-  EXPECT_TRUE(eventually([&] { return loop.input().output_waits_ns < 10'000'000; }));
-  dhdFake().too_early = true;  // the library skips forces: no error
-  const unsigned long exchanges = dhdFake().exchanges;
-  EXPECT_TRUE(eventually([&] { return dhdFake().exchanges > exchanges + 50; }));
-  EXPECT_EQ(loop.input().link, LinkState::kConnected);
-  EXPECT_EQ(allRules(dhdFake().rules), "");
-}
-
-TEST_F(ForceDimensionTest, OfTwoTheNumberedOneIsOpened) {
-  dhdFake().count = 2;
-  dhdFake().units[1].position.set(0.001, 0.002, 0.003);
-  const auto device = opened("forcedimension:1");
-  ASSERT_TRUE(device->start());
-  Loop loop(*device);
-  ASSERT_TRUE(connected(loop));
-  EXPECT_TRUE(near(loop.input().position_mm, {2.0, -1.0, 3.0}));
-  EXPECT_FALSE(dhdFake().units[0].open);
-  EXPECT_FALSE(openDevice("forcedimension:left"));
-}
-
-TEST_F(LibraryDevicesTest, AreListedWithWhatTheirLibrariesAnswer) {
-  dhdFake().count = 2;
-  hd().plugged = false;
-  const auto rows = listLibraryDevices();
-  ASSERT_EQ(rows.size(), 3U);
-  EXPECT_EQ(rows[0].words, "openhaptics");
-  EXPECT_EQ(rows[0].state, "not connected");
-  EXPECT_NE(rows[0].remedy.find("0x0302"), std::string::npos) << rows[0].remedy;
-  EXPECT_EQ(rows[1].words, "forcedimension:0");
-  EXPECT_EQ(rows[2].words, "forcedimension:1");
-  EXPECT_EQ(rows[2].state, "ready");
-  EXPECT_EQ(rows[2].profile.workspace_radius_mm, 75.0);
-  EXPECT_EQ(allRules(hd().rules) + allRules(dhdFake().rules), "");
-}
-
-// The replacements notice what is against the rules: each of these calls is.
-TEST_F(FakeLibrariesTest, NoticeWhatIsAgainstTheRules) {
-  const Hdapi& calls = **hdapi();
-  const double strong[3] = {40.0, 0.0, 0.0};
-  calls.hdStartScheduler();
-  calls.hdSetDoublev(Hdapi::kForce, strong);
-  calls.hdEndFrame(0);
-  calls.hdStopScheduler();
-  calls.hdStopScheduler();
-  calls.hdDisableDevice(0);
-  calls.hdUnschedule(5);
-  const std::string said = allRules(hd().rules);
-  for (const char* rule :
-       {"a device is open before the scheduler starts", "a force is set within a frame",
-        "force is switched on before one is set", "a force is within what the device states",
-        "the frame that is ended was begun", "the scheduler that is stopped runs", "what is closed is open",
-        "by the number it was given"})
-    EXPECT_NE(said.find(rule), std::string::npos) << rule;
-  const Dhd& other = **dhd();
-  other.dhdSetForce(0.0, 40.0, 0.0, 0);
-  other.dhdOpenID(0);
-  other.dhdOpenID(0);
-  other.dhdSetForce(0.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 0);
-  other.dhdSetForce(0.0, 1.0, 0.0, 0);
-  other.dhdClose(0);
-  other.dhdClose(0);
-  const std::string heard = allRules(dhdFake().rules);
-  for (const char* rule : {"a device is open before it is used", "a device is opened once",
-                           "force is switched on before one is set", "a force is finite",
-                           "a force is within what the device gives",
-                           "the last force before a device is closed is zero", "what is closed is open"})
-    EXPECT_NE(heard.find(rule), std::string::npos) << rule;
+TEST(Inverse3Codec, AForceIsSentAsDocumented) {
+  const auto sent = nlohmann::json::parse(encodeInverse3("A\"7", {0.5, -1.0, 2.0}));
+  EXPECT_EQ(
+      sent,
+      nlohmann::json::parse(
+          R"({"inverse3":[{"device_id":"A\"7","commands":{"set_cursor_force":{"values":{"x":0.5,"y":-1,"z":2}}}}]})"));
 }
 
 }  // namespace

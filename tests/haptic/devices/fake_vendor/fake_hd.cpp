@@ -222,6 +222,7 @@ void hdEndFrame(unsigned device) {
 void hdEnable(unsigned capability) {
   Library& l = library();
   l.control.rules.check(l.isOpen(l.current), "a device is open before force is switched on");
+  if (capability == 0x4001) return;  // clamps forces: the rules are about what arrives
   if (capability != 0x4000) return l.fail(kInvalidEnum);
   if (l.isOpen(l.current)) l.force_enabled[l.current] = true;
 }
