@@ -26,6 +26,8 @@ struct HdError {
 };
 using Callback = unsigned (*)(void*);
 
+thread_local bool is_servo = false;
+
 struct Library {
   FakeHd control;
   std::mutex mutex;
@@ -72,10 +74,11 @@ struct Library {
     const std::lock_guard lock(mutex);
     errors.push_back({code, 0, current});
   }
-  [[nodiscard]] bool onServo() const { return in_callback && std::this_thread::get_id() == servo.get_id(); }
+  [[nodiscard]] bool onServo() const { return is_servo && in_callback; }
   [[nodiscard]] bool isOpen(unsigned device) const { return device < 2 && open[device]; }
 
   void serve() {
+    is_servo = true;
     auto next = std::chrono::steady_clock::now();
     std::unique_lock lock(mutex);
     while (running) {
