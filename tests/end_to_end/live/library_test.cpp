@@ -9,7 +9,6 @@
 
 #include "tests/end_to_end/live/session.h"
 #include "tests/haptic/devices/fake_vendor/shared_page.h"
-#include "tests/support/process.h"
 
 namespace fettle::tests {
 namespace {
@@ -41,9 +40,7 @@ class LibraryDevice : public testing::TestWithParam<Maker> {
   // The program armed, and the hand pressing into the surface.
   void press() {
     const std::string scan = folder_.file("flat.tif");
-    ASSERT_EQ(
-        runProcess({FETTLE_PROGRAM, "synth", scan, "--part", "plate", "--size", "201x201", "--quiet"}).status,
-        0);
+    ASSERT_NO_FATAL_FAILURE(writePlate(scan));
     program_ = std::make_unique<LiveProgram>(
         std::vector<std::string>{"record", scan, folder_.file("s.csv"), folder_.file("o.tif"), "--device",
                                  GetParam().word, "--keys", "--json"},

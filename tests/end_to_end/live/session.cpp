@@ -19,6 +19,8 @@ constexpr int kSide = 201;
 constexpr double kSpacing_mm = 0.5;
 const glm::dvec3 kAbove{0.0, 0.0, 6.0};
 
+}  // namespace
+
 void writePlate(const std::string& path) {
   engine::Grid grid;
   grid.width = grid.height = kSide;
@@ -30,8 +32,6 @@ void writePlate(const std::string& path) {
   engine::JobControl job;
   ASSERT_TRUE(engine::exportField(engine::makeField(grid, heights), path, {}, job));
 }
-
-}  // namespace
 
 bool eventually(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + 30s;

@@ -62,6 +62,9 @@ inline constexpr double kSlew_n_per_ms = 1.0;
 /// No report on stderr of a sanitizer, whichever was built in.
 void expectNoSanitizerReport(const LiveProgram& program);
 
+/// A rough plate of 100 x 100 mm at height 0, as a TIFF.
+void writePlate(const std::string& path);
+
 [[nodiscard]] bool eventually(const std::function<bool()>& holds);
 
 inline std::string firmwareName(Firmware firmware) {
