@@ -58,7 +58,7 @@ std::string textOf(const std::string& pdf) {
   return runProcess({"pdftotext", "-layout", pdf, "-"}).out;
 }
 
-// GDAL is loaded by the first file that needs it, and what pages are drawn with by the first page: with theirs they are 130 libraries, which
+// GDAL is loaded by the first file that needs it, and what pages are drawn with by the first page: with theirs they are over a hundred libraries, which
 // were most of what the program did at its start.
 TEST(Libraries, AreLoadedByWhatNeedsThem) {
   const TempFolder folder;
