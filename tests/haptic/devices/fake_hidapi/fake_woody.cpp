@@ -150,7 +150,9 @@ void FakeWoody::run() {
   Clock::time_point next = Clock::now();
   while (!stop_) {
     const auto out = stalled_ ? FakeHid::Out::kStalled : FakeHid::Out::kTaken;
-    hid_.serve(Clock::now() < next ? 1 : 0, out, [this](auto report) { output(report); });
+    // Without a plug there is no next report to be in time for: at this priority a thread that does not sleep takes its
+    // processor from the loop that may be pinned to it.
+    hid_.serve(hid_.plugged() && Clock::now() >= next ? 0 : 1, out, [this](auto report) { output(report); });
     const Clock::time_point now = Clock::now();
     const std::lock_guard lock(mutex_);
     if (want_plugged_ != hid_.plugged()) {
