@@ -43,13 +43,24 @@ inline void quit(Parts& p) {
   if (!p.document.unsaved())
     p.quit = Quit::kDone;
   else if (p.settings.ask_before_quitting)
-    p.feedback.questions.ask({.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kQuit, ""}});
+    p.feedback.questions.ask(
+        {.kind = Question::Kind::kUnsaved, .afterwards = {.what = Afterwards::What::kQuit}});
   else
     p.quit = Quit::kKeepWork;  // nothing is lost: it is restored when the scan is opened again
 }
 
 inline void openScan(Parts& p) {
   ask(p, Question::Kind::kOpen, p.document.path());
+}
+// Anew from its file; a session keeps what its steps were made on.
+inline void readAs(Parts& p) {
+  if (isSessionPath(p.document.path()))
+    p.feedback.message(
+        "the steps of a session were made on its scan as it was read",
+        "open the scan itself to read it in another way; `fettle recipe` takes filters and forms along");
+  else
+    p.feedback.questions.ask(
+        {.kind = Question::Kind::kImport, .path = p.document.path(), .reading = p.reading});
 }
 inline void save(Parts& p) {
   p.saving.save(p.document, p.feedback, {});

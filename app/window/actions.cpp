@@ -30,6 +30,8 @@ constexpr ActionRow toolRow(Key key) {
 constexpr ActionRow kRows[] = {
     ActionRow{Action::kOpen, "File", "Open a scan", letter('O'), kControl, kNoKey, kFirst, kNothing,
               openScan},
+    ActionRow{Action::kReadAs, "File", "Read this scan with another unit, spacing or scale", letter('O'),
+              kControlShift, kNoKey, kFirst, kField, readAs},
     ActionRow{Action::kSave, "File", "Save", letter('S'), kControl, kNoKey, kSecond, kField, save},
     ActionRow{Action::kSaveAs, "File", "Save as", letter('S'), kControlShift, kNoKey, kSecond, kField,
               saveAs},

@@ -17,6 +17,7 @@ struct Parts;
 /// an entry here, a row there, and its function.
 enum class Action : std::uint8_t {
   kOpen,
+  kReadAs,
   kSave,
   kSaveAs,
   kExport,

@@ -10,6 +10,7 @@
 #include "app/window/change_figures.h"
 #include "app/window/colour_range.h"
 #include "app/window/drags.h"
+#include "app/window/files.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
 #include "app/window/overlays.h"
@@ -45,6 +46,9 @@ struct Parts {
   Settings settings;
   RecentFiles recent;
   Feedback feedback;
+  Files files;
+  ScanOptions usual_reading;  ///< as the command line says, of every scan that nothing else was said of
+  ScanOptions reading;        ///< of the open scan
 
   ActiveDocument document;
   Opening opening;

@@ -26,6 +26,7 @@ struct KindInfo {
 
 constexpr std::array kKinds{
     KindInfo{Kind::kOpen, "open", "Open a scan", "", true, false, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kImport, "import", "Read a scan as", "", true, false, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kCompare, "compare", "Compare with a scan", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kSaveAs, "save as", "Save as", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kExport, "export", "Export", "", true, true, ImGuiWindowFlags_NoResize},

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/work/loop_client.h"
+#include "app/work/scan_reading.h"
 #include "render/window/window.h"
 
 namespace fettle::app {
@@ -16,13 +17,16 @@ namespace fettle::app {
 struct Afterwards {
   enum class What : std::uint8_t { kNothing, kQuit, kOpen };
   What what = What::kNothing;
-  std::string path;  ///< kOpen
+  std::string path = {};  ///< kOpen
+  std::optional<ScanOptions> reading =
+      {};  ///< kOpen: how it is to be read; nothing: as every scan of this run
 };
 
 /// A dialog that the user answers, or reads, before anything else, with all its data.
 struct Question {
   enum class Kind : std::uint8_t {
     kOpen,
+    kImport,
     kCompare,
     kSaveAs,
     kExport,
@@ -34,12 +38,13 @@ struct Question {
   };
   Kind kind = Kind::kMessage;
   std::string path =
-      {};  ///< kOpen, kCompare, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kRecover: of the scan
-  Afterwards afterwards = {};  ///< kSaveAs, kUnsaved, kReplace
-  bool stop_asking = false;    ///< kUnsaved: ticked so far
-  Notice said = {};            ///< kMessage
-  Kind from = Kind::kSaveAs;   ///< kReplace: the dialog of the path, kSaveAs or kExport
-  bool typed = false;          ///< kReplace: the path came from a dialog, to which the user can go back
+      {};  ///< kOpen, kCompare, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
+  Afterwards afterwards = {};               ///< kSaveAs, kUnsaved, kReplace
+  std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
+  bool stop_asking = false;                 ///< kUnsaved: ticked so far
+  Notice said = {};                         ///< kMessage
+  Kind from = Kind::kSaveAs;                ///< kReplace: the dialog of the path, kSaveAs or kExport
+  bool typed = false;  ///< kReplace: the path came from a dialog, to which the user can go back
   std::vector<std::string> replaced = {};  ///< kReplace: a sentence for each file to be replaced
 };
 

@@ -213,7 +213,7 @@ bool isSettled(const Parts& p, const Input& input) {
       !questions.pending()
           ? isActive(p, input) || (p.document.isOpen() && p.picture.refining())
           : p.held() || p.picture.figures().upload.pending_tiles > 0 || questions.frames() < kInPlace;
-  return !moves && input.empty() && !p.opening.busy() && !p.saving.busy(p.document) &&
+  return !moves && input.empty() && !p.opening.busy() && !p.files.busy() && !p.saving.busy(p.document) &&
          (!p.document.isOpen() || fieldIsSettled(p));
 }
 

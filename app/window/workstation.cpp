@@ -32,10 +32,10 @@ std::string settingsPath(const char* file) {
 
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
-  return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
-         p.filters.computing() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
-         p.section.busy() || p.heights.busy() || p.colours.busy() || p.compare.busy() || p.transform.busy() ||
-         (p.document.isOpen() && p.picture.refining());
+  return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
+         p.saving.busy(p.document) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
+         p.measure.busy() || p.section.busy() || p.heights.busy() || p.colours.busy() || p.compare.busy() ||
+         p.transform.busy() || (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace
@@ -45,6 +45,7 @@ Workstation::Workstation(const ViewOptions& options, std::unique_ptr<render::Win
       window_(std::move(window)),
       parts_(*window_, Settings::load(settingsPath("/window.json"))),
       saved_settings_(parts_.settings) {
+  parts_.usual_reading = options_.reading;
   window_->setWhileWaiting([this] { whileWaiting(); });
 }
 
@@ -64,7 +65,7 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
     if (!events) return tl::unexpected(events.error());
     station->events_ = *std::move(events);
   }
-  if (!options.scan.empty()) station->open(options.scan);
+  if (!options.scan.empty()) station->open(options.scan, std::nullopt);
   return station;
 }
 
@@ -142,6 +143,13 @@ void Workstation::releaseHandsWhenAsked() {
 
 void Workstation::takeResults() {
   Parts& p = parts_;
+  if (p.files.poll()) p.picture.requestRedraw();
+  if (const auto sample = p.files.takeSample()) {
+    if (*sample)
+      askToOpen(**sample);
+    else
+      p.feedback.note(sample->error());
+  }
   if (p.opening.takeCoarse(p.document.isOpen())) p.picture.requestRedraw();
   takeOpened();
   if (!end_) return;
@@ -241,6 +249,7 @@ void Workstation::saveSettings() {
 
 void Workstation::carryOut(PanelRequests requests) {
   if (requests.open) askToOpen(*requests.open);
+  if (requests.sample) parts_.files.makeSample();
   if (requests.rate_hz) setRate(*requests.rate_hz);
   if (requests.answer) carryOut(*std::move(requests.answer));
 }
@@ -261,7 +270,14 @@ void Workstation::carryOut(Answer answer) {
   }
   switch (question.kind) {
     case Kind::kOpen:
-      askToOpen(question.path);
+      if (confirmed)
+        askToOpen(question.path);
+      else
+        p.feedback.questions.ask(
+            {.kind = Kind::kImport, .path = std::move(question.path), .reading = options_.reading});
+      break;
+    case Kind::kImport:
+      askToOpen(question.path, std::move(question.reading));
       break;
     case Kind::kCompare:
       p.compare.compareWith(*p.document.client(), question.path, options_.reading);
@@ -283,7 +299,7 @@ void Workstation::carryOut(Answer answer) {
                      p.document, p.feedback);
       break;
     case Kind::kRecover:
-      load(question.path, confirmed ? Recovery::kTake : Recovery::kLeave);
+      load(question.path, confirmed ? Recovery::kTake : Recovery::kLeave, question.reading);
       break;
     case Kind::kShortcuts:
     case Kind::kMessage:
@@ -291,34 +307,35 @@ void Workstation::carryOut(Answer answer) {
   }
 }
 
-void Workstation::askToOpen(const std::string& path) {
+void Workstation::askToOpen(const std::string& path, std::optional<ScanOptions> reading) {
   if (parts_.document.unsaved())
-    parts_.feedback.questions.ask(
-        {.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kOpen, path}});
+    parts_.feedback.questions.ask({.kind = Question::Kind::kUnsaved,
+                                   .afterwards = {Afterwards::What::kOpen, path, std::move(reading)}});
   else
-    open(path);
+    open(path, reading);
 }
 
 // Continues with what waited for an answer, or for saving.
 void Workstation::resumeAfterSave(const Afterwards& afterwards) {
   if (afterwards.what == Afterwards::What::kQuit) parts_.quit = Quit::kDone;
-  if (afterwards.what == Afterwards::What::kOpen) open(afterwards.path);
+  if (afterwards.what == Afterwards::What::kOpen) open(afterwards.path, afterwards.reading);
 }
 
-void Workstation::open(const std::string& path) {
+void Workstation::open(const std::string& path, const std::optional<ScanOptions>& reading) {
   std::error_code error;
   const std::string recovery = isSessionPath(path) ? std::string() : recoveryPath(path);
   const SessionKeeper* const keeper = parts_.document.keeper();
   const bool own = keeper != nullptr && keeper->path() == recovery;
   if (!recovery.empty() && !own && std::filesystem::exists(recovery, error))
-    parts_.feedback.questions.ask({.kind = Question::Kind::kRecover, .path = path});
+    parts_.feedback.questions.ask({.kind = Question::Kind::kRecover, .path = path, .reading = reading});
   else
-    load(path, Recovery::kLeave);
+    load(path, Recovery::kLeave, reading);
 }
 
-void Workstation::load(const std::string& path, Recovery recovery) {
+void Workstation::load(const std::string& path, Recovery recovery,
+                       const std::optional<ScanOptions>& reading) {
   parts_.dropCoarse();
-  parts_.opening.start(path, recovery, options_.reading, parts_.document.isOpen());
+  parts_.opening.start(path, recovery, reading.value_or(options_.reading), parts_.document.isOpen());
 }
 
 void Workstation::takeOpened() {
@@ -356,6 +373,7 @@ void Workstation::startDocument(Document document) {
   const bool looked_at = p.opening.coarse() != nullptr;
   p.dropCoarse();  // the coarse picture stays until the scan is read
   p.opening.noteTouched();
+  p.reading = scanOptionsOf(document.scan.import);
   p.saving.begin(grid.samples());
   p.change.begin(client.original());
   form_ = client.field().formOver();

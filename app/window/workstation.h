@@ -56,9 +56,10 @@ class Workstation {
   void noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns, bool announces);
 
   // Documents.
-  void askToOpen(const std::string& path);
-  void open(const std::string& path);
-  void load(const std::string& path, Recovery recovery);
+  /// `reading`: nothing: as every scan of this run.
+  void askToOpen(const std::string& path, std::optional<ScanOptions> reading = std::nullopt);
+  void open(const std::string& path, const std::optional<ScanOptions>& reading);
+  void load(const std::string& path, Recovery recovery, const std::optional<ScanOptions>& reading);
   void takeOpened();
   void startDocument(Document document);
   void restoreSections(const Document& document);

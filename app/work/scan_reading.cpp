@@ -5,6 +5,20 @@
 
 namespace fettle::app {
 
+ScanOptions scanOptionsOf(const engine::ImportOptions& import) {
+  ScanOptions options;
+  options.no_data = import.no_data;
+  if (import.spacing) options.spacing = {import.spacing->first, import.spacing->second};
+  options.z_scale = import.z_scale;
+  if (import.unit) options.unit = import.unit->name;
+  options.cell_size = import.cell_size;
+  if (import.cell_rule == engine::CellRule::kMean) options.cell_rule = "mean";
+  if (import.cell_rule == engine::CellRule::kHighest) options.cell_rule = "highest";
+  if (const auto& camera = import.depth_camera)
+    options.depth_camera = {camera->fx, camera->fy, camera->cx, camera->cy};
+  return options;
+}
+
 std::string scanOptionsText(const ScanOptions& options) {
   std::string text;
   if (options.no_data) text += fmt::format(" --no-data {}", *options.no_data);

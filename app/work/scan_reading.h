@@ -21,6 +21,9 @@ struct ScanOptions {
   std::string from;                  ///< format of standard input as extension; empty = by its content
 };
 
+/// Those that give `import`; `from` is empty.
+[[nodiscard]] ScanOptions scanOptionsOf(const engine::ImportOptions& import);
+
 /// The options as typed, each preceded by a blank; empty without any.
 [[nodiscard]] std::string scanOptionsText(const ScanOptions& options);
 

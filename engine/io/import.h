@@ -60,6 +60,13 @@ struct GriddingReport {
   bool lattice = false;             ///< the points lay on a raster (with gaps), whose spacing was used
 };
 
+/// A height that looks like an undeclared hole.
+struct LoneValue {
+  float height = 0.0F;  ///< as read
+  float number = 0.0F;  ///< as stored, in the form of ImportOptions::no_data
+  friend bool operator==(const LoneValue&, const LoneValue&) = default;
+};
+
 struct Imported {
   /// Of a session with a form over its field what is seen (Version::seenOf).
   Version field;
@@ -71,8 +78,8 @@ struct Imported {
   std::string format;         ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only
-  /// Heights that look like undeclared holes (lone_value.h); `warnings` name each.
-  std::vector<float> lone_values;
+  /// lone_value.h; `warnings` name each.
+  std::vector<LoneValue> lone_values;
   /// Columns and rows are rays of a camera and heights distances from it: a plane is bent.
   bool in_perspective = false;
 };

@@ -306,8 +306,8 @@ std::vector<Suspect> suspectsOf(const Version& field, const HeightRule& rule) {
 
 }  // namespace
 
-std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
-                                   std::vector<std::string>& warnings) {
+std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& rule,
+                                       std::vector<std::string>& warnings) {
   std::vector<Suspect> suspects = suspectsOf(field, rule);
   if (suspects.empty()) return {};
   Tally tally;
@@ -320,7 +320,7 @@ std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
         suspects.push_back({end, kWrittenForHoles, 0.0, true});
     if (suspects.size() == known) break;
   }
-  std::vector<float> lone;
+  std::vector<LoneValue> lone;
   for (const Suspect& one : suspects) {
     if (!isLone(one, tally, rule)) continue;
     const float stored = storedNumber(one.value, rule);
@@ -333,7 +333,7 @@ std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
             : fmt::format(" too, convert with the other number and read the result with --no-data {}, "
                           "which accepts one at a time",
                           stored)));
-    lone.push_back(one.value);
+    lone.push_back({one.value, stored});
   }
   return lone;
 }

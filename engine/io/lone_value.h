@@ -5,6 +5,7 @@
 
 #include "engine/field/version.h"
 #include "engine/io/height_rule.h"
+#include "engine/io/import.h"
 
 namespace fettle::engine {
 
@@ -33,7 +34,7 @@ namespace fettle::engine {
 /// --no-data. Where the user gave a number, only the first criterion is checked. Cost: a lattice of at most
 /// 256 x 256 samples, and passes over the field when that finds something, mostly one. Deterministic. Thread:
 /// any.
-std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
-                                   std::vector<std::string>& warnings);
+std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& rule,
+                                       std::vector<std::string>& warnings);
 
 }  // namespace fettle::engine

@@ -21,7 +21,8 @@ constexpr double kRoundTheGlobe = 361.0;  // degrees, and a sample's width for r
 constexpr double kPoleToPole = 181.0;
 
 bool isLoneValue(const Imported& imported, float z) {
-  return std::find(imported.lone_values.begin(), imported.lone_values.end(), z) != imported.lone_values.end();
+  const std::vector<LoneValue>& lone = imported.lone_values;
+  return std::any_of(lone.begin(), lone.end(), [&](const LoneValue& value) { return value.height == z; });
 }
 
 double spanMm(const Imported& imported) {

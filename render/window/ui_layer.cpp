@@ -138,27 +138,35 @@ void UiLayer::fit(vk::Extent2D extent) {
   framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
-// Sets all keys pressed since the last frame as held at this frame's beginning; returns those to be released
-// afterwards.
+// Sets all keys pressed since the last frame as held at this frame's beginning; returns those whose state is to be read
+// again afterwards. ImGui sees a press only where the key was up in the frame before: a second press of a key that it saw
+// held waits for the next frame, and the key is up in this one.
 std::vector<int> UiLayer::holdShortPresses() {
   ImGuiIO& io = ImGui::GetIO();
-  std::vector<int> brief;
+  std::vector<int> changed;
   const auto held = [&](int a, int b) {
     return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS;
   };
   io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
   io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
-  for (const auto& [key, modifiers] : std::exchange(pressed_, {})) {
+  for (const Press& press : std::exchange(pressed_, {})) {
+    const auto& [key, modifiers] = press;
+    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown)) continue;
+    if (io.KeysDownDuration[key] >= 0.0F || std::find(changed.begin(), changed.end(), key) != changed.end()) {
+      if (io.KeysDownDuration[key] >= 0.0F) io.KeysDown[key] = false;
+      pressed_.push_back(press);
+      changed.push_back(key);
+      continue;
+    }
     io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
     io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
     io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
     // A key that is still held may have lost its modifiers already.
-    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
     io.KeysDown[key] = true;
-    brief.push_back(key);
+    changed.push_back(key);
   }
-  return brief;
+  return changed;
 }
 
 void UiLayer::beginFrame() {
@@ -172,9 +180,9 @@ void UiLayer::beginFrame() {
     io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  const std::vector<int> brief = holdShortPresses();
+  const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
-  for (const int key : brief) io.KeysDown[key] = false;
+  for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;
 }
 
 void UiLayer::leavePanels() noexcept {

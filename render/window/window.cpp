@@ -234,7 +234,7 @@ void Window::Impl::listen() {
   glfwSetWindowUserPointer(glfw.window, this);
   glfwSetKeyCallback(glfw.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     if (action == GLFW_RELEASE) return;
-    of(w).ui->notePress(key, mods);
+    if (action == GLFW_PRESS) of(w).ui->notePress(key, mods);
     InputEvent event;
     event.kind = InputKind::kKeyDown;
     event.key = keyOf(key, scancode);

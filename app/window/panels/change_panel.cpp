@@ -46,7 +46,7 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
                                 .c_str());
   // The axis: its ends and zero.
   const std::string low = fmt::format("-{:.3g}", histogram.reach * unit.per_unit),
-                    high = "+" + lengthText(histogram.reach, unit, 3);
+                    high = fmt::format("+{}", lengthText(histogram.reach, unit, 3));
   ImGui::TextDisabled("%s", low.c_str());
   ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 0.5F * width - 0.5F * ImGui::CalcTextSize("0").x);
   ImGui::TextDisabled("0");

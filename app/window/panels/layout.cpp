@@ -43,7 +43,7 @@ PanelRequests layOutPanels(Parts& parts) {
   statusBar(parts);
   parts.window.setPictureArea({0, static_cast<int>(bar), static_cast<int>(width),
                                static_cast<int>(ImGui::GetIO().DisplaySize.y - 2.0F * bar)});
-  placeholder(parts, width);
+  placeholder(parts, width, act, requests);
   pictureOverlay(parts);
   requests.answer = dialog(parts);
   return requests;

@@ -61,8 +61,6 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
 /// The chosen recent file, if any.
 [[nodiscard]] std::optional<std::string> menuBar(Parts& parts, const Act& act);
 void statusBar(Parts& parts);
-/// Text in the middle of `width` pixels while there is no picture: the reason.
-void placeholder(Parts& parts, float width);
 /// Over the picture: the handle of the split line, the lasso.
 void pictureOverlay(const Parts& parts);
 
@@ -76,15 +74,23 @@ struct Answer {
   Choice choice = Choice::kBack;
   Question question;
 };
+/// The dialogs of a path and of a file's reading; kOther: another reading of the file.
+[[nodiscard]] std::optional<Answer::Choice> fileDialog(Question& question, Parts& parts);
+[[nodiscard]] std::optional<Answer::Choice> importPage(Question& question, Parts& parts);
 /// Lays out the current dialog, if any; returns the answer given in this frame.
 [[nodiscard]] std::optional<Answer> dialog(Parts& parts);
 
 /// Requests of the panels of a frame to the owner of the parts.
 struct PanelRequests {
   std::optional<std::string> open;  ///< a recent file
+  bool sample = false;              ///< the sample part
   std::optional<double> rate_hz;
   std::optional<Answer> answer;
 };
+/// In the middle of `width` pixels while there is no picture: the reason, or the start page.
+void placeholder(Parts& parts, float width, const Act& act, PanelRequests& requests);
+/// Scans opened last, and what to begin with.
+void startPage(Parts& parts, const Act& act, PanelRequests& requests);
 /// All of it, around the picture and over it.
 [[nodiscard]] PanelRequests layOutPanels(Parts& parts);
 

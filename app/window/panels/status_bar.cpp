@@ -104,7 +104,7 @@ void statusBar(Parts& parts) {
   ImGui::PopStyleVar(2);
 }
 
-void placeholder(Parts& parts, float width) {
+void placeholder(Parts& parts, float width, const Act& act, PanelRequests& requests) {
   const bool announces = parts.announcesPicture();
   if (!announces && parts.seenGrid() != nullptr) return;
   ImGui::SetNextWindowPos(ImVec2(0.5F * width, 0.45F * ImGui::GetIO().DisplaySize.y), ImGuiCond_Always,
@@ -122,7 +122,7 @@ void placeholder(Parts& parts, float width) {
             fmt::format("{} {:.0f} %", opening.stage(), 100.0 * progress.share).c_str());
     if (ImGui::Button("Cancel")) opening.cancel();
   } else {
-    ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");
+    startPage(parts, act, requests);
   }
   ImGui::End();
 }

@@ -28,6 +28,8 @@ class User {
   State press(const std::string& name);
   /// Text into the field that has the keyboard, in place of what is selected there.
   void type(const std::string& text);
+  /// Keys of a text, whoever takes them.
+  void write(const std::string& text) { display_.hands({"type", "--delay", "0", text}); }
   void at(Place place);
   void down(int button);
   void up(int button);

@@ -50,6 +50,7 @@ void WindowTest::SetUp() {
   setenv("DISPLAY", display.name().c_str(), 1);
   setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
   setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "320x320", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
   // Strokes are marks, each a step: whether an edge is found along one is not what most of these tests are about.

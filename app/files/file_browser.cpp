@@ -1,0 +1,59 @@
+#include "app/files/file_browser.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace fettle::app {
+
+void FileBrowser::goTo(const std::string& folder, std::string chosen) {
+  choose_next_ = std::move(chosen);
+  job_.start([folder](engine::JobControl& job) { return listFolder(folder, job); });
+}
+
+void FileBrowser::goUp() {
+  const std::filesystem::path here(listing_.folder);
+  if (here.has_relative_path()) goTo(here.parent_path().string(), here.filename().string());
+}
+
+bool FileBrowser::poll() {
+  auto listed = job_.take();
+  if (!listed) return false;
+  problem_.reset();
+  if (*listed) {
+    if ((*listed)->folder != listing_.folder) view_.typed.clear();
+    listing_ = std::move(**listed);
+    update(choose_next_);
+  } else if (listed->error().kind != engine::ErrorKind::kCancelled) {
+    problem_ = listed->error();
+  }
+  return true;
+}
+
+std::string FileBrowser::pathOf(std::size_t i) const {
+  return (std::filesystem::path(listing_.folder) / entry(i).name).string();
+}
+
+void FileBrowser::setView(FolderView view) {
+  const std::string chosen = chosenName();
+  view_ = std::move(view);
+  update(chosen);
+}
+
+void FileBrowser::move(std::ptrdiff_t by) {
+  if (shown_.empty()) return;
+  const auto last = static_cast<std::ptrdiff_t>(shown_.size()) - 1;
+  const std::ptrdiff_t to = chosen_ ? static_cast<std::ptrdiff_t>(*chosen_) + by : 0;
+  chosen_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(to, 0, last));
+}
+
+void FileBrowser::update(const std::string& chosen) {
+  shown_ = shownEntries(listing_, view_);
+  chosen_.reset();
+  if (chosen.empty()) return;
+  const auto found = std::find_if(shown_.begin(), shown_.end(),
+                                  [&](std::size_t i) { return listing_.entries[i].name == chosen; });
+  if (found != shown_.end()) chosen_ = static_cast<std::size_t>(found - shown_.begin());
+}
+
+}  // namespace fettle::app

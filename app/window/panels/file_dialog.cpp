@@ -1,0 +1,285 @@
+// The dialog of a path: to open, to compare with, to save as, to export.
+#include <array>
+#include <ctime>
+#include <filesystem>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/window/panels/dialog_button.h"
+#include "app/window/panels/panels.h"
+#include "app/window/panels/scan_facts.h"
+#include "app/window/panels/scan_picture.h"
+#include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
+
+namespace fettle::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Choice = Answer::Choice;
+using Kind = Question::Kind;
+using render::Key;
+
+constexpr float kPlaces = 150.0F, kPreview = 230.0F, kHeight = 300.0F;  // at scale 1 [pixels]
+constexpr int kPage = 12;                                               // rows of Page up and Page down
+
+bool reads(const Question& question) {
+  return question.kind == Kind::kOpen || question.kind == Kind::kCompare;
+}
+
+std::string dateText(std::int64_t changed_s) {
+  if (changed_s == 0) return {};
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(static_cast<std::time_t>(changed_s)));
+}
+
+// The path in a folder that the dialog is about now: what is saved keeps its name.
+void enter(const std::string& folder, Question& question, Files& files) {
+  question.path = reads(question) ? folder : (fs::path(folder) / fs::path(question.path).filename()).string();
+  files.browser.goTo(folder);
+}
+
+void choose(std::size_t i, Question& question, FileBrowser& browser) {
+  browser.choose(i);
+  const bool keeps_name = !reads(question) && browser.entry(i).folder;
+  if (!keeps_name) question.path = browser.pathOf(i);
+}
+
+// Up and Down in the field of the path go through the list.
+int moveByKeys(ImGuiInputTextCallbackData* data) {
+  if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
+  auto& browser = *static_cast<FileBrowser*>(data->UserData);
+  browser.move(data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
+  if (!browser.chosen()) return 0;
+  data->DeleteChars(0, data->BufTextLen);
+  data->InsertChars(0, browser.pathOf(*browser.chosen()).c_str());
+  data->SelectAll();
+  return 0;
+}
+
+bool pressed(ImGuiKey key) {
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
+}
+
+// Keys that the field of the path leaves alone. True when the choice moved.
+bool pageByKeys(Question& question, Files& files) {
+  FileBrowser& browser = files.browser;
+  const int by = pressed(ImGuiKey_PageDown) ? kPage : pressed(ImGuiKey_PageUp) ? -kPage : 0;
+  if (by == 0) return false;
+  browser.move(by);
+  if (browser.chosen()) choose(*browser.chosen(), question, browser);
+  return true;
+}
+
+void placesList(Question& question, Files& files, float scale) {
+  if (ImGui::BeginChild("places", ImVec2(kPlaces * scale, kHeight * scale), true))
+    for (const FilePlace& place : files.shown_places) {
+      ImGui::PushID(place.folder.c_str());
+      const std::string name = (place.own ? "* " : "") + place.name;
+      if (ImGui::Selectable(name.c_str(), place.folder == files.browser.folder(),
+                            ImGuiSelectableFlags_DontClosePopups))
+        enter(place.folder, question, files);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", place.folder.c_str());
+      ImGui::PopID();
+    }
+  ImGui::EndChild();
+}
+
+void folderLine(Question& question, Parts& parts) {
+  Files& files = parts.files;
+  if (ImGui::Button("Up")) {
+    files.browser.goUp();
+    enter(fs::path(files.browser.folder()).parent_path().string(), question, files);
+  }
+  ImGui::SameLine();
+  if (ImGui::Button(files.places.has(files.browser.folder()) ? "No bookmark" : "Bookmark"))
+    files.toggleBookmark(parts.recent.paths());
+  ImGui::SameLine();
+  FolderView view = files.browser.view();
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
+  bool changed = ImGui::InputTextWithHint("##names", "names with", &view.typed);
+  ImGui::SameLine();
+  changed = ImGui::Checkbox("all files", &view.all_files) || changed;
+  ImGui::SameLine();
+  changed = ImGui::Checkbox("hidden", &view.hidden) || changed;
+  if (changed) files.browser.setView(std::move(view));
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s",
+                      files.browser.busy() ? "listing" : fmt::format("{}", files.browser.count()).c_str());
+  if (const engine::Error* problem = files.browser.problem())
+    ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", problem->line().c_str());
+}
+
+void followSorting(FileBrowser& browser) {
+  ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();
+  if (specs == nullptr || !specs->SpecsDirty || specs->SpecsCount == 0) return;
+  FolderView view = browser.view();
+  view.order = static_cast<FolderOrder>(specs->Specs[0].ColumnUserID);
+  view.descending = specs->Specs[0].SortDirection == ImGuiSortDirection_Descending;
+  browser.setView(std::move(view));
+  specs->SpecsDirty = false;
+}
+
+// One entry; true when it was double-clicked.
+bool row(std::size_t i, Question& question, FileBrowser& browser) {
+  const FolderEntry& entry = browser.entry(i);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  const std::string label = entry.name + (entry.folder ? "/" : "");
+  const bool clicked =
+      ImGui::Selectable(label.c_str(), browser.chosen() == i,
+                        ImGuiSelectableFlags_DontClosePopups | ImGuiSelectableFlags_SpanAllColumns |
+                            ImGuiSelectableFlags_AllowDoubleClick);
+  if (clicked) choose(i, question, browser);
+  const bool twice = clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  ImGui::TableNextColumn();
+  if (!entry.folder) ImGui::TextUnformatted(bytesText(static_cast<double>(entry.bytes)).c_str());
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(dateText(entry.changed_s).c_str());
+  return twice;
+}
+
+// True when an entry was double-clicked; `scroll`: the chosen one comes into view.
+bool fileTable(Question& question, Files& files, ImVec2 size, bool scroll) {
+  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
+                                     ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter |
+                                     ImGuiTableFlags_NoSavedSettings;
+  if (!ImGui::BeginTable("files", 3, kFlags, size)) return false;
+  FileBrowser& browser = files.browser;
+  const auto column = [](const char* name, FolderOrder order, ImGuiTableColumnFlags flags, float width) {
+    ImGui::TableSetupColumn(name, flags, width, static_cast<ImGuiID>(order));
+  };
+  const float letter = ImGui::GetFontSize() * 0.55F;
+  column("name", FolderOrder::kName, ImGuiTableColumnFlags_WidthStretch, 0.0F);
+  column("size", FolderOrder::kSize,
+         ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 9.0F * letter);
+  column("changed", FolderOrder::kChanged,
+         ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 17.0F * letter);
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableHeadersRow();
+  followSorting(browser);
+  bool twice = false;
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(browser.count()));
+  const int chosen = browser.chosen() ? static_cast<int>(*browser.chosen()) : -1;
+  if (scroll && chosen >= 0) clipper.ForceDisplayRangeByIndices(chosen, chosen + 1);
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      twice = row(static_cast<std::size_t>(i), question, browser) || twice;
+      if (scroll && i == chosen) ImGui::SetScrollHereY(0.5F);
+    }
+  ImGui::EndTable();
+  return twice;
+}
+
+void preview(const Question& question, Parts& parts, float scale) {
+  if (ImGui::BeginChild("preview", ImVec2(kPreview * scale, kHeight * scale), true)) {
+    const FileBrowser& browser = parts.files.browser;
+    const bool scan = browser.chosen() && browser.entry(*browser.chosen()).scan &&
+                      browser.pathOf(*browser.chosen()) == question.path;
+    if (scan) {
+      const ThumbnailShelf::Shown shown = parts.files.shelf.find(question.path, parts.usual_reading);
+      ImGui::PushTextWrapPos(0.0F);
+      if (shown.picture != nullptr) {
+        const float side = ImGui::GetContentRegionAvail().x;
+        const auto cursor = scanPicture(*shown.picture, ImVec2(side, 0.7F * side));
+        if (cursor) ImGui::SetTooltip("%s", cursorText(*shown.picture, *cursor).c_str());
+        if (shown.picture->empty()) ImGui::TextDisabled("too large for a quick look");
+        for (const std::string& text :
+             {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
+          if (!text.empty()) ImGui::TextUnformatted(text.c_str());
+        for (const std::string& warning : shown.picture->warnings) ImGui::TextDisabled("%s", warning.c_str());
+      } else if (shown.problem != nullptr) {
+        ImGui::TextUnformatted(shown.problem->what.c_str());
+      } else {
+        ImGui::TextDisabled("reading");
+      }
+      ImGui::PopTextWrapPos();
+    }
+  }
+  ImGui::EndChild();
+}
+
+// The formats that can be written; a session is the usual one of "save as". Choosing one changes the extension.
+void formatChooser(Question& question) {
+  const std::string extension = engine::extensionOf(question.path);
+  std::string now = "by extension";
+  for (const engine::FormatInfo& format : engine::formats())
+    for (const std::string_view each : format.extensions)
+      if (format.writes && each == extension) now = format.description;
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 16.0F);
+  if (!ImGui::BeginCombo("format", now.c_str(), ImGuiComboFlags_HeightLargest)) return;
+  for (const engine::FormatInfo& format : engine::formats()) {
+    if (!format.writes) continue;
+    const std::string label = fmt::format("{} ({})", format.description, format.extensions.front());
+    if (ImGui::Selectable(label.c_str(), now == format.description))
+      question.path = fs::path(question.path).replace_extension(format.extensions.front()).string();
+  }
+  ImGui::EndCombo();
+}
+
+void writingHelp(Question& question, bool& embeds) {
+  formatChooser(question);
+  const bool session = isSessionPath(question.path);
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextDisabled("%s", session ? "a session keeps everything, each step as it is made"
+                                    : "the field; marks and lines go next to it, as NAME_marks.png and "
+                                      "NAME_lines.csv");
+  ImGui::PopTextWrapPos();
+  if (question.kind == Kind::kSaveAs && session) ImGui::Checkbox("store the scan in the session", &embeds);
+  std::error_code error;
+  if (fs::is_regular_file(question.path, error))
+    ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "this file exists already");
+}
+
+}  // namespace
+
+std::optional<Choice> fileDialog(Question& question, Parts& parts) {
+  Questions& questions = parts.feedback.questions;
+  Files& files = parts.files;
+  const auto scale = static_cast<float>(parts.window.scale());
+  const bool appears = ImGui::IsWindowAppearing();
+  if (appears) {
+    files.begin(question.path, parts.recent.paths());
+    ImGui::SetKeyboardFocusHere();
+  }
+  const auto before = files.browser.chosen();
+  ImGui::SetNextItemWidth(-1.0F);
+  bool confirmed = ImGui::InputText("##path", &question.path,
+                                    ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
+                                        ImGuiInputTextFlags_CallbackHistory,
+                                    moveByKeys, &files.browser);
+  if (!appears && ImGui::IsItemEdited() && files.browser.chosen() == before) files.follow(question.path);
+  const bool paged = pageByKeys(question, files);
+  folderLine(question, parts);
+  placesList(question, files, scale);
+  ImGui::SameLine();
+  const float width = ImGui::GetContentRegionAvail().x - kPreview * scale - ImGui::GetStyle().ItemSpacing.x;
+  const bool moved = paged || files.browser.chosen() != before;
+  const bool twice = fileTable(question, files, ImVec2(width, kHeight * scale), moved);
+  ImGui::SameLine();
+  preview(question, parts, scale);
+  if (!reads(question)) writingHelp(question, parts.saving.embeds);
+  confirmed = dialogButton(reads(question) ? "Open" : "Write", questions, Key::kEnter) || confirmed || twice;
+  ImGui::SameLine();
+  const bool as = question.kind == Kind::kOpen && ImGui::Button("Read as ...");
+  if (question.kind == Kind::kOpen) ImGui::SameLine();
+  const bool left = dialogButton("Cancel", questions, Key::kEscape);
+  if (left) return Choice::kBack;
+  std::error_code error;
+  if (as && fs::is_regular_file(question.path, error) && !isSessionPath(question.path)) return Choice::kOther;
+  if (!confirmed || question.path.empty()) return std::nullopt;
+  const auto& chosen = files.browser.chosen();
+  const std::string folder =
+      twice && chosen && files.browser.entry(*chosen).folder ? files.browser.pathOf(*chosen) : question.path;
+  if (fs::is_directory(folder, error)) {
+    enter(folder, question, files);
+    return std::nullopt;
+  }
+  return Choice::kConfirm;
+}
+
+}  // namespace fettle::app

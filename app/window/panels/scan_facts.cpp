@@ -1,0 +1,48 @@
+#include "app/window/panels/scan_facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/work/read_units.h"
+
+namespace fettle::app {
+
+std::string sizeText(const ScanThumbnail& picture) {
+  if (!picture.grid) return {};
+  return fmt::format("{} x {} samples", picture.grid->width, picture.grid->height);
+}
+
+std::string extentText(const ScanThumbnail& picture) {
+  if (!picture.grid) return {};
+  const engine::Grid& grid = *picture.grid;
+  const double across = grid.width * grid.spacing_x, up = grid.height * grid.spacing_y;
+  const ReadAs whole = readLengthAs(std::max(across, up), grid.lateral_unit.mm, grid.lateral_unit.name);
+  const ReadAs apart =
+      readLengthAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit.mm, grid.lateral_unit.name);
+  return fmt::format("{:.4g} x {:.4g} {}, {:.4g} x {:.4g} {} apart", across / whole.size, up / whole.size,
+                     whole.name, grid.spacing_x / apart.size, grid.spacing_y / apart.size, apart.name);
+}
+
+std::string heightsText(const ScanThumbnail& picture) {
+  if (picture.empty() || !picture.grid) return {};
+  const engine::LengthUnit& unit = picture.grid->height_unit;
+  const double low = static_cast<double>(picture.low), high = static_cast<double>(picture.high);
+  const ReadAs as = readLengthAs(std::max(std::abs(low), std::abs(high)), unit.mm, unit.name);
+  return fmt::format("heights {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name);
+}
+
+std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {
+  const engine::Grid& grid = *picture.grid;
+  const double longest = std::max(grid.width * grid.spacing_x, grid.height * grid.spacing_y);
+  const ReadAs across = readLengthAs(longest, grid.lateral_unit.mm, grid.lateral_unit.name);
+  const std::string place = fmt::format("x {:.4g}  y {:.4g} {}", cursor.column * grid.spacing_x / across.size,
+                                        cursor.row * grid.spacing_y / across.size, across.name);
+  if (!std::isfinite(cursor.height)) return place + "  hole";
+  const auto height = static_cast<double>(cursor.height);
+  const ReadAs up = readLengthAs(std::abs(height), grid.height_unit.mm, grid.height_unit.name);
+  return fmt::format("{}  z {:.4g} {}", place, height / up.size, up.name);
+}
+
+}  // namespace fettle::app

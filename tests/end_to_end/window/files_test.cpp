@@ -1,0 +1,166 @@
+// A scan found and read: the start page, the dialog of files, the page on which its reading is chosen.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+namespace fs = std::filesystem;
+
+bool opens(const State& s) {
+  return s["dialog"] == "open" && s["settled"] == true;
+}
+
+bool says(const State& s, const std::string& what) {
+  for (const State& text : s["texts"])
+    if (text["text"].get<std::string>().find(what) != std::string::npos) return true;
+  return false;
+}
+
+// Into the field that shows `now`, in place of what is there.
+void write(User& user, const std::string& now, const std::string& text) {
+  (void)user.click(now);
+  user.program().until("a field", [](const State& s) { return s["text_field"] == true; });
+  (void)user.press("ctrl+a");
+  user.write(text);
+  user.program().until(text, [&](const State& s) {
+    return std::any_of(s["texts"].begin(), s["texts"].end(),
+                       [&](const State& t) { return t["text"] == text; });
+  });
+}
+
+// A raster of counts without a unit, with an undeclared number for its holes.
+std::string writeCounts(const std::string& path) {
+  std::ofstream file(path);
+  file << "ncols 96\nnrows 64\nxllcenter 0\nyllcenter 0\ncellsize 1\n";
+  for (int r = 0; r < 64; ++r) {
+    for (int c = 0; c < 96; ++c) file << (c < 10 ? 9999 : 100 + (7 * c + 13 * r) % 29) << " ";
+    file << "\n";
+  }
+  return path;
+}
+
+TEST_F(WindowTest, a_scan_is_found_with_the_arrow_keys_and_in_another_folder) {
+  const fs::path scans = folder.path() / "scans";
+  fs::create_directories(scans / "deeper");
+  for (const char* name : {"part2.tif", "part10.tif", "deeper/last.tif"}) fs::copy_file(scan, scans / name);
+  const std::string first = (scans / "part2.tif").string();
+  const auto program = start({first});
+  User user(display, *program, "find");
+  (void)opened(*program);
+  (void)user.press("ctrl+o");
+  const State begun = program->until("the dialog", opens);
+  EXPECT_EQ(begun["dialog_path"], first);
+  EXPECT_TRUE(says(begun, "part10.tif"));
+  EXPECT_TRUE(says(begun, "samples")) << "the chosen one is shown with its size";
+  (void)user.look("the dialog");
+  for (const auto& [key, name] : {std::pair{"Down", "part10.tif"}, {"Up", "part2.tif"}, {"Up", "deeper"}}) {
+    (void)user.press(key);
+    (void)user.look(key);
+    program->until(key, [&](const State& s) { return s["dialog_path"] == (scans / name).string(); });
+  }
+  // Enter goes into a folder, and opens nothing.
+  (void)user.press("Return");
+  const State deeper =
+      program->until("in it", [](const State& s) { return opens(s) && says(s, "last.tif"); });
+  (void)user.click("last.tif", 2);
+  program->until("the scan", [&](const State& s) {
+    return s["path"] == (scans / "deeper" / "last.tif").string() && s["settled"] == true;
+  });
+  quit(user);
+}
+
+TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) {
+  const std::string counts = writeCounts(folder.file("counts.asc"));
+  const auto program = start({});
+  User user(display, *program, "import");
+  program->until("an empty window", [](const State& s) { return says(s, "Drop a scan here"); });
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(counts);
+  (void)user.rest();
+  (void)user.click("Read as ...");
+  const State page = program->until(
+      "the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
+  EXPECT_TRUE(says(page, "96 x 64 samples"));
+  EXPECT_TRUE(says(page, "9999 are holes"));
+  (void)user.look("the page");
+  write(user, "as in the file, else 1", "0.001");
+  write(user, "1 now", "0");
+  (void)user.press("Return");
+  program->until("a spacing of 0 is refused",
+                 [](const State& s) { return s["dialog"] == "import" && says(s, "give a number above 0"); });
+  write(user, "0", "0.05");
+  (void)user.click("9999 are holes");
+  (void)user.look("read as said");
+  (void)user.key("Return");
+  const State read =
+      program->until("the scan", [&](const State& s) { return s["path"] == counts && s["settled"] == true; });
+  EXPECT_TRUE(says(read, "0.05")) << read["status"];
+  EXPECT_GE(read["colours"][0].get<double>(), 0.09) << "the holes are holes, the counts are thousandths";
+  EXPECT_LE(read["colours"][1].get<double>(), 0.14);
+  // Another unit later, without looking for the file again; what was said before stands there.
+  (void)user.press("ctrl+shift+o");
+  program->until("the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
+  write(user, "0.001", "0.002");
+  (void)user.key("Return");
+  const State again = program->until("twice as high", [&](const State& s) {
+    return s["settled"] == true && s["dialog"] == "none" && s["colours"][1].get<double>() > 0.2;
+  });
+  EXPECT_EQ(again["path"], counts);
+  quit(user);
+}
+
+TEST_F(WindowTest, the_start_page_shows_what_was_opened_last_and_has_a_sample) {
+  {
+    const auto program = start({});
+    User user(display, *program, "sample");
+    program->until("an empty window", [](const State& s) { return says(s, "A sample part"); });
+    (void)user.click("A sample part");
+    const State sample =
+        program->until("the sample", [](const State& s) { return s["path"] != "" && s["settled"] == true; });
+    EXPECT_TRUE(sample["path"].get<std::string>().ends_with("sample part.tif"));
+    quit(user);
+  }
+  const auto program = start({});
+  User user(display, *program, "recent");
+  program->until("a window", [](const State& s) { return says(s, "A sample part"); });
+  (void)user.look("at first");
+  program->until("the start page",
+                 [](const State& s) { return says(s, "sample part.tif (Ctrl+1)") && s["settled"] == true; });
+  const Screen page = user.look("the start page");
+  (void)user.press("ctrl+1");
+  EXPECT_TRUE(opened(*program)["path"].get<std::string>().ends_with("sample part.tif"));
+  quit(user);
+}
+
+TEST_F(WindowTest, the_format_of_what_is_exported_is_chosen_from_a_list) {
+  const auto program = start({scan});
+  User user(display, *program, "format");
+  (void)opened(*program);
+  (void)user.press("ctrl+e");
+  program->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  const std::string path = folder.file("out.tif");
+  user.type(path);
+  (void)user.rest();
+  (void)user.look("export");
+  (void)user.click("GeoTIFF and TIFF");
+  (void)user.look("formats");
+  (void)user.click("16-bit grey PNG (.png)");
+  program->until("its extension", [&](const State& s) { return s["dialog_path"] == folder.file("out.png"); });
+  (void)user.press("Return");
+  program->until("written",
+                 [&](const State& s) { return s["status"] == "written: " + folder.file("out.png"); });
+  EXPECT_TRUE(fs::exists(folder.file("out.png")));
+  quit(user);
+}
+
+}  // namespace
+}  // namespace fettle::tests
