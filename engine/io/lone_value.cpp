@@ -321,6 +321,7 @@ std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& r
     if (suspects.size() == known) break;
   }
   std::vector<LoneValue> lone;
+  lone.reserve(suspects.size());
   for (const Suspect& one : suspects) {
     if (!isLone(one, tally, rule)) continue;
     const float stored = storedNumber(one.value, rule);
