@@ -206,7 +206,7 @@ void addRender(Command root, Chosen& chosen) {
        .unit = "degrees"},
       {.name = "--elevation",
        .to = &options->view.elevation_deg,
-       .text = "Camera above the horizon; 90 = a map",
+       .text = "Camera above the horizon; 0 = from the side, 90 = a map",
        .unit = "degrees"},
       {.name = "--zoom",
        .to = &options->view.zoom,

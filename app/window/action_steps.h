@@ -6,6 +6,10 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "app/overlay/line_overlay.h"
+#include "app/window/navigation.h"
 #include "app/window/parts.h"
 #include "app/window/scene_edits.h"
 #include "app/work/line_edits.h"
@@ -18,6 +22,7 @@ namespace fettle::app::steps {
 using haptic::Tool;
 
 inline constexpr double kKey_px = 40.0;    ///< by which an arrow key moves the view
+inline constexpr double kKey_deg = 10.0;   ///< by which it turns it
 inline constexpr double kBrushStep = 1.0;  ///< [ and ] [samples]
 
 inline LoopClient& clientOf(Parts& p) {
@@ -402,33 +407,77 @@ void liftLight(Parts& p) {
 }
 inline void lastStroke(Parts& p) {
   const engine::SampleRect rect = clientOf(p).lastRect();
-  const engine::Grid& grid = clientOf(p).field().grid();
-  if (!rect.empty())
-    Navigation::centreOn(p.view, grid, (rect.column + 0.5 * rect.columns) * grid.spacingXMm(),
-                         (rect.row + 0.5 * rect.rows) * grid.spacingYMm());
+  const auto framing = p.picture.framing();
+  if (rect.empty() || !framing) return;
+  const glm::dvec2 middle(rect.column + 0.5 * rect.columns, rect.row + 0.5 * rect.rows);
+  render::View view = p.view;
+  Navigation::centreOn(view, *framing, framing->sceneOf(aboveSurface(clientOf(p).field().reader(), middle)));
+  p.flyTo(view);
 }
 template <int azimuth, int elevation>
 void look(Parts& p) {
-  p.view.azimuth_deg = azimuth;
-  p.view.elevation_deg = elevation;
+  render::View view = p.viewToCome();
+  if (const auto grip = p.picture.gripInMiddle()) {
+    Navigation::lookFrom(view, grip->framing, grip->point, azimuth, elevation);
+  } else {
+    view.azimuth_deg = azimuth;
+    view.elevation_deg = elevation;
+  }
+  p.flyTo(view);
 }
 inline void projection(Parts& p) {
   using enum render::Projection;
+  p.flight.stop();
   p.view.projection = p.view.projection == kOrthographic ? kPerspective : kOrthographic;
+}
+// About what is in the middle of the picture; it ends a flight.
+void moveView(Parts& p, const auto& move) {
+  p.flight.stop();
+  if (const auto grip = p.picture.gripInMiddle()) move(*grip);
 }
 template <int x, int y>
 void turn(Parts& p) {
-  Navigation::turn(p.view, x * kKey_px, y * kKey_px, p.window.pictureArea().width);
+  moveView(p, [&](const render::Grip& grip) {
+    Navigation::turnAbout(p.view, grip.framing, grip.point, p.view.azimuth_deg - x * kKey_deg,
+                          p.view.elevation_deg + y * kKey_deg);
+  });
 }
 template <int x, int y>
 void pan(Parts& p) {
-  Navigation::pan(p.view, *p.seenGrid(), x * kKey_px, y * kKey_px, p.picture.pixelsPerMm());
+  moveView(p, [&](const render::Grip& grip) {
+    const glm::dvec2 at = grip.framing.camera(p.view).pixelOf(grip.point);
+    Navigation::put(p.view, grip.framing, grip.point, at + kKey_px * glm::dvec2(x, y));
+  });
 }
 template <int steps>
 void zoom(Parts& p) {
-  Navigation::zoom(p.view, *p.seenGrid(), steps, 0.0, 0.0, p.picture.pixelsPerMm());
+  moveView(p, [&](const render::Grip& grip) { Navigation::zoomAt(p.view, grip.framing, grip.point, steps); });
+}
+template <std::size_t number>
+void setBookmark(Parts& p) {
+  p.bookmarks.set(number, p.viewToCome());
+  p.document.keepViews(p.bookmarks.text());
+  p.feedback.status = fmt::format("view {} is set: F{} comes back to it", number + 1, number + 2);
+}
+template <std::size_t number>
+void recallBookmark(Parts& p) {
+  if (const auto& view = p.bookmarks.at(number))
+    p.flyTo(*view);
+  else
+    p.feedback.status = fmt::format("no view is set there: Shift+F{} sets this one", number + 2);
+}
+template <std::size_t number>
+bool hasBookmark(const Parts& p) {
+  return hasField(p) && p.bookmarks.at(number).has_value();
+}
+inline void fullScreen(Parts& p) {
+  p.setFullScreen(!p.full_screen);
+}
+inline bool isFullScreen(const Parts& p) {
+  return p.full_screen;
 }
 inline void enterPanels(Parts& p) {
+  p.setFullScreen(false);
   p.settings.side_panel = true;
   p.enter_panels = true;
   p.window.enterPanels();
@@ -446,13 +495,17 @@ inline bool isLight(const Parts& p) {
   return p.settings.display.theme == render::Theme::kLight;
 }
 inline void mouseHabits(Parts& p) {
-  next(p.settings.habits, 3);
+  next(p.settings.habits, static_cast<int>(kMousePresets.size()));
 }
 inline void viewAll(Parts& p) {
-  Navigation::showAll(p.view);
+  render::View view = p.viewToCome();
+  Navigation::showAll(view);
+  p.flyTo(view);
 }
 inline void sidePanel(Parts& p) {
-  p.settings.side_panel = !p.settings.side_panel;
+  // Out of the full screen, too: nobody has to know its own key.
+  p.settings.side_panel = p.full_screen || !p.settings.side_panel;
+  p.setFullScreen(false);
 }
 inline bool hasSidePanel(const Parts& p) {
   return p.settings.side_panel;

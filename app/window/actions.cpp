@@ -19,12 +19,40 @@ constexpr Modifiers kAlt{false, false, true};
 constexpr Modifiers kControlShift{true, true, false};
 constexpr Key kNoKey = Key::kNone;
 // Groups of the section's own menu, except for one.
-constexpr MenuPlace kNoMenu{}, kFirst{1}, kSecond{2}, kThird{3}, kMarksMenu{3, "Marks"};
+constexpr MenuPlace kNoMenu{}, kFirst{1}, kSecond{2}, kThird{3}, kMarksMenu{3, "Marks"},
+    kRecalled{1, "Bookmarks"}, kSet{2, "Bookmarks"};
 
 template <Tool tool>
 constexpr ActionRow toolRow(Key key) {
   return {actionOf(tool), "Tool",      haptic::rowOf(tool).hint, key, kPlain, kNoKey, kFirst, kField,
           choose<tool>,   chosen<tool>};
+}
+
+template <std::size_t number>
+constexpr ActionRow bookmarkRow(std::string_view name) {
+  return {static_cast<Action>(static_cast<std::size_t>(Action::kBookmark1) + number),
+          "View",
+          name,
+          functionKey(static_cast<int>(number) + 2),
+          kPlain,
+          kNoKey,
+          kRecalled,
+          kField,
+          recallBookmark<number>,
+          nullptr,
+          hasBookmark<number>};
+}
+template <std::size_t number>
+constexpr ActionRow setBookmarkRow(std::string_view name) {
+  return {static_cast<Action>(static_cast<std::size_t>(Action::kSetBookmark1) + number),
+          "View",
+          name,
+          functionKey(static_cast<int>(number) + 2),
+          kShift,
+          kNoKey,
+          kSet,
+          kField,
+          setBookmark<number>};
 }
 
 constexpr ActionRow kRows[] = {
@@ -166,6 +194,8 @@ constexpr ActionRow kRows[] = {
               kNothing, theme, isLight, hasField},
     ActionRow{Action::kDecorations, "View", "Scale bar and colour bar", letter('J'), kPlain, kNoKey, kFirst,
               kNothing, toggle<&Display::decorations>, isOn<&Display::decorations>, hasField},
+    ActionRow{Action::kAxes, "View", "Axes; a click on an end looks from there", letter('J'), kShift, kNoKey,
+              kFirst, kNothing, toggle<&Display::axes>, isOn<&Display::axes>, hasField},
     ActionRow{Action::kLightLeft, "View", "Light from further left", Key::kLeft, kAlt, kNoKey, kNoMenu,
               kField, turnLight<10>},
     ActionRow{Action::kLightRight, "View", "Light from further right", Key::kRight, kAlt, kNoKey, kNoMenu,
@@ -174,22 +204,30 @@ constexpr ActionRow kRows[] = {
               liftLight<5>},
     ActionRow{Action::kLightLower, "View", "Light from lower down", Key::kDown, kAlt, kNoKey, kNoMenu, kField,
               liftLight<-5>},
-    ActionRow{Action::kMouseHabits, "View", "Mouse as in Blender, CloudCompare, MeshLab", letter('M'), kShift,
-              kNoKey, kNoMenu, kNothing, mouseHabits},
+    ActionRow{Action::kMouseHabits, "View", "Mouse as in Blender, CloudCompare, MeshLab, MeshLib",
+              letter('M'), kShift, kNoKey, kNoMenu, kNothing, mouseHabits},
     ActionRow{Action::kViewAll, "View", "Whole field", Key::kHome, kPlain, kNoKey, kSecond, kPicture,
               viewAll},
     ActionRow{Action::kViewLastStroke, "View", "Centre on the last stroke", Key::kKeypadPeriod, kPlain,
               letter('0'), kSecond, kField, lastStroke},
     ActionRow{Action::kViewFront, "View", "From the front", keypadKey(1), kPlain, letter('1'), kSecond,
-              kPicture, look<0, 25>},
+              kPicture, look<0, 0>},
     ActionRow{Action::kViewBack, "View", "From the back", keypadKey(1), kControl, kNoKey, kSecond, kPicture,
-              look<180, 25>},
+              look<180, 0>},
     ActionRow{Action::kViewRight, "View", "From the right", keypadKey(3), kPlain, letter('3'), kSecond,
-              kPicture, look<90, 25>},
+              kPicture, look<90, 0>},
     ActionRow{Action::kViewLeft, "View", "From the left", keypadKey(3), kControl, kNoKey, kSecond, kPicture,
-              look<270, 25>},
+              look<270, 0>},
     ActionRow{Action::kViewTop, "View", "From above, like a map", keypadKey(7), kPlain, letter('7'), kSecond,
               kPicture, look<0, 90>},
+    bookmarkRow<0>("Bookmark 1"),
+    bookmarkRow<1>("Bookmark 2"),
+    bookmarkRow<2>("Bookmark 3"),
+    bookmarkRow<3>("Bookmark 4"),
+    setBookmarkRow<0>("Set bookmark 1"),
+    setBookmarkRow<1>("Set bookmark 2"),
+    setBookmarkRow<2>("Set bookmark 3"),
+    setBookmarkRow<3>("Set bookmark 4"),
     ActionRow{Action::kProjection, "View", "Perspective or parallel", keypadKey(5), kPlain, letter('5'),
               kSecond, kPicture, projection},
     ActionRow{Action::kTurnLeft, "View", "Turn left", Key::kLeft, kPlain, kNoKey, kNoMenu, kPicture,
@@ -212,6 +250,8 @@ constexpr ActionRow kRows[] = {
               kPicture, zoom<-2>},
     ActionRow{Action::kSidePanel, "View", "Show or hide the panels", Key::kTab, kPlain, kNoKey, kThird,
               kNothing, sidePanel, hasSidePanel},
+    ActionRow{Action::kFullScreen, "View", "Full screen, the picture alone", functionKey(11), kPlain, kNoKey,
+              kThird, kNothing, fullScreen, isFullScreen},
     ActionRow{Action::kEnterPanels, "View", "Into the panels by keyboard (Esc leaves)", functionKey(6),
               kPlain, kNoKey, kThird, kNothing, enterPanels, nullptr, hasField},
 

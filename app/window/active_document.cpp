@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/window/bookmarks.h"
 #include "app/window/view_text.h"
 #include "app/work/recent_files.h"
 #include "engine/formats/formats.h"
@@ -62,6 +63,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
   }
   loop_ = std::move(*client);
   sections_.clear();
+  views_.clear();
   path_ = document.path;
   // Recovered work is not saved yet.
   saved_ = document.recovered ? document.first : history.current();
@@ -70,7 +72,7 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
 
 engine::Status ActiveDocument::close(SessionKeeper::Afterwards afterwards) {
   loop_->finish();
-  noteSections();
+  noteDrawn();
   engine::Status closed = keeper_->close(afterwards);
   loop_.reset();
   keeper_.reset();
@@ -139,11 +141,12 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
   keeper_->setNote("camera", viewText(view));
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
   keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));
-  noteSections();
+  noteDrawn();
 }
 
-void ActiveDocument::noteSections() {
+void ActiveDocument::noteDrawn() {
   if (!sections_.empty()) keeper_->setNote(engine::kSectionsNote, sections_);
+  if (!views_.empty()) keeper_->setNote(Bookmarks::kNote, views_);
 }
 
 void ActiveDocument::undo() {

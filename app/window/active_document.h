@@ -51,18 +51,21 @@ class ActiveDocument {
   void noteSaved(const engine::Version& upright) { saved_ = upright; }
   /// The window's sections (sectionsText), for the session; it is written at most once a second, and at the end.
   void keepSections(std::string text) { sections_ = std::move(text); }
+  /// The window's bookmarks (Bookmarks::text), likewise.
+  void keepViews(std::string text) { views_ = std::move(text); }
   /// The session has moved to another file.
   void noteMoved() { path_ = keeper_->path(); }
 
  private:
   void updateSession(const render::View& view, Feedback& feedback);
-  void noteSections();
+  void noteDrawn();
 
   std::string path_;
   std::unique_ptr<SessionKeeper> keeper_;  // exists with loop_, and outlives it
   std::unique_ptr<LoopClient> loop_;
   engine::Version saved_;  // upright, as in the file
   std::string sections_;   // empty: none, and none before
+  std::string views_;      // likewise
   std::chrono::steady_clock::time_point noted_{};
   bool keeping_fails_ = false;  // and the user was informed
 };

@@ -12,12 +12,12 @@
 namespace fettle::app {
 
 /// The mouse at the camera: buttons turn, move and zoom the view, the wheel zooms, and a handle moves the
-/// line between two versions. Threading: main.
+/// line between two versions. A drag keeps hold of what was under the cursor when it began: that stays where it is
+/// while the view turns and zooms, and under the cursor while it pans. Threading: main.
 class ViewDrag {
  public:
   /// The environment of the drag.
   struct Scope {
-    const engine::Grid& grid;  ///< of the shown field
     const render::Rectangle& area;
     WindowPicture& picture;
     render::View& view;
@@ -30,7 +30,10 @@ class ViewDrag {
   [[nodiscard]] bool active() const noexcept { return drag_ != Drag::kNone; }
 
  private:
+  void press(const render::InputEvent& event, bool tool_on, const Scope& scope);
+
   Drag drag_ = Drag::kNone;
+  std::optional<render::Grip> grip_;  // with drag_
   bool split_line_ = false;
 };
 

@@ -16,12 +16,19 @@ bool linesAreShown(const Parts& parts) {
   return client != nullptr && parts.settings.display.marks && client->field().lines() != nullptr;
 }
 
+// Whether it clicks on an end of the axes, which lie over the surface.
+bool pressesAxis(const InputEvent& event, const Parts& parts) {
+  return event.kind == InputKind::kButtonDown && event.button == render::MouseButton::kLeft &&
+         !event.panels_mouse && parts.axisAt({event.x, event.y}).has_value();
+}
+
 // Input that cannot wait for the next frame: the mouse as stylus.
 void toStylus(const InputEvent& event, Parts& parts) {
   LoopClient* const client = parts.document.client();
   if (client == nullptr || parts.marking.lasso().active()) return;
   const Stylus::Hands hands = parts.feedback.questions.pending() ? Stylus::Hands::kNone
-                              : parts.drag.active() || parts.brush.active() || parts.line_drag.active() ||
+                              : parts.drag.active() || pressesAxis(event, parts) || parts.brush.active() ||
+                                      parts.line_drag.active() ||
                                       (LineDrag::begins(event) && linesAreShown(parts))
                                   ? Stylus::Hands::kOther
                                   : Stylus::Hands::kFree;
@@ -112,18 +119,21 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
     parts.line_drag.stop();
     return dragging && event.key == Key::kEscape ? Request{} : handleKey(event, parts);
   }
+  if (!dialog && pressesAxis(event, parts)) return {parts.axisAt({event.x, event.y}), std::nullopt};
   if (client != nullptr && !dialog && !parts.marking.lasso().active() &&
       parts.line_drag.handle(
           event, {*client, parts.picture, parts.marking, parts.stylus.on(), linesAreShown(parts)}))
     return {};
-  const engine::Grid* const grid = parts.seenGrid();
-  if (grid == nullptr || dialog) return {};
+  if (parts.seenGrid() == nullptr || dialog) return {};
   if (pressesDeeper(event, parts)) {
     if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) client->mouse()->wheel(event.wheel);
     return {};
   }
+  const render::View before = parts.view;
   parts.drag.handle(event, parts.cursor, parts.stylus.on(),
-                    {*grid, parts.window.pictureArea(), parts.picture, parts.view, parts.settings});
+                    {parts.window.pictureArea(), parts.picture, parts.view, parts.settings});
+  // A hand at the view ends a flight where it is.
+  if (parts.drag.active() || !(parts.view == before)) parts.flight.stop();
   return {};
 }
 

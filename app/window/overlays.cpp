@@ -32,16 +32,19 @@ const glm::vec3& colourOfPlace(State state, bool present) {
 
 }  // namespace
 
-void goToPlace(render::View& view, const engine::Grid& grid, const engine::WorthPlace& place) noexcept {
+render::View viewOfPlace(const render::View& view, const render::Framing& framing,
+                         const engine::FieldReader& reader, const engine::WorthPlace& place) {
   glm::dvec2 low = place.path.front(), high = low;
   for (const glm::dvec2& p : place.path) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
-  const glm::dvec2 middle_mm = 0.5 * spacing * (low + high);
+  const glm::dvec2 spacing(reader.grid().spacingXMm(), reader.grid().spacingYMm());
   const glm::dvec2 extent_mm = spacing * glm::max(high - low, glm::dvec2(kLeastSeen));
-  Navigation::show(view, grid, middle_mm.x, middle_mm.y, std::max(extent_mm.x, extent_mm.y));
+  render::View there = view;
+  Navigation::show(there, framing, framing.sceneOf(aboveSurface(reader, 0.5 * (low + high))),
+                   std::max(extent_mm.x, extent_mm.y));
+  return there;
 }
 
 void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places, double mm_per_pixel,

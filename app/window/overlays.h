@@ -10,8 +10,9 @@
 
 namespace fettle::app {
 
-/// Moves the view to a place, from the same direction, so near that its edge can be followed.
-void goToPlace(render::View& view, const engine::Grid& grid, const engine::WorthPlace& place) noexcept;
+/// The view of a place from the direction of `view`, so near that its edge can be followed.
+[[nodiscard]] render::View viewOfPlace(const render::View& view, const render::Framing& framing,
+                                       const engine::FieldReader& reader, const engine::WorthPlace& place);
 
 /// The places where a line by hand is worth most, in the picture: lines along them, the present one with discs at its
 /// ends; open, done and skipped ones each in a colour. Threading: main.

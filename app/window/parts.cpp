@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "app/window/axes_gizmo.h"
 
 namespace fettle::app {
 
@@ -29,6 +30,27 @@ bool Parts::held() const {
   return stylus.held() || marking.held() || drag.active();
 }
 
+void Parts::flyTo(const render::View& to) {
+  flight.stop();
+  const auto framing = settings.display.flights ? picture.framing() : std::nullopt;
+  render::View sized = to;
+  sized.width = view.width;
+  sized.height = view.height;
+  if (!framing)
+    view = sized;
+  else if (!(sized == view))
+    flight.begin(view, sized, *framing, Flight::Clock::now());
+  picture.requestRedraw();
+}
+
+std::optional<Action> Parts::axisAt(const glm::dvec2& place) const {
+  if (!settings.display.axes || seenGrid() == nullptr || !picture.inside(place.x, place.y))
+    return std::nullopt;
+  const AxesGizmo gizmo(view, picture.plot(view, settings.display), window.scale());
+  const AxesGizmo::Ball* const ball = gizmo.under(place);
+  return ball != nullptr ? ball->action : std::nullopt;
+}
+
 void Parts::chooseTool(std::optional<haptic::Tool> tool) {
   marking.leaveLasso();
   stylus.choose(tool, *document.client(), picture, cursor);
@@ -43,6 +65,18 @@ void Parts::releaseHands() {
   stylus.release(client);
 }
 
+void Parts::setFullScreen(bool on) {
+  if (full_screen == on) return;
+  full_screen = on;
+  if (on) {
+    leavePanels();
+    window.enterFullScreen();
+    feedback.status = "F11 or Tab: back to the panels";
+  } else {
+    window.leaveFullScreen();
+  }
+}
+
 void Parts::leavePanels() {
   enter_panels = false;
   window.leavePanels();
@@ -52,6 +86,7 @@ void Parts::dropCoarse() {
   if (!opening.dropCoarse() || document.isOpen()) return;
   window.clearPicture();
   picture.clear();
+  flight.stop();
   drag.stop();
   line_drag.stop();
 }
@@ -67,6 +102,8 @@ void Parts::writeTransformed() {
 void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!document.isOpen()) return;
   releaseHands();
+  flight.stop();
+  bookmarks.clear();
   feedback.questions.dropOfField();
   filters.finish(*document.client());
   form.clear();

@@ -5,12 +5,15 @@
 #include <glm/vec2.hpp>
 
 #include "app/overlay/line_overlay.h"
+#include "app/window/actions.h"
 #include "app/window/active_document.h"
+#include "app/window/bookmarks.h"
 #include "app/window/brush_adjustment.h"
 #include "app/window/change_figures.h"
 #include "app/window/colour_range.h"
 #include "app/window/drags.h"
 #include "app/window/files.h"
+#include "app/window/flight.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
 #include "app/window/overlays.h"
@@ -56,6 +59,8 @@ struct Parts {
 
   WindowPicture picture;
   render::View view = startView();
+  Flight flight;  ///< of `view`
+  Bookmarks bookmarks;
   StylusOverlay stylus_overlay;
   LineOverlay line_overlay;
   PlaceOverlay place_overlay;
@@ -81,6 +86,7 @@ struct Parts {
   render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 
+  bool full_screen = false;   ///< the picture and the status line alone, on all of the screen
   bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
@@ -93,10 +99,20 @@ struct Parts {
   /// Whether the mouse holds the stylus, the lasso or the view.
   [[nodiscard]] bool held() const;
 
+  /// The view, or the one to which a flight leads: from where the next key goes on.
+  [[nodiscard]] const render::View& viewToCome() const noexcept {
+    return flight.active() ? flight.destination() : view;
+  }
+  /// Moves the view to another one: in a flight, or at once where the settings have none or no picture is seen.
+  void flyTo(const render::View& to);
+  /// Whether a place of the window is one that can be clicked on in the axes, and what that does.
+  [[nodiscard]] std::optional<Action> axisAt(const glm::dvec2& place) const;
+
   /// Switches a tool on, or all off.
   void chooseTool(std::optional<haptic::Tool> tool);
   /// Releases what is held and cancels what was not confirmed.
   void releaseHands();
+  void setFullScreen(bool on);
   /// Only dialogs have the keyboard: ImGui closes a dialog when the panels take it.
   void leavePanels();
   /// Removes the coarse picture: it must not stay where the scan could not be read.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,11 @@ using nlohmann::json;
 
 constexpr std::array kMaps{"automatic", "viridis", "cividis", "grey", "diverging"};
 constexpr std::array kRangeRules{"automatic", "share", "all"};
-constexpr std::array kHabits{"blender", "cloudcompare", "meshlab"};
+constexpr auto kHabits = [] {
+  std::array<std::string_view, kMousePresets.size()> words;
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = kMousePresets[i].word;
+  return words;
+}();
 
 void take(const json& from, const char* name, bool& value) {
   if (const auto it = from.find(name); it != from.end() && it->is_boolean()) value = it->get<bool>();
@@ -28,8 +33,8 @@ void take(const json& from, const char* name, T low, T high, T& value) {
   if (number >= static_cast<double>(low) && number <= static_cast<double>(high))
     value = static_cast<T>(number);
 }
-template <std::size_t N, class Enum>
-void take(const json& from, const char* name, const std::array<const char*, N>& words, Enum& value) {
+template <class Word, std::size_t N, class Enum>
+void take(const json& from, const char* name, const std::array<Word, N>& words, Enum& value) {
   const auto it = from.find(name);
   if (it == from.end() || !it->is_string()) return;
   for (std::size_t i = 0; i < N; ++i)
@@ -61,6 +66,8 @@ std::string Settings::text() const {
               {"light_azimuth", d.light_azimuth_deg},
               {"light_elevation", d.light_elevation_deg},
               {"decorations", d.decorations},
+              {"axes", d.axes},
+              {"flights", d.flights},
               {"half_in_motion", d.half_in_motion},
               {"filtered_normals", d.form.filtered_normals},
               {"occlusion", d.form.occlusion},
@@ -99,6 +106,8 @@ Settings Settings::load(const std::string& path) {
   take(file, "light_azimuth", 0.0F, 360.0F, d.light_azimuth_deg);
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
   take(file, "decorations", d.decorations);
+  take(file, "axes", d.axes);
+  take(file, "flights", d.flights);
   take(file, "half_in_motion", d.half_in_motion);
   take(file, "filtered_normals", d.form.filtered_normals);
   take(file, "occlusion", 0.0, 1.0, d.form.occlusion);

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "app/window/navigation.h"
+#include "app/window/mouse_presets.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
 
@@ -37,6 +37,8 @@ struct Display {
   float light_azimuth_deg = 135.0F;
   float light_elevation_deg = 45.0F;
   bool decorations = true;
+  bool axes = true;               ///< AxesGizmo
+  bool flights = true;            ///< the view moves to another one (Flight) and does not jump there
   std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
   render::FormShading form = render::kShownForm;
   bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)

@@ -113,6 +113,21 @@ std::optional<render::Picked> WindowPicture::pick(double x, double y) const {
   return live_ ? live_->pick(x - area.x, y - area.y) : std::nullopt;
 }
 
+std::optional<render::Grip> WindowPicture::grip(double x, double y) const {
+  const render::Rectangle& area = window_.pictureArea();
+  return live_ ? live_->grip(x - area.x, y - area.y) : std::nullopt;
+}
+
+std::optional<render::Framing> WindowPicture::framing() const {
+  return live_ ? live_->framing() : std::nullopt;
+}
+
+std::optional<render::Grip> WindowPicture::gripInMiddle() const {
+  const auto seen = framing();
+  if (!seen) return std::nullopt;
+  return live_->grip(seen->plot.x + 0.5 * seen->plot.width, seen->plot.y + 0.5 * seen->plot.height);
+}
+
 std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                  const render::View& view) const {
   if (const auto picked = pick(pixel.x, pixel.y)) return glm::dvec2(picked->position_mm);

@@ -78,8 +78,6 @@ class WindowPicture {
   [[nodiscard]] double mmPerPixel() const noexcept {
     return figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
   }
-  /// The view was zoomed by a factor without a frame yet: the next move starts from there.
-  void zoomed(double factor) noexcept { figures_.pixels_per_mm *= factor; }
 
   /// Whether the position is in the picture and not on a panel.
   [[nodiscard]] bool inside(double x, double y) const;
@@ -88,6 +86,12 @@ class WindowPicture {
   /// The same; where there is no surface, the plane at half the height of `field` [mm].
   [[nodiscard]] std::optional<glm::dvec2> fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                   const render::View& view) const;
+  /// What a hand takes hold of at that position (LivePicture::grip); nothing while there is no picture.
+  [[nodiscard]] std::optional<render::Grip> grip(double x, double y) const;
+  /// The same in the middle of the first plot.
+  [[nodiscard]] std::optional<render::Grip> gripInMiddle() const;
+  /// How the view becomes the camera of the first plot.
+  [[nodiscard]] std::optional<render::Framing> framing() const;
   /// The visible part of the field, with which processing should begin.
   [[nodiscard]] std::vector<engine::TileRange> seenPart(const engine::Grid& grid,
                                                         const render::View& view) const;

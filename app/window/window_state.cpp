@@ -5,6 +5,7 @@
 
 #include <imgui.h>
 
+#include "app/window/axes_gizmo.h"
 #include "haptic/safety/safety.h"
 
 namespace fettle::app {
@@ -31,6 +32,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"frame", {p.window.width(), p.window.height()}},
            {"picture", {area.x, area.y, area.width, area.height}},
            {"minimised", p.window.minimised()},
+           {"full_screen", p.full_screen},
            {"scale", rounded(p.window.scale())},
            {"dialog", dialog != nullptr ? name(dialog->kind) : "none"},
            {"dialog_path", dialog != nullptr ? dialog->path : ""},
@@ -49,7 +51,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
   r["notices"] = notices;
   if (p.seenGrid() != nullptr)
     r["view"] = {rounded(p.view.azimuth_deg), rounded(p.view.elevation_deg), rounded(p.view.zoom),
-                 rounded(p.view.centre_x), rounded(p.view.centre_y)};
+                 rounded(p.view.centre_x),    rounded(p.view.centre_y),      rounded(p.view.centre_z)};
   return r;
 }
 
@@ -70,6 +72,19 @@ void addDocument(const Parts& p, Report& r) {
   r["session_named"] = keeper.named();
   r["session_waiting"] = keeper.waiting();
   r["kept"] = keeper.waiting() == 0 && !keeper.error();
+}
+
+// Where the ends of the axes can be clicked on: those of x, y and z above zero, then below. The view to come, so that
+// each picture of a flight is no state of its own.
+Report axesState(const Parts& p) {
+  Report ends = Report::object();
+  if (!p.settings.display.axes) return ends;
+  const AxesGizmo gizmo(p.viewToCome(), p.picture.plot(p.view, p.settings.display), p.window.scale());
+  if (!gizmo.shown()) return ends;
+  for (const AxesGizmo::Ball& ball : gizmo.balls())
+    ends[std::string(1, "xyz"[ball.axis]) + (ball.positive ? "+" : "-")] = {std::lround(ball.at.x),
+                                                                            std::lround(ball.at.y)};
+  return ends;
 }
 
 void addBrushAndView(const Parts& p, Report& r) {
@@ -105,6 +120,9 @@ void addBrushAndView(const Parts& p, Report& r) {
       scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
   r["measured"] = {!p.costs.contact().empty(), !p.costs.detail().empty()};
   r["map"] = static_cast<int>(display.map);
+  r["mouse"] = std::string(kMousePresets[static_cast<std::size_t>(p.settings.habits)].word);
+  r["bookmarks"] = p.bookmarks.count();
+  r["axes"] = axesState(p);
   r["light"] = {std::lround(display.light_azimuth_deg), std::lround(display.light_elevation_deg)};
 }
 
@@ -220,7 +238,7 @@ bool isSettled(const Parts& p, const Input& input) {
 }  // namespace
 
 bool isActive(const Parts& parts, const Input& input) {
-  return parts.picture.active() || !input.empty() || parts.held();
+  return parts.picture.active() || !input.empty() || parts.held() || parts.flight.active();
 }
 
 Report windowState(const Parts& parts, const Input& input, const RunFigures& run) {

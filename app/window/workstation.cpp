@@ -96,6 +96,7 @@ void Workstation::runFrame() {
   window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
   whileWaiting();
   handleInput();
+  followFlight();
   for (const std::string& path : window_->takeDrops()) {
     input_.countDrop();
     askToOpen(path);
@@ -132,6 +133,12 @@ void Workstation::handleInput() {
     parts_.cursor = {event->x, event->y};
     releaseHandsWhenAsked();
   }
+}
+
+void Workstation::followFlight() {
+  if (!parts_.flight.active()) return;
+  parts_.flight.follow(parts_.view, Flight::Clock::now());
+  parts_.picture.requestRedraw();
 }
 
 // Releases what is held by the mouse when a dialog appears.
@@ -185,7 +192,9 @@ void Workstation::takeResults() {
   const bool busy_hand =
       p.held() || p.line_drag.active() || p.brush.active() || p.feedback.questions.pending();
   if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
-    goToPlace(p.view, client.field().grid(), p.marking.places.found()->places[*place]);
+    if (const auto framing = p.picture.framing())
+      p.flyTo(viewOfPlace(p.viewToCome(), *framing, client.field().reader(),
+                          p.marking.places.found()->places[*place]));
     changed = true;
   }
   for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
@@ -382,6 +391,8 @@ void Workstation::startDocument(Document document) {
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
   restoreSections(document);
+  if (const auto views = document.notes.find(Bookmarks::kNote); views != document.notes.end())
+    p.bookmarks.restore(views->second);
   p.picture.clear();
   p.chooseTool(std::nullopt);
   p.recent.add(p.document.path());

@@ -51,6 +51,7 @@ class Workstation {
   void runFrame();
   void whileWaiting();
   void handleInput();
+  void followFlight();
   void takeResults();
   void showFrame();
   void noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns, bool announces);

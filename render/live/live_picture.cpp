@@ -463,6 +463,30 @@ std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const g
   return std::pair{at.x + (right ? seen.eye_width : 0), at.y};
 }
 
+std::optional<Grip> LivePicture::grip(double x, double y) const {
+  if (!impl_->seen) return std::nullopt;
+  const Impl::Seen& seen = *impl_->seen;
+  const bool halves = seen.stereo == StereoMode::kSideBySide;
+  const bool right = halves && x >= seen.eye_width;
+  if (right) x -= seen.eye_width;
+  // Beside all plots, at the colour bar, as beside the field of the first.
+  std::size_t panel = 0;
+  for (std::size_t i = 0; i < seen.visible.size(); ++i) {
+    const Rectangle& r = seen.visible[i];
+    if (x >= r.x && y >= r.y && x < r.x + r.width && y < r.y + r.height) panel = i;
+  }
+  const PanelPlan& p = seen.plan.panels[panel];
+  const Camera& eye = halves ? seen.eyes[panel][right ? 1 : 0] : p.camera;
+  Grip grip = gripOf(p, eye.rayAt({x, y}));
+  grip.pixel = p.camera.pixelOf(grip.point);
+  return grip;
+}
+
+std::optional<Framing> LivePicture::framing() const {
+  if (!impl_->seen) return std::nullopt;
+  return impl_->seen->plan.panels.front().framing;
+}
+
 void LivePicture::refreshRanges() {
   impl_->spans.reset();
 }

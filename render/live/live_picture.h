@@ -13,6 +13,7 @@
 #include "engine/field/version.h"
 #include "render/config.h"
 #include "render/plan/camera.h"
+#include "render/plan/framing.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
 #include "render/residency/upload_statistics.h"
@@ -193,6 +194,14 @@ struct Picked {
   std::int32_t row = 0;
 };
 
+/// What a hand takes hold of at a position in the picture, to turn or move the view by it.
+struct Grip {
+  Framing framing;          ///< of the panel there
+  glm::dvec3 point{0.0};    ///< scene [mm]; seen by `framing` at `pixel`
+  glm::dvec2 pixel{0.0};    ///< as Framing::camera counts them: in stereo of the camera between the eyes
+  bool on_surface = false;  ///< of the field, or of the block's side
+};
+
 struct LiveOptions {
   Validation validation = Validation::kOff;
   std::string device;  ///< as DeviceOptions
@@ -274,6 +283,13 @@ class LivePicture {
   /// hidden points. Empty: no such panel. In stereo: in the left eye's picture.
   [[nodiscard]] std::optional<std::pair<double, double>> pixelOf(int panel, const glm::dvec3& field_mm,
                                                                  Eye eye = Eye::kLeft) const;
+
+  /// What a hand takes hold of at pixel (x, y) of the last frame: the surface or the side of the block there;
+  /// over a hole the plane at half the relief, and beside the field what is as far away as the block's
+  /// middle. Empty: no frame yet.
+  [[nodiscard]] std::optional<Grip> grip(double x, double y) const;
+  /// How the first panel of the last frame becomes a camera. Empty: no frame yet.
+  [[nodiscard]] std::optional<Framing> framing() const;
 
   /// The next frame computes the ranges of colours and camera again.
   void refreshRanges();

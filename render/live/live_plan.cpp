@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -52,6 +53,74 @@ Ray inField(const PanelPlan& p, const Ray& ray) {
 glm::dvec3 inScene(const PanelPlan& p, const glm::dvec3& field_mm) {
   const double unit = p.field.grid().height_unit.mm;
   return {p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit};
+}
+
+namespace {
+
+// Where a ray enters a box [0 .. infinity), and through which of its faces: 0 x, 1 y, 2 z; nothing where it does not.
+struct Entry {
+  double along = 0.0;
+  int face = 2;
+};
+std::optional<Entry> entryOf(const Box& box, const Ray& ray) {
+  Entry entry{-1.0, 2};
+  double leave = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (ray.along[k] == 0.0) {
+      if (ray.from[k] < box.low[k] || ray.from[k] > box.high[k]) return std::nullopt;
+      continue;
+    }
+    const double a = (box.low[k] - ray.from[k]) / ray.along[k],
+                 b = (box.high[k] - ray.from[k]) / ray.along[k];
+    if (std::min(a, b) > entry.along) entry = {std::min(a, b), k};
+    leave = std::min(leave, std::max(a, b));
+  }
+  if (!(entry.along >= 0.0 && entry.along <= leave)) return std::nullopt;
+  return entry;
+}
+
+}  // namespace
+
+Grip gripOf(const PanelPlan& p, const Ray& ray) {
+  Grip grip;
+  grip.framing = p.framing;
+  const Box& block = p.framing.drawn;
+  const auto take = [&](const glm::dvec3& point, bool on_surface) {
+    grip.point = point;
+    grip.on_surface = on_surface;
+    return grip;
+  };
+  const auto entry = entryOf(block, ray);
+  if (entry && entry->face != 2) {
+    // The side of the block reaches from its floor to the surface at the rim.
+    const glm::dvec3 at = ray.from + entry->along * ray.along;
+    const glm::dvec2 field = glm::dvec2(at) - p.placing.first;
+    const glm::dvec2 last = p.placing.spacing * glm::dvec2(p.placing.true_size - 1);
+    // Rounding must not put the rim outside.
+    const auto rim =
+        surfaceHeight(p.field.reader(), std::clamp(field.x, 0.0, last.x), std::clamp(field.y, 0.0, last.y));
+    if (rim && inScene(p, {field, *rim}).z >= at.z) return take(at, true);
+  }
+  const Ray through = inField(p, ray);
+  if (const auto hit = meetSurface(p.field.reader(), through.from, through.along))
+    return take(inScene(p, hit->position_mm), true);
+  // Over a hole: the plane at half the relief, unless it is seen too much from the side to be where the hole is.
+  constexpr double kLeastSlope = 0.1;
+  if (entry && ray.along.z < -kLeastSlope) {
+    const glm::dvec3 at = ray.from - ray.from.z / ray.along.z * ray.along;
+    const bool inside =
+        at.x >= block.low.x && at.x <= block.high.x && at.y >= block.low.y && at.y <= block.high.y;
+    if (inside) return take(at, false);
+  }
+  // As far away as the middle of the block, or as the middle of the picture where that is too near or behind.
+  const Camera& camera = p.camera;
+  constexpr double kNearest = 0.1;  // of the distance of what is shown
+  const glm::dvec3 middle = p.framing.middle();
+  const bool in_front = camera.windowOf(middle) > kNearest;
+  const glm::dvec3& depth_of = in_front ? middle : camera.target();
+  const double along =
+      glm::dot(camera.toViewer(), depth_of - ray.from) / glm::dot(camera.toViewer(), ray.along);
+  return take(ray.from + along * ray.along, false);
 }
 
 double windowAtMiddle(const PanelPlan& p) {

@@ -15,7 +15,6 @@ namespace {
 // Half the perspective camera's angle up and down.
 const double kTanHalfAngle = std::tan(17.5 * std::numbers::pi / 180.0);
 
-// Exact at multiples of 90 degrees, where pictures must be aligned with the field.
 double sine(double degrees) {
   const double turn = std::remainder(degrees, 360.0);
   if (turn == 0.0 || std::abs(turn) == 180.0) return 0.0;
@@ -27,6 +26,16 @@ double cosine(double degrees) {
 }
 
 }  // namespace
+
+ViewAxes axesOf(const View& view) noexcept {
+  const double sin_a = sine(view.azimuth_deg), cos_a = cosine(view.azimuth_deg);
+  const double sin_e = sine(view.elevation_deg), cos_e = cosine(view.elevation_deg);
+  ViewAxes axes;
+  axes.right = {cos_a, sin_a, 0.0};
+  axes.to_viewer = {cos_e * sin_a, -cos_e * cos_a, sin_e};
+  axes.up = glm::cross(axes.to_viewer, axes.right);
+  return axes;
+}
 
 bool empty(const Rectangle& r) noexcept {
   return r.width <= 0 || r.height <= 0;
@@ -48,17 +57,17 @@ std::array<glm::dvec3, 8> corners(const Box& box) {
 
 Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const Rectangle& plot) {
   Camera camera;
-  const double sin_a = sine(view.azimuth_deg), cos_a = cosine(view.azimuth_deg);
-  const double sin_e = sine(view.elevation_deg), cos_e = cosine(view.elevation_deg);
-  camera.right_ = {cos_a, sin_a, 0.0};
-  camera.to_viewer_ = {cos_e * sin_a, -cos_e * cos_a, sin_e};
-  camera.up_ = glm::cross(camera.to_viewer_, camera.right_);
+  const ViewAxes axes = axesOf(view);
+  camera.right_ = axes.right;
+  camera.to_viewer_ = axes.to_viewer;
+  camera.up_ = axes.up;
   camera.plot_ = plot;
 
   const glm::dvec3 middle = 0.5 * (shown.low + shown.high);
   glm::dvec3 target = middle;
   target.x = shown.low.x + view.centre_x * (shown.high.x - shown.low.x);
   target.y = shown.low.y + view.centre_y * (shown.high.y - shown.low.y);
+  target.z += view.centre_z * std::max(shown.high.x - shown.low.x, shown.high.y - shown.low.y);
 
   const glm::dmat3 view_rotation = glm::transpose(glm::dmat3(camera.right_, camera.up_, camera.to_viewer_));
   const double aspect = static_cast<double>(plot.width) / plot.height;

@@ -23,6 +23,7 @@ struct Rectangle {
 struct Box {
   glm::dvec3 low{0.0};
   glm::dvec3 high{0.0};
+  friend bool operator==(const Box&, const Box&) = default;
 };
 
 /// A half line in scene coordinates.
@@ -30,6 +31,13 @@ struct Ray {
   glm::dvec3 from;
   glm::dvec3 along;  ///< unit, away from the viewer
 };
+
+/// Directions of a view in the scene, unit vectors: to the picture's right, to its top, to the viewer.
+struct ViewAxes {
+  glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, to_viewer{0.0, 0.0, 1.0};
+};
+/// Exact at multiples of 90 degrees, where pictures must be aligned with the field.
+[[nodiscard]] ViewAxes axesOf(const View& view) noexcept;
 
 /// Transforms scene coordinates into pixels and back, in double precision. Scene coordinates are
 /// right-handed: x and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
@@ -66,6 +74,14 @@ class Camera {
 
   /// Pixels per millimetre parallel to the picture, at the middle of what is shown.
   [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }
+  /// The same at the depth of a point; <= 0 or infinite where a perspective camera has it beside or behind it.
+  [[nodiscard]] double pixelsPerMmAt(const glm::dvec3& point) const noexcept {
+    return perspective_ ? pixels_per_mm_ / windowOf(point) : pixels_per_mm_;
+  }
+  /// The scene point in the middle of the plot, and its distance from the viewer [mm]; that of a parallel
+  /// camera is assumed.
+  [[nodiscard]] const glm::dvec3& target() const noexcept { return target_; }
+  [[nodiscard]] double distance() const noexcept { return distance_; }
 
   /// Position of a scene point in the picture; pixel (i, j) covers [i, i + 1) x [j, j + 1).
   [[nodiscard]] glm::dvec2 pixelOf(const glm::dvec3& point) const noexcept;

@@ -23,14 +23,18 @@ struct View {
   /// +y, so that x runs to the right as on a map; positive turns the camera counter-clockwise seen from above
   /// (90 is at the high-x side). 315 is at the corner x, y lowest.
   double azimuth_deg = 315.0;
-  /// Height of the camera above the horizon [degree], > 0 .. 90; 90 looks straight down, like a map.
+  /// Height of the camera above the horizon [degree], 0 .. 90; 0 looks from the side, along the horizon, 90
+  /// straight down, like a map.
   double elevation_deg = 45.0;
   /// 1 shows the whole field; 2 shows it twice as large, and so on; > 0, finite.
   double zoom = 1.0;
   /// Centre of the picture, as a fraction of the field's extent from its first column and row: 0.5, 0.5 is
-  /// the middle of the field. Finite.
+  /// the middle of the field. Finite; at most a hundred times the longer side of the field away from there.
   double centre_x = 0.5;
   double centre_y = 0.5;
+  /// Its height above the middle of the block that is drawn, exaggeration included, as a share of the field's
+  /// longer side: a flat field has no height of its own to count in. -100 .. 100.
+  double centre_z = 0.0;
   Projection projection = Projection::kOrthographic;
   /// Factor on heights in the picture (never on the numbers); > 0, or 0 to choose a round factor that makes
   /// the relief readable. The factor used is written into the picture unless it is 1.

@@ -18,8 +18,14 @@ Placing placingOf(const engine::Grid& grid) {
 }
 
 glm::dvec2 cellPixels(const Placing& placing, const Camera& camera) {
+  // From the side a step into the picture has no length, and nothing is to be divided by it: as seen from at
+  // least three degrees above the horizon.
+  constexpr double kLeastSine = 0.05233595624294383;
+  const double rises = camera.toViewer().z;  // the sine of the elevation
+  const glm::dvec3 away{-camera.right().y, camera.right().x, 0.0};
+  const glm::dvec3 up = rises < kLeastSine ? kLeastSine * away : camera.up();
   const auto length = [&](const glm::dvec3& step) {
-    return std::hypot(glm::dot(camera.right(), step), glm::dot(camera.up(), step)) * camera.pixelsPerMm();
+    return std::hypot(glm::dot(camera.right(), step), glm::dot(up, step)) * camera.pixelsPerMm();
   };
   return {length({placing.spacing.x, 0.0, 0.0}), length({0.0, placing.spacing.y, 0.0})};
 }

@@ -19,7 +19,8 @@ struct Placing {
 /// The field's middle at scene (0, 0).
 [[nodiscard]] Placing placingOf(const engine::Grid& grid);
 
-/// Size of one sample step in x and in y in the picture [px], at the middle of the field.
+/// Size of one sample step in x and in y in the picture [px], at the middle of the field; from less than three
+/// degrees above the horizon as from there.
 [[nodiscard]] glm::dvec2 cellPixels(const Placing& placing, const Camera& camera);
 
 /// What shaders need of one eye: the transform from the scene to the picture, and from a pixel and its depth

@@ -28,14 +28,10 @@ engine::Status check(const PictureSpec& spec) {
     return inputError(fmt::format("a picture of {} x {} pixels", v.width, v.height), "picture size",
                       fmt::format("give {} to {} pixels per side", kSmallestPicture, kLargestPicture));
   if (!std::isfinite(v.azimuth_deg)) return inputError("the azimuth is not a number", "view", "give degrees");
-  if (!(v.elevation_deg > 0.0 && v.elevation_deg <= 90.0))
-    return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view",
-                      "give more than 0 and at most 90");
+  if (!in(v.elevation_deg, 0.0, 90.0))
+    return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view", "give 0 to 90");
   if (!in(v.zoom, 1e-3, 1e6))
     return inputError(fmt::format("a zoom of {}", v.zoom), "view", "give 0.001 to 1000000");
-  if (!in(v.centre_x, -100, 100) || !in(v.centre_y, -100, 100))
-    return inputError("the middle of the picture lies far outside the field", "view",
-                      "give fractions near 0 to 1");
   if (v.vertical_exaggeration != 0.0 && !in(v.vertical_exaggeration, 1e-9, 1e9))
     return inputError(fmt::format("a vertical exaggeration of {}", v.vertical_exaggeration), "view",
                       "give a positive factor, or 0 to choose one");
@@ -49,6 +45,18 @@ engine::Status check(const PictureSpec& spec) {
       (c.contour_step > 0.0 && c.contour_step < 1e-30))
     return inputError("the tolerance or the step of contour lines is out of range", "picture",
                       "give 0 or more");
+  return {};
+}
+
+// In lengths, not in fractions: those of the shorter side of a single profile are any number.
+engine::Status checkCentre(const View& v, const glm::dvec2& extent) {
+  constexpr double kFarthest = 100.0;
+  const double farthest = kFarthest * std::max(extent.x, extent.y);
+  // Also for what is not a number.
+  if (!(std::abs((v.centre_x - 0.5) * extent.x) <= farthest &&
+        std::abs((v.centre_y - 0.5) * extent.y) <= farthest && std::abs(v.centre_z) <= kFarthest))
+    return inputError("the middle of the picture lies far outside the field", "view",
+                      "give fractions near 0 to 1");
   return {};
 }
 
@@ -117,6 +125,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   const ValueSpan &heights = spans.heights, &colours = spans.colours;
   glm::dvec2 extent{0.0};
   for (const engine::Version& v : fields) extent = glm::max(extent, placingOf(v.grid()).extent());
+  if (engine::Status ok = checkCentre(spec.view, extent); !ok) return tl::unexpected(ok.error());
   const double relief = heights.robust.high - heights.robust.low;  // [height_unit]
   const double widest = std::max(extent.x, extent.y);
   plan.exaggeration = spec.view.vertical_exaggeration > 0.0 ? spec.view.vertical_exaggeration
@@ -163,16 +172,18 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     panel.cut_z = cut_z;
     panel.placing = placingOf(panel.field.grid());
     const glm::dvec2 half = 0.5 * extent;
-    const Box shown{{-half.x, -half.y, floor_z}, {half.x, half.y, top_z}};
-    const Box drawn{{-half.x, -half.y, floor_z}, {half.x, half.y, cut_z}};
+    Framing& framing = panel.framing;
+    framing.shown = {{-half.x, -half.y, floor_z}, {half.x, half.y, top_z}};
+    framing.drawn = {{-half.x, -half.y, floor_z}, {half.x, half.y, cut_z}};
     // A margin around the block inside its plot.
-    Rectangle inner = panel.plot;
-    const int margin =
-        plan.layout.decorated ? static_cast<int>(0.012 * std::min(inner.width, inner.height)) : 0;
-    View view = spec.view;
-    view.zoom *= static_cast<double>(std::min(inner.width, inner.height) - 2 * margin) /
-                 std::min(inner.width, inner.height);
-    panel.camera = Camera::fit(view, shown, drawn, inner);
+    framing.plot = panel.plot;
+    const int side = std::min(panel.plot.width, panel.plot.height);
+    const int margin = plan.layout.decorated ? static_cast<int>(0.012 * side) : 0;
+    framing.share = static_cast<double>(side - 2 * margin) / side;
+    framing.first = panel.placing.first;
+    framing.reference_mm = reference * unit.mm;
+    framing.exaggeration = plan.exaggeration;
+    panel.camera = framing.camera(spec.view);
 
     gpu::PanelUniforms& u = panel.uniforms;
     const double own_unit =

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "render/plan/camera.h"
+#include "render/plan/framing.h"
 #include "render/plan/overlay.h"
 #include "render/plan/picture.h"
 #include "render/plan/placing.h"
@@ -18,7 +19,8 @@ namespace fettle::render {
 struct PanelPlan {
   Rectangle plot;  ///< pixels of the finished picture
   engine::Version field;
-  Camera camera;  ///< pixels of the finished picture
+  Framing framing;
+  Camera camera;  ///< pixels of the finished picture; the framing's of the view
   Placing placing;
   double reference = 0.0;       ///< height at scene z 0 [height_unit of the field]
   double mm_per_unit = 1.0;     ///< scene mm per height unit, exaggeration included

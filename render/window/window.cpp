@@ -159,6 +159,7 @@ struct Window::Impl {
   bool usable = false;  // according to the last present()
   bool seen = false;    // the window is on the screen
   Rectangle area{0, 0, 16, 16};
+  Rectangle windowed;  // place and size of the window before it took the whole screen
   std::vector<InputEvent> input;
   std::vector<std::string> drops;
   std::function<void()> while_waiting;
@@ -388,6 +389,37 @@ double Window::scale() const {
 void Window::setTitle(const std::string& title) {
   glfwSetWindowTitle(impl_->glfw.window, title.c_str());
 }
+
+void Window::enterFullScreen() {
+  GLFWwindow* const window = impl_->glfw.window;
+  if (glfwGetWindowMonitor(window) != nullptr) return;
+  Rectangle& place = impl_->windowed;
+  glfwGetWindowPos(window, &place.x, &place.y);
+  glfwGetWindowSize(window, &place.width, &place.height);
+  const int x = place.x + place.width / 2, y = place.y + place.height / 2;
+  int count = 0;
+  GLFWmonitor** const screens = glfwGetMonitors(&count);
+  GLFWmonitor* chosen = glfwGetPrimaryMonitor();
+  for (int i = 0; i < count; ++i) {
+    int left = 0, top = 0;
+    glfwGetMonitorPos(screens[i], &left, &top);
+    const GLFWvidmode* const mode = glfwGetVideoMode(screens[i]);
+    if (mode != nullptr && x >= left && y >= top && x < left + mode->width && y < top + mode->height)
+      chosen = screens[i];
+  }
+  const GLFWvidmode* const mode = chosen != nullptr ? glfwGetVideoMode(chosen) : nullptr;
+  if (mode == nullptr) return;
+  // With the screen's own mode, so that no other window is moved.
+  glfwSetWindowMonitor(window, chosen, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+void Window::leaveFullScreen() {
+  GLFWwindow* const window = impl_->glfw.window;
+  if (glfwGetWindowMonitor(window) == nullptr) return;
+  const Rectangle& place = impl_->windowed;
+  glfwSetWindowMonitor(window, nullptr, place.x, place.y, place.width, place.height, GLFW_DONT_CARE);
+}
+
 Context& Window::context() {
   return *impl_->context;
 }

@@ -132,6 +132,11 @@ class Window {
   /// Factor on sizes of text and panels: the display's, 1 on standard ones.
   [[nodiscard]] double scale() const;
   void setTitle(const std::string& title);
+  /// On the whole of the screen on which its middle is; no effect where there is none, as without a display's
+  /// own list of screens.
+  void enterFullScreen();
+  /// Back to its place and size.
+  void leaveFullScreen();
 
   /// Gives the keyboard to the panels until Esc or a click outside them: arrow keys then move between fields.
   /// Otherwise only dialogs, menus and text fields take keys.

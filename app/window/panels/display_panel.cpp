@@ -24,6 +24,13 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   Display& display = settings.display;
   actionTick("scale bar and colour bar", display.decorations, Action::kDecorations, context.act);
   actionTick("light background", display.theme == render::Theme::kLight, Action::kTheme, context.act);
+  actionTick("axes", display.axes, Action::kAxes, context.act);
+  ImGui::Checkbox("move to views", &display.flights);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "The picture moves to another view, so that the eye can follow. Without it the other view is there "
+        "at "
+        "once.");
   ImGui::Checkbox("half resolution while it moves", &display.half_in_motion);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(

@@ -37,12 +37,14 @@ PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
   const Act act = [&parts](Action action) { carryOut(action, parts); };
   if (parts.feedback.questions.pending()) parts.leavePanels();
-  requests.open = menuBar(parts, act);
+  const bool alone = parts.full_screen;
+  if (!alone) requests.open = menuBar(parts, act);
   const float bar = ImGui::GetFrameHeight();
-  const float width = sideOf(parts, act, bar, requests.rate_hz);
+  const float top = alone ? 0.0F : bar;
+  const float width = alone ? ImGui::GetIO().DisplaySize.x : sideOf(parts, act, bar, requests.rate_hz);
   statusBar(parts);
-  parts.window.setPictureArea({0, static_cast<int>(bar), static_cast<int>(width),
-                               static_cast<int>(ImGui::GetIO().DisplaySize.y - 2.0F * bar)});
+  parts.window.setPictureArea({0, static_cast<int>(top), static_cast<int>(width),
+                               static_cast<int>(ImGui::GetIO().DisplaySize.y - bar - top)});
   placeholder(parts, width, act, requests);
   pictureOverlay(parts);
   requests.answer = dialog(parts);

@@ -41,12 +41,16 @@ std::optional<std::string> recentFiles(const RecentFiles& recent) {
 
 void mouseHabits(Habits& habits) {
   if (!ImGui::BeginMenu("Mouse")) return;
-  const auto choice = [&](const char* name, Habits value) {
-    if (ImGui::MenuItem(name, nullptr, habits == value)) habits = value;
-  };
-  choice("Blender: middle turns, Shift+middle moves", Habits::kBlender);
-  choice("CloudCompare: left turns, right moves", Habits::kCloudCompare);
-  choice("MeshLab: middle turns, right moves", Habits::kMeshLab);
+  for (const MousePreset& preset : kMousePresets)
+    if (ImGui::MenuItem(preset.line.data(), nullptr, habits == preset.habits)) habits = preset.habits;
+  ImGui::EndMenu();
+}
+
+void bookmarks(const Parts& parts, const Act& act) {
+  if (!ImGui::BeginMenu("Bookmarks")) return;
+  items("Bookmarks", 1, parts, act);
+  ImGui::Separator();
+  items("Bookmarks", 2, parts, act);
   ImGui::EndMenu();
 }
 
@@ -66,6 +70,7 @@ std::optional<std::string> menuBar(Parts& parts, const Act& act) {
         if (ImGui::MenuItem("Ask before quitting with unsaved work", nullptr, asks)) asks = !asks;
       }
       items(menu, group, parts, act);
+      if (group == 2 && menu == "View") bookmarks(parts, act);
       if (group == 1 && file) chosen = recentFiles(parts.recent);
     }
     ImGui::EndMenu();

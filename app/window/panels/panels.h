@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "app/window/axes_gizmo.h"
 #include "app/window/panels/widgets.h"
 #include "app/window/parts.h"
 
@@ -61,8 +62,10 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
 /// The chosen recent file, if any.
 [[nodiscard]] std::optional<std::string> menuBar(Parts& parts, const Act& act);
 void statusBar(Parts& parts);
-/// Over the picture: the handle of the split line, the lasso.
+/// Over the picture: the axes, the handle of the split line, the lasso.
 void pictureOverlay(const Parts& parts);
+
+void axesOverlay(const AxesGizmo& gizmo, const glm::dvec2& cursor, float scale);
 
 /// The answer of the user to a dialog, with the question at that time.
 struct Answer {

@@ -33,6 +33,9 @@ void drawLasso(const Lasso& lasso, float scale) {
 void pictureOverlay(const Parts& parts) {
   const auto scale = static_cast<float>(parts.window.scale());
   const Display& display = parts.settings.display;
+  if (display.axes && !parts.picture.empty())
+    axesOverlay(AxesGizmo(parts.view, parts.picture.plot(parts.view, display), parts.window.scale()),
+                parts.cursor, scale);
   if (parts.picture.hasSplitLine(display)) {
     const render::Rectangle plot = parts.picture.plot(parts.view, display);
     ImGui::GetBackgroundDrawList()->AddCircleFilled(

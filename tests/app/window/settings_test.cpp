@@ -23,7 +23,9 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.light_azimuth_deg = 20.0F;
   settings.display.half_in_motion = false;
   settings.display.vertices = 131072;
-  settings.habits = Habits::kMeshLab;
+  settings.display.axes = false;
+  settings.display.flights = false;
+  settings.habits = Habits::kMeshLib;
   settings.side_panel = false;
   settings.side_width = 401.0F;
   settings.panels = {{"Tool", false}, {"Haptics", true}};

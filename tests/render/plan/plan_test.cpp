@@ -118,7 +118,11 @@ TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
   };
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.width = 0; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.height = kLargestPicture + 1; }));
-  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.elevation_deg = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.elevation_deg = -0.5; }));
+  EXPECT_FALSE(refused([](PictureSpec& s) { s.view.elevation_deg = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.centre_x = 102; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.centre_y = std::nan(""); }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.centre_z = -101; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.azimuth_deg = std::nan(""); }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.zoom = 0; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.marks_opacity = 1.5; }));
