@@ -6,6 +6,7 @@
 #include "app/files/file_browser.h"
 #include "app/files/file_places.h"
 #include "app/files/import_form.h"
+#include "app/files/reading_memory.h"
 #include "app/files/thumbnail_shelf.h"
 #include "app/work/background.h"
 
@@ -18,6 +19,7 @@ class Files {
   FileBrowser browser;
   FilePlaces places{bookmarkFile()};
   ThumbnailShelf shelf;
+  ReadingMemory readings{readingFile()};
   std::vector<FilePlace> shown_places;
   ImportForm form;      ///< as typed so far
   ScanOptions reading;  ///< the last of them that could be read

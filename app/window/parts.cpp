@@ -77,6 +77,11 @@ void Parts::setFullScreen(bool on) {
   }
 }
 
+ScanOptions Parts::readingOf(const std::string& path) const {
+  if (!scanOptionsText(usual_reading).empty()) return usual_reading;
+  return files.readings.find(path).value_or(usual_reading);
+}
+
 void Parts::leavePanels() {
   enter_panels = false;
   window.leavePanels();
@@ -104,7 +109,6 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   releaseHands();
   flight.stop();
   bookmarks.clear();
-  feedback.questions.dropOfField();
   filters.finish(*document.client());
   form.clear();
   heights.clear();
@@ -118,6 +122,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   colours.clear(settings.display);
   costs.reset();
   saving.dropWaiting();
+  feedback.dropOfField();
   if (const auto closed = document.close(afterwards); !closed)
     warn(fmt::format("{}: what was not written is lost", closed.error().line()));
 }

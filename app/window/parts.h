@@ -90,6 +90,8 @@ struct Parts {
   bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
+  /// How a file is to be read: as the command line says, else as was said of this file before.
+  [[nodiscard]] ScanOptions readingOf(const std::string& path) const;
   /// Of the document or coarse picture that is shown; null when there is none.
   [[nodiscard]] const engine::Grid* seenGrid() const;
   /// Whether the coarse picture is shown.

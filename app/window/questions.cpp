@@ -151,4 +151,9 @@ Question Questions::close() {
   return answered;
 }
 
+void Feedback::dropOfField() {
+  questions.dropOfField();
+  std::erase_if(notices, [](const Notice& notice) { return !notice.what.starts_with(kDeviceLost); });
+}
+
 }  // namespace fettle::app

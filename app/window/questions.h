@@ -112,6 +112,9 @@ class Questions {
   render::Key key_ = render::Key::kNone;
 };
 
+/// How notices of the graphics device begin.
+inline constexpr const char* kDeviceLost = "the graphics device was lost";
+
 /// Messages and dialogs for the user: the notices over the panels, the line of the status bar, the dialogs.
 /// The parts of the window report here. Threading: main.
 struct Feedback {
@@ -121,6 +124,8 @@ struct Feedback {
   std::string status;
   Questions questions;
 
+  /// What is said of a field goes with it: questions, and notices but for those of the graphics device.
+  void dropOfField();
   void note(const engine::Error& error) { notices.push_back({error.what, error.remedy}); }
   /// Shows a message dialog.
   void message(std::string what, std::string remedy) {

@@ -283,9 +283,10 @@ void Workstation::carryOut(Answer answer) {
         askToOpen(question.path);
       else
         p.feedback.questions.ask(
-            {.kind = Kind::kImport, .path = std::move(question.path), .reading = options_.reading});
+            {.kind = Kind::kImport, .path = question.path, .reading = parts_.readingOf(question.path)});
       break;
     case Kind::kImport:
+      p.files.readings.note(question.path, *question.reading);
       askToOpen(question.path, std::move(question.reading));
       break;
     case Kind::kCompare:
@@ -344,7 +345,7 @@ void Workstation::open(const std::string& path, const std::optional<ScanOptions>
 void Workstation::load(const std::string& path, Recovery recovery,
                        const std::optional<ScanOptions>& reading) {
   parts_.dropCoarse();
-  parts_.opening.start(path, recovery, reading.value_or(options_.reading), parts_.document.isOpen());
+  parts_.opening.start(path, recovery, reading ? *reading : parts_.readingOf(path), parts_.document.isOpen());
 }
 
 void Workstation::takeOpened() {
@@ -396,7 +397,7 @@ void Workstation::startDocument(Document document) {
   p.picture.clear();
   p.chooseTool(std::nullopt);
   p.recent.add(p.document.path());
-  for (const std::string& warning : document.warnings) p.feedback.notices.push_back({warning, ""});
+  noteWarnings(document.warnings);
   if (options_.scene) noteWithoutForce(client, p.feedback.notices);
   if (document.recovered)
     p.feedback.notices.push_back(
@@ -405,6 +406,22 @@ void Workstation::startDocument(Document document) {
                                   grid.width, grid.height, grid.spacing_x * p.units.length.per_unit,
                                   grid.spacing_y * p.units.length.per_unit, p.units.length.name);
   window_->setTitle(p.document.fileName() + " - Fettle");
+}
+
+// What reading said, with the name of the file; where an option of the command line would say more, the page for it.
+void Workstation::noteWarnings(const std::vector<std::string>& warnings) {
+  Parts& p = parts_;
+  const bool scan = !isSessionPath(p.document.path());
+  if (const auto said = p.files.readings.find(p.document.path());
+      scan && said && scanOptionsText(*said) == scanOptionsText(p.reading))
+    p.feedback.notices.push_back(
+        {fmt::format("{} is read as you said:{}", p.document.fileName(), scanOptionsText(*said)),
+         "Ctrl+Shift+O changes it"});
+  for (const std::string& warning : warnings) {
+    const bool can_be_said = scan && warning.find("--") != std::string::npos;
+    p.feedback.notices.push_back(
+        {fmt::format("{}: {}", p.document.fileName(), warning), can_be_said ? "or Ctrl+Shift+O" : ""});
+  }
 }
 
 void Workstation::restoreSections(const Document& document) {
@@ -488,10 +505,10 @@ void Workstation::renewPicture() {
     return;
   }
   std::vector<Notice>& notices = parts_.feedback.notices;
-  std::erase_if(notices, [](const Notice& n) { return n.what.starts_with("the graphics device was lost"); });
+  std::erase_if(notices, [](const Notice& n) { return n.what.starts_with(kDeviceLost); });
   notices.push_back({before == window_->device()
-                         ? std::string("the graphics device was lost and works again")
-                         : fmt::format("the graphics device was lost; {} is used now", window_->device()),
+                         ? fmt::format("{} and works again", kDeviceLost)
+                         : fmt::format("{}; {} is used now", kDeviceLost, window_->device()),
                      "the field, its marks and its steps are unchanged"});
 }
 

@@ -63,6 +63,7 @@ class Workstation {
   void load(const std::string& path, Recovery recovery, const std::optional<ScanOptions>& reading);
   void takeOpened();
   void startDocument(Document document);
+  void noteWarnings(const std::vector<std::string>& warnings);
   void restoreSections(const Document& document);
   void noteHeights();
   void followForm();

@@ -181,7 +181,8 @@ void preview(const Question& question, Parts& parts, float scale) {
     const bool scan = browser.chosen() && browser.entry(*browser.chosen()).scan &&
                       browser.pathOf(*browser.chosen()) == question.path;
     if (scan) {
-      const ThumbnailShelf::Shown shown = parts.files.shelf.find(question.path, parts.usual_reading);
+      const ThumbnailShelf::Shown shown =
+          parts.files.shelf.find(question.path, parts.readingOf(question.path));
       ImGui::PushTextWrapPos(0.0F);
       if (shown.picture != nullptr) {
         const float side = ImGui::GetContentRegionAvail().x;

@@ -21,7 +21,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
   const std::filesystem::path file(path);
   ImGui::BeginGroup();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ThumbnailShelf::Shown shown = parts.files.shelf.find(path, parts.usual_reading);
+  const ThumbnailShelf::Shown shown = parts.files.shelf.find(path, parts.readingOf(path));
   const ImVec2 size(kCardWidth * scale, kCardPicture * scale);
   if (shown.picture != nullptr)
     (void)scanPicture(*shown.picture, size, kStep);

@@ -104,6 +104,9 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   const State read =
       program->until("the scan", [&](const State& s) { return s["path"] == counts && s["settled"] == true; });
   EXPECT_TRUE(says(read, "0.05")) << read["status"];
+  ASSERT_FALSE(read["notices"].empty());
+  for (const State& notice : read["notices"])
+    EXPECT_TRUE(notice.get<std::string>().starts_with("counts.asc")) << notice;
   EXPECT_GE(read["colours"][0].get<double>(), 0.09) << "the holes are holes, the counts are thousandths";
   EXPECT_LE(read["colours"][1].get<double>(), 0.14);
   // Another unit later, without looking for the file again; what was said before stands there.
@@ -115,7 +118,15 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
     return s["settled"] == true && s["dialog"] == "none" && s["colours"][1].get<double>() > 0.2;
   });
   EXPECT_EQ(again["path"], counts);
+  EXPECT_EQ(again["notices"].size(), read["notices"].size())
+      << "those of before went with what they were about";
   quit(user);
+  // It is read so from now on.
+  const auto next = start({counts});
+  User later(display, *next, "import again");
+  const State remembered = opened(*next);
+  EXPECT_EQ(remembered["colours"], again["colours"]);
+  quit(later);
 }
 
 TEST_F(WindowTest, the_start_page_shows_what_was_opened_last_and_has_a_sample) {
