@@ -142,6 +142,8 @@ engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::Job
                 {"p99_ratio", measured->p99_ratio},
                 {"p999_ratio", measured->p999_ratio},
                 {"refused_edits", measured->refused_edits},
+                {"device", options.device.empty() ? Report() : Report(options.device)},
+                {"device_inputs", measured->device_inputs},
                 {"cyclictest", has_cyclictest ? reference : Report()},
                 {"no_cyclictest", has_cyclictest ? Report() : Report(measured->no_cyclictest)},
                 {"rows", {rowOf(measured->loop), reference}}};
@@ -151,10 +153,10 @@ void printLoop(const Report& report) {
   fmt::print("{}\n{:.0f} s at {:.0f} Hz, {}\n\n", report["machine"].get<std::string>(),
              report["seconds"].get<double>(), report["rate_hz"].get<double>(),
              report["load"].get<std::string>());
-  fmt::print("{:<16}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>11}\n", "lateness, us", "p50", "p99", "p99.9",
+  fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>11}\n", "lateness, us", "p50", "p99", "p99.9",
              "p99.99", "worst", "missed", "over 1 ms");
   for (const Report& row : report["rows"])
-    fmt::print("{:<16}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>9}{:>11}\n",
+    fmt::print("{:<28}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>9}{:>11}\n",
                row["name"].get<std::string>(), row["lateness_p50_us"].get<double>(),
                row["lateness_p99_us"].get<double>(), row["lateness_p999_us"].get<double>(),
                row["lateness_p9999_us"].get<double>(), row["lateness_worst_us"].get<double>(),
@@ -350,6 +352,9 @@ void addBench(Command root, Chosen& chosen) {
        .text = "Rate of the loop",
        .range = Range{1000.0, 10000.0},
        .unit = "ticks per second"},
+      {.name = "--device",
+       .to = &loop_options->device,
+       .text = "Drive this device instead of a simulated hand, unarmed: its forces stay zero"},
       {.name = "--busy", .to = busy.get(), .text = "Keep every core busy with other processes"},
   });
 

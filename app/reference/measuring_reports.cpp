@@ -68,6 +68,8 @@ std::vector<ReportSchema> measuring() {
           {"p99_ratio", "number", ""},
           {"p999_ratio", "number", ""},
           {"refused_edits", "integer", ""},
+          {"device", "string?", "what the loop drove; none: a simulated hand"},
+          {"device_inputs", "integer", "reports that came from it"},
           {"cyclictest", "object?", "", lateness},
           {"no_cyclictest", "string?", "why it was not run"},
           rows(lateness)}}}},

@@ -15,6 +15,7 @@
 
 #include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
+#include "haptic/devices/enumerate.h"
 #include "haptic/loop/cyclictest.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/pacer.h"
@@ -153,7 +154,11 @@ class Measurement {
     report_.rate_hz = options_.rate_hz;
     report_.load = options_.load;
     report_.machine = machineName();
-    fill(report_.loop, "haptic loop", loop_timing_);
+    if (!was_connected_)
+      return engine::failure("nothing came from the device", options_.device,
+                             "see fettle devices for what is missing");
+    fill(report_.loop, options_.device.empty() ? "haptic loop" : "haptic loop, " + options_.device,
+         loop_timing_);
     fill(report_.reference, report_.no_cyclictest.empty() ? "cyclictest" : "plain thread", reference_timing_);
     report_.p99_ratio = ratio(report_.loop.lateness.p99_ns, report_.reference.lateness.p99_ns);
     report_.p999_ratio = ratio(report_.loop.lateness.p999_ns, report_.reference.lateness.p999_ns);
@@ -202,7 +207,9 @@ class Measurement {
 
   engine::Status withLoop(int core, double seconds) {
     const engine::Version field = benchField();
-    SimulatedPress device;
+    auto opened = openMeasured();
+    if (!opened) return tl::unexpected(opened.error());
+    Device& device = **opened;
     HapticLoop::Settings settings;
     settings.options.tool = Tool::kSmooth;
     settings.options.limits = limitsFor(device.profile());
@@ -213,10 +220,15 @@ class Measurement {
     auto created = HapticLoop::create(field, field, scene, device, settings);
     if (!created) return tl::unexpected(created.error());
     HapticLoop& loop = **created;
+    if (engine::Status started = device.start(); !started) return started;
     if (engine::Status started = loop.start(); !started) return started;
-    static_cast<void>(loop.send(loop.armCommand()));
+    // Somebody may hold a device: a benchmark pushes nobody's hand.
+    if (options_.device.empty()) static_cast<void>(loop.send(loop.armCommand()));
     engine::Status done = wait(seconds, &loop);
     static_cast<void>(loop.stop());
+    device.stop();
+    was_connected_ = was_connected_ || loop.state().link == LinkState::kConnected;
+    report_.device_inputs += device.counters().inputs;
     report_.loop.missing = loop.realTime().missing;
     report_.loop.latency_held = loop.realTime().latency_held;
     report_.refused_edits += loop.state().refused_edits;
@@ -224,6 +236,11 @@ class Measurement {
     loop_timing_.compute.add(loop.timing().compute);
     loop_timing_.addMissed(static_cast<std::int64_t>(loop.timing().missed.load(std::memory_order_relaxed)));
     return done;
+  }
+
+  [[nodiscard]] engine::Result<std::unique_ptr<Device>> openMeasured() const {
+    if (options_.device.empty()) return std::make_unique<SimulatedPress>();
+    return openDevice(options_.device, options_.rate_hz);
   }
 
   // The main thread's part: takes events and reads the state as a display would.
@@ -239,7 +256,7 @@ class Measurement {
     return {};
   }
 
-  static void fill(LoopBenchRow& row, const char* name, const LoopTiming& timing) {
+  static void fill(LoopBenchRow& row, const std::string& name, const LoopTiming& timing) {
     row.name = name;
     row.lateness = timing.lateness.figures();
     row.compute = timing.compute.figures();
@@ -254,6 +271,7 @@ class Measurement {
   engine::JobControl& job_;
   LoopBenchReport report_;
   LoopTiming loop_timing_, reference_timing_;
+  bool was_connected_ = false;  // the device, in a slice
 };
 
 }  // namespace

@@ -21,6 +21,9 @@ struct LoopBenchOptions {
   double rate_hz = 1000.0;  ///< 1000 .. 10000
   BenchLoad load = BenchLoad::kIdle;
   int priority = 80;  ///< SCHED_FIFO of both threads; 0 = normal
+  /// A device as `--device` names it, driven by the loop instead of the simulated hand; nobody arms, so it is given zero
+  /// forces only. Empty: the simulated hand.
+  std::string device{};
 };
 
 /// Timing of one thread.
@@ -45,7 +48,8 @@ struct LoopBenchReport {
   double p99_ratio = 0.0;     ///< loop over reference; 0 when that is 0
   double p999_ratio = 0.0;    ///< likewise. Target: at most 1.2
   std::uint64_t refused_edits = 0;
-  std::uint64_t events = 0;  ///< publications that the main side took
+  std::uint64_t events = 0;         ///< publications that the main side took
+  std::uint64_t device_inputs = 0;  ///< of options.device: reports that arrived
 };
 
 /// Measures the live loop together with cyclictest, or where that is not installed with a plain thread in its
@@ -53,10 +57,10 @@ struct LoopBenchReport {
 /// cores, so that conditions are equal, in slices of some seconds, and change cores from slice to slice, so
 /// that a core with more interrupts favours neither; on one core they take the slices in turns. The loop does
 /// all it does in a session: a simulated hand presses and smooths a 1024 x 1024 field throughout, the main
-/// thread takes the edits.
+/// thread takes the edits. With a device of options.device the loop drives that one, its driver's threads and all.
 ///
-/// Progress: stage "measuring", steps = milliseconds. Errors: kInput for options out of range; kCancelled;
-/// kFailed when threads or memory are not available. Thread: main; blocks.
+/// Progress: stage "measuring", steps = milliseconds. Errors: kInput for options out of range, and as openDevice();
+/// kCancelled; kFailed when threads or memory are not available, or nothing came from the device. Thread: main; blocks.
 [[nodiscard]] engine::Result<LoopBenchReport> benchLoop(const LoopBenchOptions& options,
                                                         engine::JobControl& job);
 

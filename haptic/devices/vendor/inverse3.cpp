@@ -24,6 +24,8 @@ constexpr std::int64_t kFirstMessageNs = 500'000'000;
 constexpr std::int64_t kStopLookNs = 5'000'000;     // between two looks at whether the link stops
 constexpr std::int64_t kSilenceNs = 1'000'000'000;  // then the connection is given up and opened again
 constexpr std::int64_t kExchangeNs = 1'000'000;     // longest pause between two exchanges
+constexpr std::int64_t kFullStateNs = 200'000'000;  // between two questions for a calibration
+constexpr std::int64_t kLastZeroNs = 50'000'000;    // for the answer to a zero that ends a connection
 
 // The service's frame: x right, y away from the person, z up, 0 in the base, which stands behind the tip. This is
 // the middle of what the arm reaches.
@@ -58,15 +60,26 @@ class Inverse3Counterpart final : public Counterpart {
   void serve(ExchangeSlots& slots) noexcept override;
 
  private:
-  enum class Step : std::uint8_t { kGood, kGone };
-  [[nodiscard]] Step exchange(ExchangeSlots& slots, const std::string& id);
-  [[nodiscard]] Step awaitState(ExchangeSlots& slots, const std::string& id);
+  enum class Step : std::uint8_t {
+    kGood,
+    kDeviceGone,   // the service does not name the device any more
+    kServiceGone,  // the connection ended, or nothing came for too long
+  };
+  [[nodiscard]] Step exchange(ExchangeSlots& slots);
+  [[nodiscard]] Step awaitState(ExchangeSlots& slots);
+  [[nodiscard]] Step dropUnasked(ExchangeSlots& slots);
+  [[nodiscard]] Inverse3Asks asksFor(const ExchangeSlots& slots);
   void take(ExchangeSlots& slots, const Inverse3State& state, std::uint32_t buttons);
+  void sendLastZero();
 
   const std::string which_;
   const std::string address_;
   WebSocket socket_;
   std::string text_;
+  // Of a connection.
+  std::string id_;
+  Inverse3Form form_ = Inverse3Form::kValues;
+  std::int64_t full_state_asked_ns_ = 0;
 };
 
 void Inverse3Counterpart::take(ExchangeSlots& slots, const Inverse3State& state, std::uint32_t buttons) {
@@ -78,15 +91,15 @@ void Inverse3Counterpart::take(ExchangeSlots& slots, const Inverse3State& state,
 }
 
 // The one state that answers the message just sent.
-Inverse3Counterpart::Step Inverse3Counterpart::awaitState(ExchangeSlots& slots, const std::string& id) {
+Inverse3Counterpart::Step Inverse3Counterpart::awaitState(ExchangeSlots& slots) {
   const std::int64_t until = engine::steadyNs() + kSilenceNs;
   const std::int64_t until_stopped = engine::steadyNs() + 100'000'000;
   for (;;) {
     const WebSocket::Outcome outcome = socket_.receive(text_, kStopLookNs);
-    if (outcome == WebSocket::Outcome::kGone) return Step::kGone;
+    if (outcome == WebSocket::Outcome::kGone) return Step::kServiceGone;
     if (outcome == WebSocket::Outcome::kDone) break;
     const std::int64_t now = engine::steadyNs();
-    if (now > until || (slots.stopping() && now > until_stopped)) return Step::kGone;
+    if (now > until || (slots.stopping() && now > until_stopped)) return Step::kServiceGone;
   }
   const std::optional<Inverse3Message> message = decodeInverse3(text_);
   if (!message) {  // it was an answer all the same: the next message brings the next
@@ -94,17 +107,46 @@ Inverse3Counterpart::Step Inverse3Counterpart::awaitState(ExchangeSlots& slots, 
     slots.notSent();
     return Step::kGood;
   }
-  const Inverse3State* const state = deviceNamed(*message, id);
-  if (state == nullptr) return Step::kGone;  // unplugged from the service
+  const Inverse3State* const state = deviceNamed(*message, id_);
+  if (state == nullptr) return Step::kDeviceGone;
   slots.sent();
   take(slots, *state, message->buttons);
   return Step::kGood;
 }
 
-Inverse3Counterpart::Step Inverse3Counterpart::exchange(ExchangeSlots& slots, const std::string& id) {
-  const std::string message = encodeInverse3(id, slots.forceToSend());
-  if (socket_.send(message, kSilenceNs) != WebSocket::Outcome::kDone) return Step::kGone;
-  return awaitState(slots, id);
+// A service that says more than one state for a message would be read later and later: a pose that grows old makes the
+// loop unstable. At most so many at once, so that a flood does not hold the zero at the end up.
+Inverse3Counterpart::Step Inverse3Counterpart::dropUnasked(ExchangeSlots& slots) {
+  constexpr int kMostAtOnce = 16;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    const WebSocket::Outcome outcome = socket_.receiveIfThere(text_);
+    if (outcome == WebSocket::Outcome::kGone) return Step::kServiceGone;
+    if (outcome == WebSocket::Outcome::kTimeout) break;
+    slots.badInput();
+  }
+  return Step::kGood;
+}
+
+// 3.1 states a calibration only when it is asked for all.
+Inverse3Asks Inverse3Counterpart::asksFor(const ExchangeSlots& slots) {
+  const std::int64_t now = engine::steadyNs();
+  if (slots.state() != LinkState::kUncalibrated || now - full_state_asked_ns_ < kFullStateNs)
+    return Inverse3Asks::kState;
+  full_state_asked_ns_ = now;
+  return Inverse3Asks::kFullState;
+}
+
+Inverse3Counterpart::Step Inverse3Counterpart::exchange(ExchangeSlots& slots) {
+  if (const Step step = dropUnasked(slots); step != Step::kGood) return step;
+  const std::string message = encodeInverse3(form_, id_, slots.forceToSend(), asksFor(slots));
+  if (socket_.send(message, kSilenceNs) != WebSocket::Outcome::kDone) return Step::kServiceGone;
+  return awaitState(slots);
+}
+
+// To a device that the service stopped naming: if it names it in the next message again, it must not hold its last force.
+void Inverse3Counterpart::sendLastZero() {
+  if (socket_.send(encodeInverse3(form_, id_, glm::dvec3(0.0)), kLastZeroNs) == WebSocket::Outcome::kDone)
+    static_cast<void>(socket_.receive(text_, kLastZeroNs));
 }
 
 void Inverse3Counterpart::serve(ExchangeSlots& slots) noexcept try {
@@ -113,16 +155,19 @@ void Inverse3Counterpart::serve(ExchangeSlots& slots) noexcept try {
   const std::optional<Inverse3Message> first = decodeInverse3(text_);
   const Inverse3State* const device = first ? deviceNamed(*first, which_) : nullptr;
   if (device == nullptr) return socket_.close();
+  id_ = device->device_id;
+  form_ = first->form;
   const bool calibrated = device->calibrated.value_or(true);
   slots.opened(calibrated ? LinkState::kConnected : LinkState::kUncalibrated, inverse3Profile().max_force_n);
   // While stopping, forces are zero: the exchange after the loop is the last zero.
   Step step = Step::kGood;
   while (step == Step::kGood && !slots.stopping()) {
     const std::int64_t start = engine::steadyNs();
-    step = exchange(slots, device->device_id);
+    step = exchange(slots);
     slots.waitForForce(start + kExchangeNs);
   }
-  if (step == Step::kGood) static_cast<void>(exchange(slots, device->device_id));
+  if (step == Step::kGood) step = exchange(slots);
+  if (step == Step::kDeviceGone) sendLastZero();
   socket_.close();
 } catch (const std::exception&) {  // no memory: as if the service were gone
   socket_.close();

@@ -69,6 +69,7 @@ std::optional<Inverse3Message> decodeInverse3(std::string_view text) {
   const Json root = Json::parse(text, nullptr, false);
   if (!root.is_object()) return std::nullopt;
   Inverse3Message message;
+  if (root.contains("session_id")) message.form = Inverse3Form::kVector;
   if (const Json* const devices = member(root, "inverse3")) {
     if (!devices->is_array()) return std::nullopt;
     for (const Json& entry : *devices) {
@@ -86,10 +87,14 @@ std::optional<Inverse3Message> decodeInverse3(std::string_view text) {
   return message;
 }
 
-std::string encodeInverse3(std::string_view device_id, const glm::dvec3& force_n) {
-  const Json values{{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}};
-  const Json device{{"device_id", device_id}, {"commands", {{"set_cursor_force", {{"values", values}}}}}};
-  return Json{{"inverse3", Json::array({device})}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string encodeInverse3(Inverse3Form form, std::string_view device_id, const glm::dvec3& force_n,
+                           Inverse3Asks asks) {
+  const char* const name = form == Inverse3Form::kVector ? "vector" : "values";
+  const Json force{{name, {{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}}}};
+  const Json device{{"device_id", device_id}, {"commands", {{"set_cursor_force", force}}}};
+  Json message{{"inverse3", Json::array({device})}};
+  if (asks == Inverse3Asks::kFullState) message["session"] = {{"force_render_full_state", Json::object()}};
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace fettle::haptic

@@ -23,6 +23,7 @@ namespace beast = boost::beast;
 using tcp = asio::ip::tcp;
 
 constexpr std::size_t kLongestMessage = 65536;
+constexpr std::int64_t kCloseNs = 100'000'000;
 
 }  // namespace
 
@@ -45,6 +46,33 @@ struct WebSocket::Impl {
     }
   }
 
+  // Beast allows a close beside a read that has not ended.
+  void sayClosed() {
+    if (!stream || !stream->is_open() || writing) return;
+    bool busy = true;
+    stream->async_close(beast::websocket::close_code::normal, [&busy](beast::error_code) { busy = false; });
+    runWhile(busy, kCloseNs);
+    if (busy) drop();  // its handler uses this frame
+  }
+
+  void startReading() {
+    if (reading) return;
+    buffer.clear();
+    reading = true;
+    stream->async_read(buffer, [this](beast::error_code e, std::size_t) {
+      read_error = e;
+      reading = false;
+    });
+  }
+
+  // Of the read that was started.
+  [[nodiscard]] Outcome received(std::string& message) const {
+    if (reading) return Outcome::kTimeout;
+    if (read_error) return Outcome::kGone;
+    message = beast::buffers_to_string(buffer.data());
+    return Outcome::kDone;
+  }
+
   // Cancels what runs and waits for its handler, which uses members of this.
   void drop() {
     if (!stream) return;
@@ -64,7 +92,10 @@ WebSocket::~WebSocket() {
   close();
 }
 
-void WebSocket::close() noexcept try { impl_->drop(); } catch (const std::exception&) {
+void WebSocket::close() noexcept try {
+  impl_->sayClosed();
+  impl_->drop();
+} catch (const std::exception&) {
 }
 
 WebSocket::Outcome WebSocket::connect(const std::string& address, std::int64_t for_ns) noexcept try {
@@ -127,19 +158,21 @@ WebSocket::Outcome WebSocket::send(const std::string& message, std::int64_t for_
 WebSocket::Outcome WebSocket::receive(std::string& message, std::int64_t for_ns) noexcept try {
   Impl& s = *impl_;
   if (!s.stream) return Outcome::kGone;
-  if (!s.reading) {
-    s.buffer.clear();
-    s.reading = true;
-    s.stream->async_read(s.buffer, [&s](beast::error_code e, std::size_t) {
-      s.read_error = e;
-      s.reading = false;
-    });
-  }
+  s.startReading();
   s.runWhile(s.reading, for_ns);
-  if (s.reading) return Outcome::kTimeout;
-  if (s.read_error) return Outcome::kGone;
-  message = beast::buffers_to_string(s.buffer.data());
-  return Outcome::kDone;
+  return s.received(message);
+} catch (const std::exception&) {
+  return Outcome::kGone;
+}
+
+WebSocket::Outcome WebSocket::receiveIfThere(std::string& message) noexcept try {
+  Impl& s = *impl_;
+  if (!s.stream) return Outcome::kGone;
+  s.startReading();
+  s.io.restart();
+  while (s.reading && s.io.poll_one() != 0) {
+  }
+  return s.received(message);
 } catch (const std::exception&) {
   return Outcome::kGone;
 }

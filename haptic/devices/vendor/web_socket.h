@@ -22,8 +22,10 @@ class WebSocket {
   /// `address`: "host:port". After kTimeout the connection has been given up.
   [[nodiscard]] Outcome connect(const std::string& address, std::int64_t for_ns) noexcept;
   [[nodiscard]] Outcome send(const std::string& message, std::int64_t for_ns) noexcept;
-  /// Nothing may be sent between a receive that timed out and the one that ends.
   [[nodiscard]] Outcome receive(std::string& message, std::int64_t for_ns) noexcept;
+  /// A message that is there already; kTimeout where none is.
+  [[nodiscard]] Outcome receiveIfThere(std::string& message) noexcept;
+  /// By the closing handshake, for which the other side has 100 ms; then the connection is cut.
   void close() noexcept;
 
  private:

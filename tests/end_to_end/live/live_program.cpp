@@ -16,7 +16,8 @@
 
 namespace fettle::tests {
 
-LiveProgram::LiveProgram(std::vector<std::string> arguments, const std::string& hid_folder) {
+LiveProgram::LiveProgram(std::vector<std::string> arguments, const std::string& hid_folder,
+                         const std::string& inverse3) {
   arguments.insert(arguments.begin(), FETTLE_PROGRAM);
   std::array<int, 2> in{};
   std::array<int, 2> out{};
@@ -29,7 +30,7 @@ LiveProgram::LiveProgram(std::vector<std::string> arguments, const std::string& 
                                                     // Nor makers' software of this machine.
                                                     {"FETTLE_LIBHD", hid_folder + "/libHD.so"},
                                                     {"FETTLE_LIBDHD", hid_folder + "/libdhd.so"},
-                                                    {"FETTLE_INVERSE3", "localhost:1"}});
+                                                    {"FETTLE_INVERSE3", inverse3}});
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ == 0) {

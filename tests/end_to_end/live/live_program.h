@@ -12,8 +12,10 @@ namespace fettle::tests {
 /// The built program while it runs: keys go in, what it says comes out, signals are sent. One thread.
 class LiveProgram {
  public:
-  /// Starts it with these arguments, `hid_folder` as the place of fake HID devices, and the drop-in hidapi.
-  LiveProgram(std::vector<std::string> arguments, const std::string& hid_folder);
+  /// Starts it with these arguments, `hid_folder` as the place of fake HID devices, and the drop-in hidapi. `inverse3`: where the
+  /// Inverse3's service is looked for; by default there is none.
+  LiveProgram(std::vector<std::string> arguments, const std::string& hid_folder,
+              const std::string& inverse3 = "localhost:1");
   ~LiveProgram();  ///< kills it if it still runs
   LiveProgram(const LiveProgram&) = delete;
   LiveProgram& operator=(const LiveProgram&) = delete;

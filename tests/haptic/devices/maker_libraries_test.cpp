@@ -1,10 +1,7 @@
 // The drivers of makers' libraries, threads and all, on replacements of these libraries that check each call. Nothing here asserts a time:
 // things are waited for, with a deadline far beyond any machine's load.
-#include <atomic>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -16,13 +13,14 @@
 #include "haptic/devices/enumerate.h"
 #include "tests/haptic/devices/fake_vendor/fake_dhd.h"
 #include "tests/haptic/devices/fake_vendor/fake_hd.h"
+#include "tests/haptic/devices/loop_of_its_own.h"
 #include "tests/support/eventually.h"
 
 namespace fettle::haptic {
 namespace {
 
-using namespace std::chrono_literals;
 using tests::eventually;
+using Loop = tests::LoopOfItsOwn;
 
 template <class Fake>
 Fake& fakeOf(const char* file, const char* function) {
@@ -66,49 +64,6 @@ using TouchLibraryTest = MakerLibraryTest;
 using ForceDimensionLibraryTest = MakerLibraryTest;
 using MakerListTest = MakerLibraryTest;
 using FakeLibraryTest = MakerLibraryTest;
-
-// A loop on a thread of its own, some 1 kHz: reads, writes the force that was set, and notes what it saw.
-class Loop {
- public:
-  explicit Loop(Device& device) : device_(device), thread_([this] { run(); }) {}
-  ~Loop() {
-    stop_ = true;
-    thread_.join();
-  }
-  void setForce(const glm::dvec3& f) {
-    const std::lock_guard lock(mutex_);
-    force_ = f;
-  }
-  void setWrites(bool writes) { writes_ = writes; }
-  [[nodiscard]] DeviceInput input() const {
-    const std::lock_guard lock(mutex_);
-    return input_;
-  }
-
- private:
-  void run() {
-    while (!stop_) {
-      glm::dvec3 force;
-      {
-        const std::lock_guard lock(mutex_);
-        force = force_;
-      }
-      const DeviceInput in = device_.read();
-      if (writes_) device_.write(force);
-      {
-        const std::lock_guard lock(mutex_);
-        input_ = in;
-      }
-      std::this_thread::sleep_for(1ms);  // the loop's period
-    }
-  }
-  Device& device_;
-  mutable std::mutex mutex_;
-  glm::dvec3 force_{0.0};
-  DeviceInput input_;
-  std::atomic<bool> writes_{true}, stop_{false};
-  std::thread thread_;
-};
 
 std::unique_ptr<Device> opened(const std::string& words) {
   auto device = openDevice(words);

@@ -195,12 +195,20 @@ TEST(Inverse3Codec, BrokenMessagesAreRefusedOrReadAndNeverMore) {
   }
 }
 
-TEST(Inverse3Codec, AForceIsSentAsDocumented) {
-  const auto sent = nlohmann::json::parse(encodeInverse3("A\"7", {0.5, -1.0, 2.0}));
-  EXPECT_EQ(
-      sent,
-      nlohmann::json::parse(
-          R"({"inverse3":[{"device_id":"A\"7","commands":{"set_cursor_force":{"values":{"x":0.5,"y":-1,"z":2}}}}]})"));
+TEST(Inverse3Codec, AForceIsSentAsTheServiceNamesIt) {
+  using nlohmann::json;
+  const char* const force = R"({"x":0.5,"y":-1,"z":2})";
+  for (const char* name : {"values", "vector"}) {
+    const bool is_newer = name == std::string("vector");
+    const Inverse3Form form =
+        decodeInverse3(is_newer ? R"({"session_id":7,"inverse3":[]})" : R"({"inverse3":[]})")->form;
+    EXPECT_EQ(json::parse(encodeInverse3(form, "A\"7", {0.5, -1.0, 2.0})),
+              json::parse(R"({"inverse3":[{"device_id":"A\"7","commands":{"set_cursor_force":{")" +
+                          std::string(name) + "\":" + force + "}}}]}"));
+  }
+  const json full =
+      json::parse(encodeInverse3(Inverse3Form::kValues, "A", {0, 0, 0}, Inverse3Asks::kFullState));
+  EXPECT_EQ(full["session"], json::parse(R"({"force_render_full_state":{}})"));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "haptic/loop/loop_bench.h"
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "haptic/loop/cyclictest.h"
@@ -57,6 +59,18 @@ TEST(LoopBench, MeasuresBesideCyclictestWhereItIsInstalledAndSaysWhereItIsNot) {
   ASSERT_TRUE(brief);
   EXPECT_NE(brief->no_cyclictest, "");
   EXPECT_EQ(brief->reference.name, "plain thread");
+}
+
+TEST(LoopBench, DrivesADeviceThatIsNamedAndSaysWhereNothingComesFromIt) {
+  engine::JobControl job;
+  const auto report = benchLoop({.seconds = 0.4, .priority = 0, .device = "hand"}, job);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->loop.name, "haptic loop, hand");
+  EXPECT_GT(report->loop.lateness.count, 100U);
+  setenv("FETTLE_INVERSE3", "localhost:1", 1);  // nobody answers there
+  EXPECT_EQ(benchLoop({.seconds = 0.1, .priority = 0, .device = "inverse3"}, job).error().kind,
+            engine::ErrorKind::kFailed);
+  EXPECT_EQ(benchLoop({.device = "anvil"}, job).error().kind, engine::ErrorKind::kInput);
 }
 
 TEST(LoopBench, RefusesWhatIsOutOfRangeAndStopsWhenAskedTo) {

@@ -273,6 +273,7 @@ void hdGetIntegerv(unsigned parameter, int* values) {
 
 void hdSetDoublev(unsigned parameter, const double* values) {
   Library& l = library();
+  l.control.rules.check(parameter == 0x2700, "a force is all that is set: torques stay zero");
   if (parameter != 0x2700) return l.fail(kInvalidEnum);
   l.control.rules.check(l.in_frame && l.onServo(), "a force is set within a frame");
   l.control.rules.check(l.isOpen(l.current) && l.force_enabled[l.current],
