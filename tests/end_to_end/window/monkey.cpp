@@ -129,8 +129,8 @@ void Monkey::click(std::vector<std::string>& words, const State& state) {
   int least = 0, ties = 0;
   for (const State& t : texts) {
     const auto text = t["text"].get<std::string>();
-    // ".." would lead it out of its folder.
-    if (text.empty() || text == ".." || t["cut"] == true) continue;
+    // These would lead it out of its folder.
+    if (text.empty() || text == "Up" || text == "Home" || t["cut"] == true) continue;
     const int times = clicked_[withoutDigits(text)];
     if (chosen == nullptr || times < least) ties = 0;
     if (chosen != nullptr && times > least) continue;
@@ -207,9 +207,10 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
     say(words, {"click", "--delay", "0", "1"});
     return words;
   }
-  // Scrolled away: to one end or the other.
+  // Scrolled away: some way up or down. With many panels open it is on the screen at neither end.
   moveTo(words, left + 20, picture[1].get<int>() + picture[3].get<int>() / 2);
-  say(words, {"click", "--repeat", "40", "--delay", "0", below(2) == 0 ? "4" : "5"});
+  const std::string notches = std::to_string(1 + below(40));
+  say(words, {"click", "--repeat", notches, "--delay", "0", below(2) == 0 ? "4" : "5"});
   return words;
 }
 
