@@ -16,6 +16,7 @@
 
 #include <fcntl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 namespace fettle::fake {
 
@@ -81,10 +82,15 @@ struct FakeInverseService::Listener {
 class FakeInverseService::Connection {
  public:
   Connection(FakeInverseService& service, tcp::socket socket)
-      : service_(service), socket_(FrameByFrame(std::move(socket))), thread_([this] { run(); }) {}
+      : service_(service),
+        wake_(::fcntl(socket.native_handle(), F_DUPFD_CLOEXEC, 0)),
+        socket_(FrameByFrame(std::move(socket))),
+        thread_([this] { run(); }) {}
   ~Connection() {
-    ::shutdown(wire().native_handle(), SHUT_RDWR);  // ends what the thread waits for
+    // Ends what the thread waits for. By a file of its own: the thread may be closing the socket.
+    ::shutdown(wake_, SHUT_RDWR);
     thread_.join();
+    ::close(wake_);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -217,6 +223,7 @@ class FakeInverseService::Connection {
   }
 
   FakeInverseService& service_;
+  const int wake_;
   websocket::stream<FrameByFrame> socket_;
   beast::flat_buffer read_;
   std::array<double, 3> last_{};  // force that the program asked for
