@@ -57,7 +57,7 @@ inline void quit(Parts& p) {
 inline void openScan(Parts& p) {
   ask(p, Question::Kind::kOpen, p.document.path());
 }
-// Anew from its file; a session keeps what its steps were made on.
+// Reads the file of the scan again; a session keeps the scan that its steps were made on.
 inline void readAs(Parts& p) {
   if (isSessionPath(p.document.path()))
     p.feedback.message(

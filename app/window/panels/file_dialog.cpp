@@ -36,9 +36,13 @@ std::string dateText(std::int64_t changed_s) {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(static_cast<std::time_t>(changed_s)));
 }
 
-// The path in a folder that the dialog is about now: what is saved keeps its name.
+// The path of the dialog in a folder: what is saved keeps its name.
+std::string pathIn(const std::string& folder, const Question& question) {
+  return reads(question) ? folder : (fs::path(folder) / fs::path(question.path).filename()).string();
+}
+
 void enter(const std::string& folder, Question& question, Files& files) {
-  question.path = reads(question) ? folder : (fs::path(folder) / fs::path(question.path).filename()).string();
+  question.path = pathIn(folder, question);
   files.browser.goTo(folder);
 }
 
@@ -91,8 +95,8 @@ void placesList(Question& question, Files& files, float scale) {
 void folderLine(Question& question, Parts& parts) {
   Files& files = parts.files;
   if (ImGui::Button("Up")) {
+    question.path = pathIn(fs::path(files.browser.folder()).parent_path().string(), question);
     files.browser.goUp();
-    enter(fs::path(files.browser.folder()).parent_path().string(), question, files);
   }
   ImGui::SameLine();
   if (ImGui::Button(files.places.has(files.browser.folder()) ? "No bookmark" : "Bookmark"))

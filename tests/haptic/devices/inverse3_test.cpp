@@ -194,7 +194,7 @@ TEST_P(Inverse3Test, AServiceThatStandsIsSeenByTheLoop) {
   EXPECT_TRUE(goesOn());
   EXPECT_TRUE(eventually([&] { return loop_->input().output_waits_ns < 10'000'000; }));
   EXPECT_TRUE(gives(1.0));
-  // For good: the connection is given up, and the end does not wait for it.
+  // Permanently: the connection is given up, and the end does not wait for it.
   answer(InverseAnswer::kHugeFrame);
   EXPECT_TRUE(isAt(LinkState::kDisconnected));
   loop_.reset();
