@@ -6,10 +6,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "engine/compare/compare.h"
-#include "engine/compare/mark_distance.h"
-#include "engine/compare/tile_sums.h"
-
 namespace fettle::engine {
 
 namespace {
@@ -120,32 +116,15 @@ class ErrorMean {
 
 SampleJudge::SampleJudge(const Version& scan, const Mosaic& pieces, const SyntheticSample& sample,
                          double sigma)
-    : surface_(sampleHeights(sample.surface)), zones_(surface_.size(), Zone::kNone) {
+    : surface_(sampleHeights(sample.surface)), zones_(zonesBesideMarks(sample.edges)) {
   if (pieces.field.grid().samples() != scan.grid().samples())
     weights_ = weightsOf(scan, pieces, surface_, sigma);
-  const FieldReader edges = sample.edges.reader();
-  const TruthOptions options;
-  const auto squared = [](double distance) { return distance * distance; };
-  MarkDistance distance(static_cast<int>(options.flat));
-  const std::int64_t tiles = std::int64_t{edges.tileColumns()} * edges.tileRows();
   double judged = 0.0, near = 0.0;
-  for (std::int64_t tile = 0; tile < tiles; ++tile) {
-    const SampleRect rect = tileRect(edges, tile);
-    const std::vector<int>& to_edge = distance.measure(edges, rect);
-    for (std::int32_t r = 0; r < rect.rows; ++r)
-      for (std::int32_t c = 0; c < rect.columns; ++c) {
-        const std::size_t i =
-            static_cast<std::size_t>(rect.row + r) * static_cast<std::size_t>(edges.width()) +
-            static_cast<std::size_t>(rect.column + c);
-        if (std::isnan(surface_[i])) continue;
-        const double d2 = to_edge[static_cast<std::size_t>(r * kTileSide + c)];
-        zones_[i] = d2 <= squared(options.near_edge) ? Zone::kEdge
-                    : d2 > squared(options.flat)     ? Zone::kFlat
-                                                     : Zone::kBetween;
-        const double weight = weights_.empty() ? 1.0 : static_cast<double>(weights_[i]);
-        judged += weight;
-        if (zones_[i] == Zone::kEdge) near += weight;
-      }
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    if (std::isnan(surface_[i])) continue;
+    const double weight = weights_.empty() ? 1.0 : static_cast<double>(weights_[i]);
+    judged += weight;
+    if (zones_[i] == SampleZone::kEdge) near += weight;
   }
   edge_share_ = judged > 0.0 ? near / judged : 0.0;
 }
@@ -154,10 +133,10 @@ SampleErrors SampleJudge::errorsOf(const Version& filtered, Rare rare) const {
   const std::vector<float> heights = sampleHeights(filtered);
   ErrorMean flat, edge;
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    if (zones_[i] != Zone::kFlat && zones_[i] != Zone::kEdge) continue;
+    if (zones_[i] == SampleZone::kBetween) continue;
     const double error = static_cast<double>(heights[i]) - static_cast<double>(surface_[i]);
     if (std::isnan(error)) continue;
-    (zones_[i] == Zone::kFlat ? flat : edge)
+    (zones_[i] == SampleZone::kFlat ? flat : edge)
         .add(error * error, weights_.empty() ? 1.0 : static_cast<double>(weights_[i]));
   }
   return {flat.rms(rare), edge.rms(rare)};

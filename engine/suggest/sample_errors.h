@@ -5,6 +5,7 @@
 
 #include "engine/field/version.h"
 #include "engine/suggest/mosaic.h"
+#include "engine/suggest/sample_zones.h"
 #include "engine/suggest/synthetic_sample.h"
 
 namespace fettle::engine {
@@ -40,10 +41,8 @@ class SampleJudge {
   [[nodiscard]] double edgeShare() const noexcept { return edge_share_; }
 
  private:
-  enum class Zone : std::uint8_t { kNone, kFlat, kBetween, kEdge };
-
   std::vector<float> surface_;
-  std::vector<Zone> zones_;
+  std::vector<SampleZone> zones_;
   std::vector<float> weights_;  // empty: all 1
   double edge_share_ = 0.0;
 };

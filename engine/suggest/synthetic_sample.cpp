@@ -8,8 +8,10 @@
 
 #include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
+#include "engine/suggest/noise_match.h"
 #include "engine/suggest/noise_source.h"
 #include "engine/suggest/sample_edges.h"
+#include "engine/suggest/sample_zones.h"
 
 namespace fettle::engine {
 
@@ -115,19 +117,27 @@ Result<SyntheticSample> makeSyntheticSample(const Mosaic& pieces, const Grid& gr
   if (!surface) return tl::unexpected(surface.error());
   made.surface = *std::move(surface);
 
-  Samples noisy = samplesOf(made.surface);
   const std::vector<double> added = noiseFor(pieces, grid, noise, counts, seed);
-  for (std::size_t i = 0; i < noisy.z.size(); ++i)
-    noisy.z[i] = instead[i] == instead[i]
-                     ? raw.z[i]
-                     : static_cast<float>(counts.nearest(static_cast<double>(noisy.z[i]) + added[i]));
-  made.scan = makeField(noisy.grid, noisy.z, raw.marks);
 
   Samples faint = samplesOf(made.surface);
   for (std::size_t i = 0; i < faint.z.size(); ++i) faint.z[i] += static_cast<float>(kFaint * added[i]);
   auto edges = markSampleEdges(pieces.field, made.surface, makeField(faint.grid, faint.z), noise.sigma, job);
   if (!edges) return tl::unexpected(edges.error());
   made.edges = *std::move(edges);
+
+  const std::vector<SampleZone> zones = zonesBesideMarks(made.edges);
+  const std::vector<float> smooth = samplesOf(made.surface).z;
+  const auto withNoise = [&](const NoiseMatch& match) {
+    std::vector<float> z(raw.z);
+    for (std::size_t i = 0; i < z.size(); ++i)
+      if (instead[i] != instead[i])
+        z[i] = static_cast<float>(
+            counts.nearest(static_cast<double>(smooth[i]) + match.in(zones[i]) * added[i]));
+    return makeField(raw.grid, z, raw.marks);
+  };
+  const auto match = matchNoise(pieces.field, withNoise({}), zones, noise.sigma, job);
+  if (!match) return tl::unexpected(match.error());
+  made.scan = withNoise(*match);
 
   std::vector<float> judged(raw.z.size(), std::nanf(""));
   for (const Mosaic::Piece& piece : pieces.pieces) {

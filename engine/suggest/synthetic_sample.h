@@ -29,7 +29,8 @@ struct SyntheticSample {
 ///
 /// An outlier is a sample that lies more than 6 sigma above or below all of its neighbours; where fewer than one of
 /// 10,000 is, they stay in the surface. The noise is made of the
-/// parts of the model (NoiseSource), at each sample as large as the model's map says. What of the pieces' noise the filter
+/// parts of the model (NoiseSource), at each sample as large as the model's map says, and on flats and near edges so that
+/// a filter takes off the sample what it takes off the pieces (noise_match.h). What of the pieces' noise the filter
 /// leaves, a tenth of it on flats, counts as surface; details below the noise that it removes are missing. Marks of
 /// the pieces stay in `scan`. Bit-identical for the same seed. Errors: cancelled; memory (kFailed). Throws
 /// std::bad_alloc.
