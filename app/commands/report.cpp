@@ -194,7 +194,7 @@ class ScanReport {
     engine::JobControl own = engine::JobControl::partOf(job_);
     ScanReport small(options, own);
     small.imported_.field = piece;
-    for (const ShownState& state : states_) small.states_.push_back({state.name, piece});
+    for (const ShownState& state : states_) small.states_.push_back({.name = state.name, .field = piece});
     const auto text = small.page(extension);
     if (!text) return tl::unexpected(text.error());
     return engine::writeFileAtomically(path, *text);
@@ -231,9 +231,9 @@ class ScanReport {
         return engine::inputError(fmt::format("the original has {} x {} samples, the scan {} x {}", a.width,
                                               a.height, b.width, b.height),
                                   shownInput(options_.original), "give the scan that it was made from");
-      states_.push_back({"Before", *std::move(original)});
+      states_.push_back({.name = "Before", .field = *std::move(original)});
     }
-    states_.push_back({states_.empty() ? "Value" : "After", imported_.field});
+    states_.push_back({.name = states_.empty() ? "Value" : "After", .field = imported_.field});
     return {};
   }
 
@@ -285,10 +285,11 @@ class ScanReport {
 
   engine::Status addNoise() {
     std::vector<std::string> row = {"Noise, standard deviation"};
-    for (const ShownState& state : states_) {
+    for (ShownState& state : states_) {
       const auto noise = engine::measureNoise(state.field, job_);
       if (!noise) return tl::unexpected(noise.error());
       row.push_back(plain(noise->sigma));
+      state.noise_mm = noise->sigma * state.field.grid().height_unit.mm;
     }
     heights_.rows.insert(heights_.rows.end() - 1, std::move(row));
     for (std::size_t i = 0; i < heights_.rows.size(); ++i)
@@ -430,7 +431,18 @@ class ScanReport {
 
   engine::Status addSections() {
     report_["sections"] = options_.sections.lines.size();
-    return app::addSections(page_, options_.sections, states_, job_);
+    if (auto status = app::addSections(page_, options_.sections, states_, job_); !status) return status;
+    if (imported_.sections.empty()) return {};
+    const auto kept = sectionsOf(imported_.sections);
+    if (!kept) return tl::unexpected(kept.error());
+    report_["kept_sections"] = kept->size();
+    if (const auto possible = plotsCanBeMade(); !possible) {
+      page_.parts.emplace_back(
+          ReportPage::Paragraph{fmt::format("{} sections that are kept with the session are not shown: {}.",
+                                            kept->size(), possible.error().what)});
+      return {};
+    }
+    return addKeptSections(page_, *kept, states_, job_);
   }
 
   // What the figures depend on besides the samples; of a session also what made its scan and how it was touched.
@@ -606,7 +618,8 @@ void addReport(Command root, Chosen& chosen) {
   command.notes(
       "One file without links to others: pictures from the side and from above, noise, surface texture about "
       "a form, its material ratio curve, autocorrelation and power spectrum, sections, of a session before "
-      "and after, with its settings, its steps and the hash of each state. The same scan gives the same "
+      "and after, those that the window kept with it, too, with its settings, its steps and the hash of each "
+      "state. The same scan gives the same "
       "page, "
       "on one machine to the byte. In a PDF text can be selected and searched; it is A4.");
   command.examples({{"fettle report scan.tif report.html", "Pictures and figures of a scan"},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "app/commands/section_files.h"
 #include "app/commands/section_options.h"
 #include "app/work/read_units.h"
+#include "app/work/section_report.h"
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 
@@ -113,6 +115,89 @@ ReportPage::Table figuresOf(const std::vector<engine::Section>& sections,
   return table;
 }
 
+// A line's profiles of all states, and the units that suit them.
+struct TakenProfiles {
+  std::vector<engine::Section> sections;
+  ReadAs along, height;
+};
+
+engine::Result<TakenProfiles> takenAlong(const std::vector<glm::dvec2>& points, double width_mm,
+                                         const std::vector<ShownState>& states, engine::JobControl& job) {
+  engine::SectionOptions of;
+  of.width_mm = width_mm;
+  TakenProfiles taken;
+  HeightSpan span;
+  for (const ShownState& state : states) {
+    auto section = engine::sectionAlong(state.field, points, of, job);
+    if (!section) return tl::unexpected(section.error());
+    span.add(*section);
+    taken.sections.push_back(*std::move(section));
+  }
+  taken.along = readLengthAs(taken.sections.front().lengthMm(), 1.0, "mm");
+  taken.height = readLengthAs(span.high - span.low, 1.0, "mm");
+  return taken;
+}
+
+// A heading and the profiles over each other.
+engine::Status addDrawing(ReportPage& page, const std::string& name, const std::vector<glm::dvec2>& points,
+                          const TakenProfiles& taken, const std::vector<ShownState>& states,
+                          std::vector<SectionMark> marks) {
+  const engine::Section& first = taken.sections.front();
+  DrawnSection drawn{states.front().name, first, {}, "", std::move(marks)};
+  if (taken.sections.size() > 1) {
+    drawn.other = taken.sections.back();
+    drawn.other_name = states.back().name;
+  }
+  const auto svg = drawnByGnuplot(sectionsPlot({drawn}));
+  if (!svg) return tl::unexpected(svg.error());
+  page.parts.emplace_back(ReportPage::Heading{name});
+  page.parts.emplace_back(ReportPage::Plot{
+      fmt::format("Heights from {:.6g}, {:.6g} to {:.6g}, {:.6g} mm, {:.5g} {} long{}", points.front().x,
+                  points.front().y, points.back().x, points.back().y, first.lengthMm() / taken.along.size,
+                  taken.along.name, first.lanes > 1 ? fmt::format(", means of {} lanes", first.lanes) : ""),
+      *svg});
+  return {};
+}
+
+// A figure of a section in all states.
+struct FigureRow {
+  std::string name, unit;
+  std::vector<std::string> cells;
+};
+
+// "step_mm" as "step" and "mm".
+std::pair<std::string, std::string> nameAndUnit(const std::string& key) {
+  for (const std::string_view unit : {"mm", "deg"})
+    if (key.ends_with(fmt::format("_{}", unit)))
+      return {key.substr(0, key.size() - unit.size() - 1), std::string(unit)};
+  return {key, ""};
+}
+
+// The figures of one report of sectionFigure, of the state `state` of so many: with its standard error a figure is one cell.
+void addFigureRows(const std::string& key, const Report& figure, std::size_t state, std::size_t states,
+                   std::vector<FigureRow>& rows) {
+  for (const auto& [member, value] : figure.items()) {
+    auto [name, unit] = nameAndUnit(member);
+    if (!(value.is_number() || value.is_null()) || name.ends_with("_error")) continue;
+    const auto number = [](const Report& of) {
+      return of.is_number() ? fmt::format("{:.5g}", of.get<double>()) : "-";
+    };
+    std::string cell = number(value);
+    const std::string error = unit.empty() ? name + "_error" : fmt::format("{}_error_{}", name, unit);
+    if (const auto found = figure.find(error); found != figure.end() && found->is_number())
+      cell += fmt::format(" +- {:.2g}", found->get<double>());
+    std::ranges::replace(name, '_', ' ');
+    name = name == key ? key : fmt::format("{}, {}", key, name);
+    auto row =
+        std::ranges::find_if(rows, [&](const FigureRow& r) { return r.name == name && r.unit == unit; });
+    if (row == rows.end()) {
+      rows.push_back({name, unit, std::vector<std::string>(states, "-")});
+      row = rows.end() - 1;
+    }
+    row->cells[state] = std::move(cell);
+  }
+}
+
 }  // namespace
 
 void addSectionOptions(Command command, ReportSections& sections) {
@@ -151,42 +236,64 @@ engine::Status checkSections(const ReportSections& sections) {
 
 engine::Status addSections(ReportPage& page, const ReportSections& sections,
                            const std::vector<ShownState>& states, engine::JobControl& job) {
-  engine::SectionOptions of;
-  of.width_mm = sections.width_mm;
   for (std::size_t i = 0; i < sections.lines.size(); ++i) {
     const auto points = polylineOf(sections.lines[i], "--section");
     if (!points) return tl::unexpected(points.error());
-    std::vector<engine::Section> taken;
-    HeightSpan span;
-    for (const ShownState& state : states) {
-      auto section = engine::sectionAlong(state.field, *points, of, job);
-      if (!section) return tl::unexpected(section.error());
-      span.add(*section);
-      taken.push_back(*std::move(section));
-    }
-    const ReadAs along = readLengthAs(taken.front().lengthMm(), 1.0, "mm");
-    const ReadAs height = readLengthAs(span.high - span.low, 1.0, "mm");
-    DrawnSection drawn{states.front().name, taken.front(), {}, "", {}};
-    if (taken.size() > 1) {
-      drawn.other = taken.back();
-      drawn.other_name = states.back().name;
-    }
-    const auto svg = drawnByGnuplot(sectionsPlot({drawn}));
-    if (!svg) return tl::unexpected(svg.error());
-    page.parts.emplace_back(ReportPage::Heading{fmt::format("Section {}", i + 1)});
-    page.parts.emplace_back(ReportPage::Plot{
-        fmt::format("Heights from {:.6g}, {:.6g} to {:.6g}, {:.6g} mm, {:.5g} {} long{}", points->front().x,
-                    points->front().y, points->back().x, points->back().y,
-                    taken.front().lengthMm() / along.size, along.name,
-                    taken.front().lanes > 1 ? fmt::format(", means of {} lanes", taken.front().lanes) : ""),
-        *svg});
-    ReportPage::Table table = figuresOf(taken, states, sections, along, height);
-    table.title = fmt::format("Section {}: figures", i + 1);
-    if (taken.size() > 1) {
+    const auto taken = takenAlong(*points, sections.width_mm, states, job);
+    if (!taken) return tl::unexpected(taken.error());
+    const std::string name = fmt::format("Section {}", i + 1);
+    if (auto status = addDrawing(page, name, *points, *taken, states, {}); !status) return status;
+    ReportPage::Table table = figuresOf(taken->sections, states, sections, taken->along, taken->height);
+    table.title = name + ": figures";
+    if (taken->sections.size() > 1) {
       const std::string rms =
           fmt::format("Root mean square of the change: {} {}.",
-                      shownIn(rmsBetween(taken.front(), taken.back()), height), height.name);
+                      shownIn(rmsBetween(taken->sections.front(), taken->sections.back()), taken->height),
+                      taken->height.name);
       table.note += table.note.empty() ? rms : " " + rms;
+    }
+    page.parts.emplace_back(std::move(table));
+  }
+  return {};
+}
+
+engine::Status addKeptSections(ReportPage& page, const std::vector<KeptSection>& kept,
+                               const std::vector<ShownState>& states, engine::JobControl& job) {
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const std::vector<glm::dvec2> points{kept[i].from, kept[i].to};
+    const auto taken = takenAlong(points, kept[i].width_mm, states, job);
+    if (!taken) return tl::unexpected(taken.error());
+    const SectionWants wants = wantsOf(kept[i]);
+    std::vector<FigureRow> rows;
+    std::vector<SectionMark> marks;
+    std::string note;
+    double loudest = 0.0;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      // What a filter has made smooth still has the noise of before in what is averaged over more than its window.
+      loudest = std::fmax(loudest, states[s].noise_mm);
+      for (const std::string_view key : sectionFigureKeys()) {
+        if (!wantsFigure(wants, key)) continue;
+        std::vector<SectionMark> found;
+        const auto figure = sectionFigure(key, wants, taken->sections[s], loudest, found);
+        if (!figure) {
+          note +=
+              fmt::format("{}{}, {}: {}.", note.empty() ? "" : " ", states[s].name, key, figure.error().what);
+          continue;
+        }
+        if (s == 0) marks.insert(marks.end(), found.begin(), found.end());
+        addFigureRows(std::string(key), *figure, s, states.size(), rows);
+      }
+    }
+    const std::string name = fmt::format("Kept section {}", i + 1);
+    if (auto status = addDrawing(page, name, points, *taken, states, std::move(marks)); !status)
+      return status;
+    ReportPage::Table table{name + ": figures", std::move(note), {"Figure"}, {}};
+    for (const ShownState& state : states) table.heads.push_back(state.name);
+    table.heads.emplace_back("Unit");
+    for (FigureRow& row : rows) {
+      row.cells.insert(row.cells.begin(), std::move(row.name));
+      row.cells.push_back(std::move(row.unit));
+      table.rows.push_back(std::move(row.cells));
     }
     page.parts.emplace_back(std::move(table));
   }

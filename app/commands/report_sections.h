@@ -1,11 +1,13 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/commands/command.h"
 #include "app/pages/report_page.h"
+#include "app/work/kept_sections.h"
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 
@@ -15,6 +17,7 @@ namespace fettle::app {
 struct ShownState {
   std::string name;  ///< "Before"
   engine::Version field;
+  double noise_mm = std::numeric_limits<double>::quiet_NaN();  ///< of a sample, where it is known
 };
 
 /// The sections of a report: polylines "X,Y:X,Y" in mm from the lower left sample.
@@ -34,5 +37,10 @@ void addSectionOptions(Command command, ReportSections& sections);
 /// and drawnByGnuplot; a cut-off that no profile allows is a note under the table.
 [[nodiscard]] engine::Status addSections(ReportPage& page, const ReportSections& sections,
                                          const std::vector<ShownState>& states, engine::JobControl& job);
+
+/// The same of the sections that the window kept with a session, each with what is measured between its cursors, with standard
+/// errors. What heights do not determine is a note under the table. Needs gnuplot (plotsCanBeMade).
+[[nodiscard]] engine::Status addKeptSections(ReportPage& page, const std::vector<KeptSection>& kept,
+                                             const std::vector<ShownState>& states, engine::JobControl& job);
 
 }  // namespace fettle::app

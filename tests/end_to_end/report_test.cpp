@@ -11,8 +11,10 @@
 #include <tuple>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "app/work/kept_sections.h"
 #include "engine/filter/filter.h"
 #include "engine/formats/formats.h"
 #include "engine/session/session.h"
@@ -53,6 +55,20 @@ void makeSession(const std::string& scan, const std::string& work) {
   ASSERT_TRUE(engine::saveSession(made, work, job));
 }
 
+// The same with two sections that the window kept with it: of the first cursors and a step, of the second a groove that is not there.
+void makeSessionWithSections(const std::string& scan, const std::string& work) {
+  makeSession(scan, work);
+  engine::JobControl job;
+  auto session = engine::openSession(work, {}, engine::importField, job);
+  ASSERT_TRUE(session) << session.error().line();
+  app::KeptSection step{.from = {0.0, 5.0}, .to = {31.0, 5.0}, .width_mm = 3.0, .cursors = {1.0, 30.0}};
+  step.step = true;
+  app::KeptSection groove{.from = {0.0, 5.0}, .to = {12.0, 5.0}, .width_mm = 0.0, .cursors = {1.0, 11.0}};
+  groove.groove = true;
+  session->notes[engine::kSectionsNote] = app::sectionsText({step, groove});
+  ASSERT_TRUE(engine::saveSession(*session, work, job));
+}
+
 // Text of a PDF as `pdftotext` of poppler-utils finds it.
 std::string textOf(const std::string& pdf) {
   return runProcess({"pdftotext", "-layout", pdf, "-"}).out;
@@ -89,6 +105,32 @@ TEST(Libraries, AreLoadedByWhatNeedsThem) {
   const std::string page = loadedBy("page", {"report", scan, folder.file("page.pdf"), "--quiet"});
   EXPECT_NE(page.find("libcairo.so.2"), std::string::npos);
   EXPECT_NE(page.find("librsvg-2.so.2"), std::string::npos);
+}
+
+TEST(ReportPage, OfASessionHasTheSectionsThatAreKeptWithIt) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), page = folder.file("r.html");
+  makeSessionWithSections(scan, work);
+  const auto report = fettleJson({"report", work, page, "--section", "1,1:30,1"});
+  EXPECT_EQ(report["sections"], 1);
+  EXPECT_EQ(report["kept_sections"], 2);
+  const std::string text = bytesOf(page);
+  for (const char* heading : {"<h2>Section 1</h2>", "<h2>Kept section 1</h2>", "<h2>Kept section 2</h2>"})
+    EXPECT_EQ(countIn(text, heading), 1U) << heading;
+  EXPECT_EQ(countIn(text, "means of 4 lanes"), 1U);
+  // The command's figures of both states.
+  for (const std::string& of : {scan, work}) {
+    const auto figures =
+        fettleJson({"section", of, "--start", "0,5", "--end", "31,5", "--width", "3", "--cursors", "1,30",
+                    "--step", "auto", "--within", "1,30"})["sections"][0];
+    for (const auto& [kind, key] : {std::pair{"cursors", "dz_mm"}, {"step", "step_mm"}}) {
+      const std::string shown = fmt::format(">{:.5g} +- ", figures[kind][key].get<double>());
+      EXPECT_NE(text.find(shown), std::string::npos) << of << " " << kind << " " << shown;
+    }
+  }
+  EXPECT_NE(text.find("no groove or ridge stands out"), std::string::npos);
+  // A scan has none to show.
+  EXPECT_FALSE(fettleJson({"report", scan, page}).contains("kept_sections"));
 }
 
 TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
