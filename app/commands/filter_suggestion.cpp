@@ -112,9 +112,9 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
     why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
                        leftBy(*marked, unit), engine::methodOf(*marked));
   if (found.outlier_share > 1e-4)
-    why +=
-        fmt::format(" {:.2g} % of the samples are single outliers: a median removes most of these, {} none.",
-                    100.0 * found.outlier_share, engine::filterWords(engine::keepsEdges));
+    why += fmt::format(
+        " {:.2g} % of the samples are single outliers: the filter {} removes these and nothing else.",
+        100.0 * found.outlier_share, engine::name(engine::FilterKind::kOutliers));
   return why;
 }
 

@@ -18,7 +18,7 @@ namespace fettle::engine {
 
 // Each in the source that is named after it.
 WindowFilter::Maker makeBoxFilter, makeGaussianFilter, makeBilateralFilter, makeTotalVariationFilter,
-    makeTgvFilter, makePlanesFilter;
+    makeTgvFilter, makePlanesFilter, makeOutlierFilter;
 
 namespace {
 
@@ -37,6 +37,8 @@ constexpr WindowFilter kGaussianWindows{makeGaussianFilter, {4, 512, 1024}, {1, 
 constexpr WindowFilter kMedianWindows{makeMedianFilter, {1, 128, 512}, {1, 128, 512}};
 constexpr WindowFilter kBilateralWindows{makeBilateralFilter};
 constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
+
+constexpr WindowFilter kOutlierWindows{makeOutlierFilter};
 
 constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {tgv::kSide, tgv::kHalo}};
 constexpr WindowFilter kPlaneSquares{.make = makePlanesFilter, .squares = {planes::kSide, planes::kHalo}};
@@ -183,6 +185,13 @@ constexpr std::array kFilters{
            .pass = robustSplinePass,
            .reach = anywhere,
            .sampled = false},
+    Filter{.kind = FilterKind::kOutliers,
+           .word = "outliers",
+           .title = "Outliers",
+           .keeps_edges = true,
+           .range_sigma = kRange,
+           .noises = 5.0,
+           .pass = windowPass<kOutlierWindows>},
 };
 
 constexpr bool inTheOrderOfTheEnum() {

@@ -61,6 +61,12 @@ namespace fettle::engine {
 ///              (sin(pi spacing / l) / sin(pi spacing / L))^4) of its amplitude, half at L; one askew the product
 ///              of those of both axes, 0.64 at L and 45 degrees. No end effects: planes come back.
 ///   kRobustSpline  the same with Tukey's weights, as of kRobustGaussian, on the squares.
+///   kOutliers  itself, unless it stands apart: all but at most (n - 1) / 2 of the window's samples, itself among these, lie more
+///              than R = range_sigma below it, or all but so many above it; those are more than half of the window's samples,
+///              two of them lie opposite each other across it, and the nearest is farther by R than the nearest n differ
+///              among each other. Then their median; of an even number the mean of the middle two. Spikes and pits of up to
+///              (n - 1) / 2 samples go; a rib or groove of one sample's width keeps all of its samples, its ends too, since
+///              the window around any of them holds (n + 1) / 2 of it at least.
 /// Heights are taken with the version's sign, so filtering commutes with inverting; kOpening and kClosing take those of the scan, so that
 /// peaks are the same whichever way up it is.
 ///
@@ -93,8 +99,9 @@ namespace fettle::engine {
 ///   kSpline    in double: error <= 0.5 ulp of the result + 2^-49 max(L / spacing, 8) of the largest distance from the plane of the
 ///              heights, 1e-9 at most, and with holes 1e-7 of their standard deviation about that plane. Memory: 12 bytes per sample, 44 with
 ///              holes.
+///   kOutliers  exact, for an even number rounded once; differences are compared with R in float.
 ///   kRobustSpline  rounds that begin from the one before: within 1e-5 of the limit c, as kRobustGaussian. 48 bytes per sample.
-/// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
+/// Every result of kBox, kMedian and kOutliers lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
 enum class FilterKind {
@@ -110,7 +117,8 @@ enum class FilterKind {
   kOpening,
   kClosing,
   kSpline,
-  kRobustSpline
+  kRobustSpline,
+  kOutliers
 };
 
 /// The bodies of kOpening and kClosing, called structuring elements.

@@ -274,11 +274,48 @@ std::string checkWindow(const PlainField& field, int column, int row, const Filt
     const long double rounding = (spec.window + 64) * std::ldexp(range, -22);
     return std::fabs(want - got) <= ulp(got) + rounding ? "" : complain(want);
   }
-  if (spec.kind != FilterKind::kMedian) return fmt::format("no reference for {}\n", name(spec.kind));
   std::vector<float> samples;
   for (int r = r0; r <= r1; ++r)
     for (int c = c0; c <= c1; ++c)
       if (const float v = field.at(c, r); !std::isnan(v)) samples.push_back(v);
+  if (spec.kind == FilterKind::kOutliers) {
+    const float z = field.at(column, row);
+    const auto range = static_cast<float>(spec.range_sigma);
+    std::ranges::sort(samples);
+    // Sorted, those far below are the first, those far above the last.
+    const auto below = std::ranges::partition_point(samples, [&](float s) { return z - s > range; });
+    const auto above = std::ranges::partition_point(samples, [&](float s) { return !(s - z > range); });
+    const auto most = static_cast<std::size_t>(radius), all = samples.size();
+    const auto under = static_cast<std::size_t>(below - samples.begin()),
+               over = static_cast<std::size_t>(samples.end() - above);
+    const auto opposite = [&](auto&& apart) {
+      for (int y = -radius; y <= radius; ++y)
+        for (int x = -radius; x <= radius; ++x) {
+          const auto inside = [&](int c, int r) { return c >= c0 && c <= c1 && r >= r0 && r <= r1; };
+          if (inside(column + x, row + y) && inside(column - x, row - y) &&
+              apart(field.at(column + x, row + y)) && apart(field.at(column - x, row - y)))
+            return true;
+        }
+      return false;
+    };
+    // By how much the nearest n of those apart, of which `near` is the nearest and `far` the last, differ.
+    const auto clear = [&](float near, float far) {
+      return std::abs(static_cast<double>(z) - near) > range + std::abs(static_cast<double>(far) - near);
+    };
+    const auto n = static_cast<std::size_t>(spec.window);
+    if (all - under <= most && 2 * under > all &&
+        clear(samples[under - 1], samples[under - std::min(n, under)]) &&
+        opposite([&](float s) { return z - s > range; }))
+      samples.erase(below, samples.end());
+    else if (all - over <= most && 2 * over > all &&
+             clear(samples[all - over], samples[all - over + std::min(n, over) - 1]) &&
+             opposite([&](float s) { return s - z > range; }))
+      samples.erase(samples.begin(), above);
+    else
+      return sameBits(got, z) ? "" : complain(z);
+  } else if (spec.kind != FilterKind::kMedian) {
+    return fmt::format("no reference for {}\n", name(spec.kind));
+  }
   const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
   std::nth_element(samples.begin(), middle, samples.end());
   if (samples.size() % 2 != 0) return *middle == got ? "" : complain(*middle);

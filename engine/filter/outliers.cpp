@@ -1,0 +1,144 @@
+// The highest or lowest few samples of a window that stand apart from all others in it. Counting them against the
+// window's reach is what tells a spike from a rib: of a rib of one sample's width, straight or askew, the window around any
+// of its samples, the last one too, holds at least one sample more than it reaches, and of an edge or a corner many more.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "engine/filter/block.h"
+#include "engine/simd/kernel.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr int kOutputs = 16;  // counted at once
+
+#define FETTLE_KERNEL "engine/filter/outliers-inl.h"
+#include "engine/simd/each_cpu-inl.h"
+
+class OutlierFilter final : public BlockFilter {
+ public:
+  OutlierFilter(const FilterSpec& spec, CpuLevel level)
+      : level_(level), range_(static_cast<float>(spec.range_sigma)), radius_(spec.window / 2) {}
+
+  bool run(const Block& block, const JobControl& job) override {
+    // Past the field's other side there are holes alone.
+    const int reach_x = std::min(radius_, block.columns - 1), reach_y = std::min(radius_, block.rows - 1);
+    pad(block);
+    const int chunks = (block.out_columns + kOutputs - 1) / kOutputs;
+    const auto outputs = static_cast<std::size_t>(chunks * kOutputs);
+    const auto count_row = FETTLE_AT_LEVEL(level_, countRow);
+    for (int r = 0; r < block.out_rows; ++r) {
+      there_.assign(outputs, 0);
+      below_.assign(outputs, 0);
+      above_.assign(outputs, 0);
+      const float* const centre = rowOf(r);
+      for (int dy = -reach_y; dy <= reach_y; ++dy) {
+        if (job.cancelled()) return false;
+        count_row(centre, rowOf(r + dy), reach_x, range_, chunks, there_.data(), below_.data(),
+                  above_.data());
+      }
+      float* const out = block.out + r * block.out_stride;
+      std::copy_n(centre, block.out_columns, out);
+      for (int c = 0; c < block.out_columns; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        const std::int32_t apart = std::max(below_[i], above_[i]), others = there_[i] - apart;
+        if (others > radius_ || apart <= others) continue;
+        const Window window{rowOf(r) + c, reach_x, reach_y, below_[i] > above_[i]};
+        if (!hasPairApart(window)) continue;
+        gatherApart(window);
+        if (isFarFrom(*window.centre)) out[c] = middleOfApart();
+      }
+    }
+    return true;
+  }
+
+ private:
+  // The block with holes all round, as far as windows of whole chunks of outputs reach.
+  void pad(const Block& block) {
+    const int outputs = (block.out_columns + kOutputs - 1) / kOutputs * kOutputs;
+    stride_ = outputs + 2 * radius_;
+    const int rows = block.out_rows + 2 * radius_;
+    padded_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows),
+                   std::numeric_limits<float>::quiet_NaN());
+    const int column = radius_ - block.first_column;  // where the block's first goes; >= 0
+    const int row = radius_ - block.first_row;
+    for (int r = 0; r < block.rows; ++r)
+      std::copy_n(block.row(r), block.columns, padded_.data() + (row + r) * stride_ + column);
+  }
+
+  [[nodiscard]] const float* rowOf(int row) const noexcept {
+    return padded_.data() + (row + radius_) * stride_ + radius_;
+  }
+
+  // Of a sample that may stand apart: above all the others, or below them.
+  struct Window {
+    const float* centre;
+    int reach_x, reach_y;
+    bool above;
+  };
+
+  [[nodiscard]] bool apart(const Window& window, float sample) const noexcept {
+    return (window.above ? *window.centre - sample : sample - *window.centre) > range_;
+  }
+
+  // Whether it stands apart from two samples opposite each other across it. In a corner of a steep plane one stands
+  // apart from all others.
+  [[nodiscard]] bool hasPairApart(const Window& window) const noexcept {
+    for (int dy = 0; dy <= window.reach_y; ++dy)
+      for (int dx = dy == 0 ? 1 : -window.reach_x; dx <= window.reach_x; ++dx) {
+        const std::ptrdiff_t off = dy * stride_ + dx;
+        if (apart(window, window.centre[off]) && apart(window, window.centre[-off])) return true;
+      }
+    return false;
+  }
+
+  void gatherApart(const Window& window) {
+    apart_.clear();
+    for (int dy = -window.reach_y; dy <= window.reach_y; ++dy)
+      for (int dx = -window.reach_x; dx <= window.reach_x; ++dx)
+        if (const float sample = window.centre[dy * stride_ + dx]; apart(window, sample))
+          apart_.push_back(sample);
+    std::ranges::sort(apart_);
+  }
+
+  // Where a steep plane meets a wall, the last sample is below all others by the plane's slope, as these are among each
+  // other.
+  [[nodiscard]] bool isFarFrom(float centre) const noexcept {
+    const std::size_t last = std::min(static_cast<std::size_t>(2 * radius_), apart_.size() - 1);
+    const bool above = centre > apart_.back();
+    const double nearest = above ? apart_.back() : apart_.front();
+    const double next = above ? apart_[apart_.size() - 1 - last] : apart_[last];
+    return std::abs(static_cast<double>(centre) - nearest) >
+           static_cast<double>(range_) + std::abs(next - nearest);
+  }
+
+  // Their median; of an even number the mean of the middle two.
+  [[nodiscard]] float middleOfApart() const noexcept {
+    const std::size_t half = apart_.size() / 2;
+    if (apart_.size() % 2 != 0) return apart_[half];
+    return static_cast<float>(0.5 *
+                              (static_cast<double>(apart_[half - 1]) + static_cast<double>(apart_[half])));
+  }
+
+  CpuLevel level_;
+  float range_;
+  int radius_;
+  std::ptrdiff_t stride_ = 0;
+  std::vector<float> padded_, apart_;
+  std::vector<std::int32_t> there_, below_, above_;  // of a row of outputs
+};
+
+}  // namespace
+
+std::unique_ptr<BlockFilter> makeOutlierFilter(const FilterSpec& spec, CpuLevel level) {
+  return std::make_unique<OutlierFilter>(spec, level);
+}
+
+}  // namespace fettle::engine
