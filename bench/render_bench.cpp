@@ -103,7 +103,8 @@ engine::Status compareSharp(render::LivePicture& picture, const render::FrameInp
 }
 
 enum class Brush { kRests, kWorks };
-enum class Camera { kOrbits, kFixed };
+// kRests: turns when the picture has come to rest; the frame that follows is not counted.
+enum class Camera { kOrbits, kFixed, kRests };
 
 // One row of the report: what is shown, and what changes.
 struct Scene {
@@ -141,6 +142,10 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   for (int i = 0; i < options.frames; ++i) {
     if (job.cancelled()) return engine::cancelled();
     if (scene.camera == Camera::kOrbits) input.view.azimuth_deg = 315.0 + 360.0 * i / options.frames;
+    if (scene.camera == Camera::kRests && i % render::kRestBands == 0) {
+      input.view.azimuth_deg += 360.0 * render::kRestBands / options.frames;
+      if (const auto turned = picture.drawAndWait(input); !turned) return tl::unexpected(turned.error());
+    }
     if (scene.stylus) {
       input.overlays.lines.clear();
       const double x = 16.0 + 32.0 * i / options.frames;
@@ -297,7 +302,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (9 * options.sides.size() + 7));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (10 * options.sides.size() + 7));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
@@ -313,7 +318,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     }
     report.rest_ms.push_back(watch.ms());
 
-    std::vector<Scene> scenes(8, all_round);
+    std::vector<Scene> scenes(9, all_round);
     scenes[1].name = "empty";
     scenes[1].input.view.zoom = 1e-3;
     scenes[2].name = "brush";
@@ -326,11 +331,14 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     // As the window draws a picture at rest.
     scenes[6].name = "fine";
     scenes[7].name = "fine, brush";
-    for (const std::size_t k : {6, 7}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
+    scenes[8].name = "rest, a band";
+    scenes[8].input.sharpness = render::Sharpness::kRest;
+    for (const std::size_t k : {6, 7, 8}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
     scenes[7].brush = Brush::kWorks;
     for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kFixed;
+    scenes[8].camera = Camera::kRests;
     // Shaded as in the window.
-    for (const std::size_t k : {2, 3, 4, 5, 6, 7}) scenes[k].input.form = render::kShownForm;
+    for (const std::size_t k : {2, 3, 4, 5, 6, 7, 8}) scenes[k].input.form = render::kShownForm;
     if (i == 0) {
       const std::size_t first = scenes.size();
       scenes.insert(scenes.end(), 7, all_round);

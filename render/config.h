@@ -52,6 +52,8 @@ inline constexpr double kContourPx = 4.0;
 /// Vertices of a frame, all panels together: 64 k take about 10 ms on two cores.
 inline constexpr std::int64_t kFrameVertices = 65536;
 inline constexpr std::int64_t kFewestFrameVertices = 4096, kMostFrameVertices = std::int64_t{1} << 28;
+/// Of Sharpness::kRest: frames that draw a picture with four rays per pixel, so that none of them takes long.
+inline constexpr int kRestBands = 12;
 /// Screen error of a frame and of a picture that is drawn once [px].
 inline constexpr double kFrameErrorPx = 1.0, kStillErrorPx = 0.25;
 /// How far seams overlap the patches that they join [rays]: as much as rounding may separate them.

@@ -21,10 +21,12 @@ struct ViewArguments {
   std::string scene;
   std::string size = "1280x800";
   bool validate = false;
+  bool plain_rest = false;
 };
 
 engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
   ViewOptions options = given.view;
+  options.drawing.smooth_at_rest = !given.plain_rest;
   const auto size = parseSize(given.size, "--size", kWindowSides);
   if (!size) return tl::unexpected(size.error());
   std::tie(options.window.width, options.window.height) = *size;
@@ -79,8 +81,11 @@ void addView(Command root, Chosen& chosen) {
        .range = Range{0.5, 4.0},
        .otherwise = "the display's"},
       {.name = "--sharp-motion",
-       .to = &options->view.sharp_motion,
+       .to = &options->view.drawing.sharp_motion,
        .text = "Draw every pixel also while the view moves; without it, every second one in each direction"},
+      {.name = "--plain-rest",
+       .to = &options->plain_rest,
+       .text = "Draw one ray per pixel also at rest; without it, four"},
       {.name = "--seconds",
        .to = &options->view.seconds,
        .text = "End after this time",

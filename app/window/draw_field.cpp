@@ -10,7 +10,7 @@ namespace {
 using Draws = WindowPicture::Draws;
 
 // The settings of the user.
-render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, bool sharp_motion) {
+render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, const DrawOptions& options) {
   const Display& display = parts.settings.display;
   render::FrameInput input;
   input.view = parts.view;
@@ -27,7 +27,7 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, b
   input.stereo.mode = display.stereo;
   input.stereo.eye_separation = static_cast<double>(display.eye_separation);
   input.theme = display.theme;
-  if (display.half_in_motion && !sharp_motion) input.sharpness = sharpness;
+  if (display.half_in_motion && !options.sharp_motion) input.sharpness = sharpness;
   input.decoration_scale = WindowPicture::kDecorations * parts.window.scale();
   input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display.light_azimuth_deg;
@@ -69,7 +69,7 @@ void addTitles(const std::vector<FilterPreview::Picture>& previews, render::Fram
 
 }  // namespace
 
-void drawField(Parts& parts, bool sharp_motion) {
+void drawField(Parts& parts, const DrawOptions& options) {
   WindowPicture& picture = parts.picture;
   LoopClient& client = *parts.document.client();
   const haptic::LoopState state = client.state();
@@ -82,9 +82,10 @@ void drawField(Parts& parts, bool sharp_motion) {
     return;
   }
   const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
+  picture.smoothAtRest(parts.settings.display.smooth_at_rest && options.smooth_at_rest);
   if (!picture.takeDue(Draws::kRefined)) return;
 
-  render::FrameInput input = frameInput(parts, sharpness, sharp_motion);
+  render::FrameInput input = frameInput(parts, sharpness, options);
   addTitles(previews, input);
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
@@ -101,7 +102,7 @@ void drawField(Parts& parts, bool sharp_motion) {
   client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }
 
-void drawCoarse(Parts& parts, bool sharp_motion) {
+void drawCoarse(Parts& parts, const DrawOptions& options) {
   WindowPicture& picture = parts.picture;
   picture.fit(parts.view);
   render::Shown shown;
@@ -113,7 +114,7 @@ void drawCoarse(Parts& parts, bool sharp_motion) {
   }
   const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
   if (picture.takeDue(Draws::kCoarse))
-    (void)picture.draw(frameInput(parts, sharpness, sharp_motion), Draws::kCoarse, parts.feedback.status);
+    (void)picture.draw(frameInput(parts, sharpness, options), Draws::kCoarse, parts.feedback.status);
 }
 
 }  // namespace fettle::app

@@ -4,10 +4,16 @@
 
 namespace fettle::app {
 
-/// Draws the picture of the frame if one is due: the document with its previews, suggested edges and stylus.
-/// `sharp_motion`: full resolution while the view moves, regardless of the settings. Threading: main.
-void drawField(Parts& parts, bool sharp_motion);
+/// What the settings would leave open for this run of the program.
+struct DrawOptions {
+  bool sharp_motion = false;   ///< never Sharpness::kHalf while the view moves
+  bool smooth_at_rest = true;  ///< false: never Sharpness::kRest
+};
+
+/// Draws the picture of the frame if one is due: the document with its previews, suggested edges and stylus. Threading:
+/// main.
+void drawField(Parts& parts, const DrawOptions& options);
 /// The same for the coarse picture of a scan that is being read.
-void drawCoarse(Parts& parts, bool sharp_motion);
+void drawCoarse(Parts& parts, const DrawOptions& options);
 
 }  // namespace fettle::app

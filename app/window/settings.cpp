@@ -69,6 +69,7 @@ std::string Settings::text() const {
               {"axes", d.axes},
               {"flights", d.flights},
               {"half_in_motion", d.half_in_motion},
+              {"smooth_at_rest", d.smooth_at_rest},
               {"filtered_normals", d.form.filtered_normals},
               {"occlusion", d.form.occlusion},
               {"cavity", d.form.cavity},
@@ -109,6 +110,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "axes", d.axes);
   take(file, "flights", d.flights);
   take(file, "half_in_motion", d.half_in_motion);
+  take(file, "smooth_at_rest", d.smooth_at_rest);
   take(file, "filtered_normals", d.form.filtered_normals);
   take(file, "occlusion", 0.0, 1.0, d.form.occlusion);
   take(file, "cavity", 0.0, 1.0, d.form.cavity);

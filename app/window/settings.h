@@ -42,6 +42,7 @@ struct Display {
   std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
   render::FormShading form = render::kShownForm;
   bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
+  bool smooth_at_rest = true;  ///< four rays per pixel at rest (PictureAtRest)
   // Not stored: the next user may have no glasses.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;

@@ -33,6 +33,7 @@ engine::Status WindowPicture::make() {
 void WindowPicture::clear() {
   shown_ = {};
   refinement_ = {};
+  at_rest_ = {};
   figures_ = {};
   needs_redraw_ = true;
 }
@@ -56,6 +57,11 @@ engine::Status WindowPicture::show(render::Shown shown) {
   return {};
 }
 
+void WindowPicture::smoothAtRest(bool wanted) noexcept {
+  if (wanted != smooth_at_rest_) needs_redraw_ = true;
+  smooth_at_rest_ = wanted;
+}
+
 render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) {
   const bool pending = motion_.sharpPending();
   const render::Sharpness sharpness = motion_.see(view, held, CameraMotion::Clock::now());
@@ -66,8 +72,10 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 bool WindowPicture::takeDue(Draws draws) {
   const auto now = Refinement::Clock::now();
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
-  const bool due = needs_redraw_ || figures_.upload.pending_tiles > 0 ||
-                   (draws == Draws::kRefined && refinement_.due(now));
+  const bool due =
+      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
+      (draws == Draws::kRefined &&
+       (refinement_.due(now) || (smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now))));
   if (due) needs_redraw_ = false;
   return due;
 }
@@ -76,6 +84,10 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
+  const bool rests = draws == Draws::kRefined && smooth_at_rest_ && !refinement_.pending() &&
+                     input.sharpness == render::Sharpness::kFull &&
+                     at_rest_.rests(PictureAtRest::Clock::now());
+  if (rests) input.sharpness = render::Sharpness::kRest;
   const engine::Stopwatch watch;
   const auto target = window_.pictureTarget();
   if (!target) return false;  // present() reports the reason
@@ -90,6 +102,8 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.times.add(static_cast<std::int64_t>(took_ns));
   draw_figures_.tiles_uploaded += figures_.upload.tiles;
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
+  at_rest_.drawn({.changed = figures_.redrawn > 0.0, .at_rest = rests, .left = figures_.rest_left},
+                 PictureAtRest::Clock::now());
   if (draws == Draws::kRefined)
     refinement_.drawn({.whole = figures_.redrawn == 1.0,
                        .continued = figures_.continued,

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/window/camera_motion.h"
+#include "app/window/picture_at_rest.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
 #include "app/work/visible_part.h"
@@ -53,6 +54,10 @@ class WindowPicture {
     return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0;
   }
   [[nodiscard]] bool refining() const noexcept { return refinement_.pending(); }
+  /// Whether frames are left until the picture has four rays per pixel.
+  [[nodiscard]] bool smoothing() const noexcept { return smooth_at_rest_ && at_rest_.pending(); }
+  /// Whether it gets them at rest.
+  void smoothAtRest(bool wanted) noexcept;
 
   /// Sets the view's size to that of the picture's area.
   void fit(render::View& view);
@@ -111,6 +116,8 @@ class WindowPicture {
   render::FrameStatistics figures_;  // of the last frame
   CameraMotion motion_;
   Refinement refinement_;
+  PictureAtRest at_rest_;
+  bool smooth_at_rest_ = false;
   bool needs_redraw_ = true;
   DrawFigures draw_figures_;
 };

@@ -261,6 +261,7 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
   }
   r["bounds_px"] = bounds;
   r["limits"] = limits;
+  r["smooth"] = parts.picture.figures().rests;
   r["settled"] = settled;
   return r;
 }

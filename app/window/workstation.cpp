@@ -35,7 +35,7 @@ bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
          p.saving.busy(p.document) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
          p.measure.busy() || p.section.busy() || p.heights.busy() || p.colours.busy() || p.compare.busy() ||
-         p.transform.busy() || (p.document.isOpen() && p.picture.refining());
+         p.transform.busy() || (p.document.isOpen() && (p.picture.refining() || p.picture.smoothing()));
 }
 
 }  // namespace
@@ -219,9 +219,9 @@ void Workstation::showFrame() {
   releaseHandsWhenAsked();
   const bool announces = parts_.announcesPicture();
   if (parts_.document.isOpen()) {
-    if (!announces) drawField(parts_, options_.sharp_motion);
+    if (!announces) drawField(parts_, options_.drawing);
   } else if (parts_.opening.coarse() != nullptr) {
-    drawCoarse(parts_, options_.sharp_motion);
+    drawCoarse(parts_, options_.drawing);
   } else {
     parts_.picture.skipRedraw();
   }

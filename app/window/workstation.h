@@ -7,6 +7,7 @@
 #include "app/report.h"
 #include "app/window/actions.h"
 #include "app/window/device_renewal.h"
+#include "app/window/draw_field.h"
 #include "app/window/event_log.h"
 #include "app/window/input.h"
 #include "app/window/panels/panels.h"
@@ -21,9 +22,9 @@ struct ViewOptions {
   LoopClientOptions client;
   ScanOptions reading;
   render::WindowOptions window;
-  double seconds = 0.0;       ///< ends after this time; 0 = no limit
-  bool sharp_motion = false;  ///< never Sharpness::kHalf while the view moves, regardless of the settings
-  std::string events;         ///< where to write the events (EventLog); empty: nowhere
+  double seconds = 0.0;  ///< ends after this time; 0 = no limit
+  DrawOptions drawing;
+  std::string events;  ///< where to write the events (EventLog); empty: nowhere
 };
 
 /// `fettle view`: one window, one field, one loop. It owns the parts (parts.h) and runs the frames on the

@@ -17,7 +17,7 @@ vk::Rect2D rectOf(const Rectangle& r) {
 }
 
 vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
-  return redraw == LiveFrame::Redraw::kAll ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
+  return redraw == LiveFrame::Redraw::kParts ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear;
 }
 
 constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
@@ -40,6 +40,11 @@ vk::Format codesOf(vk::Format colour) {
     default:
       return colour;
   }
+}
+
+// Rounded up, so that one pixel of half a picture is two of the whole in each direction.
+vk::Extent2D halfOf(vk::Extent2D extent) {
+  return {(extent.width + 1) / 2, (extent.height + 1) / 2};
 }
 
 // The pixels of a layer that a part of the picture touches.
@@ -143,34 +148,63 @@ void LiveFrame::uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRin
          Stage::eCopy, Access::eTransferWrite, Stage::eFragmentShader, Access::eShaderRead);
 }
 
+GpuImage LiveFrame::baseOf(vk::Extent2D extent) const {
+  using Usage = vk::ImageUsageFlagBits;
+  // Copied as code values.
+  return GpuImage(context_, codesOf(colour_), extent, layers_,
+                  layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray,
+                  Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
+}
+
+void LiveFrame::makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size) {
+  using Usage = vk::ImageUsageFlagBits;
+  layers.extent = picture;
+  layers.depth = GpuImage(context_, kDepthFormat, &layers == &whole_ ? picture : size, layers_,
+                          layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray,
+                          Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
+  layers.base = baseOf(size);
+}
+
+void LiveFrame::makeFine(vk::Extent2D extent) {
+  const vk::Extent2D small = halfOf(extent);
+  fine_.scale = 2.0F;
+  makeLayer(fine_, extent, {4 * small.width, 4 * small.height});
+}
+
+void LiveFrame::makeRest(Submissions& submissions, vk::Extent2D extent) {
+  if (rest_extent_ == extent && fine_.extent == extent) return;
+  // The frame in flight draws with the old ones.
+  submissions.finish();
+  if (fine_.extent != extent) {
+    makeFine(extent);
+    if (reduce_) reduce_->set(fine_.base, whole_.base, layers_);
+  }
+  const vk::Extent2D small = halfOf(extent);
+  rest_ = baseOf({2 * small.width, 2 * small.height});
+  rest_extent_ = extent;
+  if (!reduce_to_rest_)
+    reduce_to_rest_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
+  reduce_to_rest_->set(fine_.base, rest_, layers_);
+}
+
 void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
   const bool half = sharpness == Sharpness::kHalf, fine = sharpness == Sharpness::kFine;
-  if (whole_.extent == extent && (!half || half_.extent == extent) && (!fine || fine_.extent == extent))
+  if (whole_.extent == extent && (!half || half_.extent == extent) &&
+      (!fine || (fine_.extent == extent && reduce_)))
     return;
   // The frame in flight draws with the old ones.
   submissions.finish();
-  using Usage = vk::ImageUsageFlagBits;
-  const GpuImage::Kind kind = layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray;
-  // Of even size, so that one pixel of half_ is two of whole_ in each direction, and copied as code values.
-  const vk::Extent2D small{(extent.width + 1) / 2, (extent.height + 1) / 2};
-  const auto make = [&](Layers& layers, vk::Extent2D base) {
-    layers.extent = extent;
-    layers.depth = GpuImage(context_, kDepthFormat, &layers == &whole_ ? extent : base, layers_, kind,
-                            Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
-    layers.base = GpuImage(context_, codesOf(colour_), base, layers_, kind,
-                           Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
-  };
-  if (whole_.extent != extent) make(whole_, {2 * small.width, 2 * small.height});
-  half_.scale = 0.5F;
-  fine_.scale = 2.0F;
+  const vk::Extent2D small = halfOf(extent);
+  if (whole_.extent != extent) makeLayer(whole_, extent, {2 * small.width, 2 * small.height});
   if (half) {
-    make(half_, small);
+    half_.scale = 0.5F;
+    makeLayer(half_, extent, small);
     if (!enlarge_)
       enlarge_ = std::make_unique<Resize>(context_, Resize::Direction::kEnlarge, vk::Format::eB8G8R8A8Unorm);
     enlarge_->set(half_.base, whole_.base, layers_);
   }
   if (fine) {
-    make(fine_, {4 * small.width, 4 * small.height});
+    if (fine_.extent != extent) makeFine(extent);
     if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
     reduce_->set(fine_.base, whole_.base, layers_);
   }
@@ -269,7 +303,8 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
     beginPanel(commands, p, part, layers.scale);
-    if (redraw == Redraw::kParts) clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, part);
+    if (redraw == Redraw::kParts)
+      clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, scaled(part, layers.scale));
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
     const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
@@ -288,7 +323,7 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
 
 void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                            std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
-                           Redraw redraw) {
+                           Redraw redraw, HiddenLines lines) {
   const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
   const vk::RenderingAttachmentInfo cleared =
       attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
@@ -305,7 +340,7 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     const Rectangle& part = partOf(panels[i], redraw);
     if (empty(part)) continue;
     beginPanel(commands, panels[i], part, layers.scale);
-    if (redraw == Redraw::kParts) clear(commands, kColour, nothing, part);
+    if (redraw == Redraw::kParts) clear(commands, kColour, nothing, scaled(part, layers.scale));
     instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
@@ -333,8 +368,9 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
       instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
                 0, p.choice->walls.size());
   }
-  // At scale 1 they are drawn over the copy instead, so that they move without shading the surface again.
-  if (layers.scale != 1.0F) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
+  // Over the copy they move without shading the surface again.
+  if (lines == HiddenLines::kInBase)
+    recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
   commands.endRendering();
 }
 
@@ -351,26 +387,28 @@ void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot&
   }
 }
 
-void LiveFrame::recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers) {
+void LiveFrame::recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers,
+                              const Resize& resize, const GpuImage& to) {
   Barriers before;
   before.add(layers.base.image(), kColour, kColourWritten,
              {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
-  before.add(whole_.base.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
+  before.add(to.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
              kColourUsed);
   before.record(commands);
-  (&layers == &half_ ? enlarge_ : reduce_)->record(commands);
+  resize.record(commands);
 }
 
 void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                                   std::span<const LivePanel> panels,
-                                  const std::vector<gpu::Quad>& decorations, Redraw redraw) {
+                                  const std::vector<gpu::Quad>& decorations, const GpuImage& base,
+                                  Redraw redraw) {
   if (decorations.empty()) return;
   Barriers over;
-  over.add(whole_.base.image(), kColour, kColourWritten, kColourUsed);
+  over.add(base.image(), kColour, kColourWritten, kColourUsed);
   over.record(commands);
   const vk::Extent2D extent = whole_.extent;
   const vk::RenderingAttachmentInfo colour =
-      attachment(whole_.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, extent})
       .setLayerCount(1)
@@ -396,14 +434,14 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
 }
 
 void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                             std::span<const LivePanel> panels, const LiveTarget& target,
-                             Sharpness sharpness) {
+                             std::span<const LivePanel> panels, const GpuImage& base,
+                             const LiveTarget& target, Sharpness sharpness) {
   const bool in_scene = sharpness == Sharpness::kFull;  // lines of that kind are still to be drawn
   vk::ImageCopy copy;
   copy.setSrcSubresource({kColour, 0, 0, layers_})
       .setDstSubresource({kColour, 0, 0, layers_})
       .setExtent({target.extent.width, target.extent.height, 1});
-  commands.copyImage(whole_.base.image(), ImageLayout::eTransferSrcOptimal, target.image,
+  commands.copyImage(base.image(), ImageLayout::eTransferSrcOptimal, target.image,
                      ImageLayout::eTransferDstOptimal, copy);
   const bool lines = std::any_of(panels.begin(), panels.end(), [&](const LivePanel& p) {
     return !empty(p.visible) && ((in_scene && !p.in_scene.empty()) || !p.on_top.empty());
@@ -491,9 +529,10 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     if (all) before.layout = ImageLayout::eUndefined;
     shade.add(layers.base.image(), kColour, before, kColourUsed);
     shade.record(commands);
-    recordBase(commands, slot, panels, ground, layers, redraw);
-    if (resized) recordResized(commands, layers);
-    recordDecorations(commands, slot, panels, decorations, redraw);
+    recordBase(commands, slot, panels, ground, layers, redraw,
+               resized ? HiddenLines::kInBase : HiddenLines::kOverCopy);
+    if (resized) recordResized(commands, layers, *(&layers == &half_ ? enlarge_ : reduce_), whole_.base);
+    recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }
   // The acquired image is waited for at these stages: the change of layout comes after it.
@@ -501,7 +540,50 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
               {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
               {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
   compose.record(commands);
-  recordTarget(commands, slot, panels, target, sharpness);
+  recordTarget(commands, slot, panels, whole_.base, target, sharpness);
+}
+
+void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+                           const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
+                           const Glyphs& glyphs, const LiveTarget& target, const Rest& rest) {
+  const vk::raii::CommandBuffer& commands = submissions.commands();
+  Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
+  if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
+  makeRest(submissions, target.extent);
+  fill(slot, panels, decorations, fine_);
+  const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
+  Barriers compose;
+  if (rest.draws) {
+    Barriers begin;
+    begin.add(fine_.depth.image(), kDepth,
+              {rest.first ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
+               Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
+    begin.record(commands);
+    const Redraw redraw = rest.first ? Redraw::kFirstPart : Redraw::kParts;
+    recordDepth(commands, slot, panels, fine_, redraw);
+    Barriers shade;
+    shade.add(fine_.depth.image(), kDepth,
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
+               Access::eDepthStencilAttachmentRead | Access::eShaderRead});
+    // The first part may follow a frame that still reduces what was there before.
+    Barriers::Access before = kColourWritten;
+    if (rest.first) before = {ImageLayout::eUndefined, Stage::eFragmentShader, Access::eShaderRead};
+    shade.add(fine_.base.image(), kColour, before, kColourUsed);
+    shade.record(commands);
+    recordBase(commands, slot, panels, ground, fine_, redraw, HiddenLines::kOverCopy);
+    if (rest.last) {
+      recordResized(commands, fine_, *reduce_to_rest_, rest_);
+      recordDecorations(commands, slot, panels, decorations, rest_, Redraw::kAll);
+      compose.add(rest_.image(), kColour, kColourWritten, copied);
+    }
+  }
+  compose.add(target.image, kColour,
+              {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
+              {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
+  compose.record(commands);
+  recordTarget(commands, slot, panels, rest.shows ? rest_ : whole_.base, target, Sharpness::kFull);
 }
 
 }  // namespace fettle::render

@@ -43,6 +43,9 @@ struct LivePanel {
 /// At Sharpness::kHalf and kFine, depth, shading and the lines hidden by the surface use layers of half or
 /// twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.
 ///
+/// At kRest (recordRest) fine layers are filled part by part, and their reduction is a base of its own, so that what kFull has
+/// drawn stays.
+///
 /// A second eye (stereo) is a second layer of depth and base and a second element of
 /// PanelUniforms::views; the passes are the same, drawn with a view mask.
 ///
@@ -63,11 +66,25 @@ class LiveFrame {
   enum class Redraw {
     kAll,  ///< every layer, whatever LivePanel::redraw says
     kParts,  ///< of depth and base only LivePanel::redraw; the rest stays as it is. Only at kFull, after a frame of kFull
+    kFirstPart,  ///< only LivePanel::redraw, the rest becomes empty. Only by recordRest
   };
   /// Records into submissions.commands(). `staging` transfers new glyphs.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
               const std::vector<gpu::Quad>& decorations, const glm::vec3& ground, const Glyphs& glyphs,
               const LiveTarget& target, Redraw redraw, Sharpness sharpness);
+
+  /// What a frame at rest does to the picture with four rays per pixel, which has layers of its own.
+  struct Rest {
+    bool draws = false;                ///< LivePanel::redraw of each panel
+    bool first = false, last = false;  ///< of the frames that draw it
+    bool shows = false;                ///< it, complete, instead of the picture of kFull
+  };
+  /// Whether its layers are of this size.
+  [[nodiscard]] bool holdsRest(vk::Extent2D extent) const noexcept { return rest_extent_ == extent; }
+  /// Records a frame in which nothing of the surface changed since the one of kFull that the layers hold. `panels`: as for kFine.
+  void recordRest(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+                  const std::vector<gpu::Quad>& decorations, const glm::vec3& ground, const Glyphs& glyphs,
+                  const LiveTarget& target, const Rest& rest);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
 
@@ -99,17 +116,24 @@ class LiveFrame {
                  std::uint32_t vertices, std::size_t first, std::size_t count) const;
   void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, const Layers& layers, Redraw redraw);
+  enum class HiddenLines : std::uint8_t { kInBase, kOverCopy };
   void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                   std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
-                  Redraw redraw);
+                  Redraw redraw, HiddenLines lines);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
   void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                          std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
-                         Redraw redraw);
-  void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers);
+                         const GpuImage& base, Redraw redraw);
+  [[nodiscard]] GpuImage baseOf(vk::Extent2D extent) const;
+  void makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size);
+  void makeRest(Submissions& submissions, vk::Extent2D extent);
+  void makeFine(vk::Extent2D extent);
+  void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers, const Resize& resize,
+                     const GpuImage& to);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                    std::span<const LivePanel> panels, const LiveTarget& target, Sharpness sharpness);
+                    std::span<const LivePanel> panels, const GpuImage& base, const LiveTarget& target,
+                    Sharpness sharpness);
 
   Context& context_;
   vk::Format colour_;
@@ -122,6 +146,9 @@ class LiveFrame {
   vk::raii::BufferView no_pages_view_ = nullptr;
   Layers whole_, half_, fine_;  // half_ and fine_ are created on first use
   std::unique_ptr<Resize> enlarge_, reduce_;
+  GpuImage rest_;  // of recordRest, as whole_.base; created on first use
+  vk::Extent2D rest_extent_;
+  std::unique_ptr<Resize> reduce_to_rest_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;
 };

@@ -104,6 +104,14 @@ struct LivePicture::Impl {
   };
   std::optional<Seen> seen;
   std::optional<DrawnFrame> drawn;  // what the layers of `frame` show
+  // The picture with four rays per pixel that is drawn at Sharpness::kRest: what it shows, and how many of its bands are drawn.
+  struct Rest {
+    DrawnFrame shown;
+    int bands = 0;
+  };
+  std::optional<Rest> rest;
+  PatchTreeCache rest_trees;
+  std::optional<View> rest_refused;  // a view for which there is no memory
 
   Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& options, Glyphs g)
       : own(std::move(owned)),
@@ -120,6 +128,8 @@ struct LivePicture::Impl {
   engine::Status update(const Shown& next);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
   void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  void recordRest(const FrameInput& input, const PicturePlan& plan, const std::vector<gpu::Quad>& decorations,
+                  const LiveTarget& target, FrameStatistics& stats);
   void uploadPages(LivePanels& chosen, FrameInput::Pages pages, FrameStatistics& stats);
   std::vector<gpu::Quad> decorationsOf(const FrameInput& input, const PicturePlan& plan,
                                        std::vector<std::string>& warnings);
@@ -268,7 +278,8 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   // unknown detail are drawn finer than necessary, but correctly; missing pages are part of DrawnFrame.
   const bool stereo = input.stereo.mode != StereoMode::kOff;
   const bool reusable =
-      !stereo && !input.part && input.sharpness == Sharpness::kFull &&
+      !stereo && !input.part &&
+      (input.sharpness == Sharpness::kFull || input.sharpness == Sharpness::kRest) &&
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
   std::optional<DrawnFrame> previous;
   previous.swap(drawn);  // the content of the layers is undefined until this frame is submitted
@@ -282,11 +293,19 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   }
   stats.select_ms = selecting.ms();
 
-  if (stereo)
+  if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
+  const bool whole_frame = stereo || input.sharpness != Sharpness::kRest;
+  const bool still = !whole_frame && stats.continued && stats.upload.pending_tiles == 0 &&
+                     std::ranges::all_of(panels, [](const LivePanel& p) { return empty(p.redraw); });
+  if (!whole_frame) stats.rest_left = rest_refused == input.view ? 0 : kRestBands;
+  if (still && stats.rest_left > 0)
+    recordRest(input, plan, decorations, target, stats);
+  else if (stereo)
     recordStereo(input.stereo, input.sharpness, panels, decorations, plan.palette.ground, target);
   else
     frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
-                 stats.continued ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll, input.sharpness);
+                 stats.continued ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll,
+                 input.sharpness == Sharpness::kRest ? Sharpness::kFull : input.sharpness);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
@@ -300,6 +319,42 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   if (input.part) return;
   seen = Seen{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
   for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
+}
+
+// The next band, if any is left and its pages are on the device; the picture with four rays per pixel once it is complete.
+void LivePicture::Impl::recordRest(const FrameInput& input, const PicturePlan& plan,
+                                   const std::vector<gpu::Quad>& decorations, const LiveTarget& target,
+                                   FrameStatistics& stats) {
+  FrameInput fine = input;
+  fine.sharpness = Sharpness::kFine;
+  LivePanels chosen(fine, plan, fields, rest_trees);
+  FrameStatistics figures;
+  uploadPages(chosen, input.pages, figures);
+  chosen.finishChoice(figures);
+  std::vector<LivePanel>& panels = chosen.panels();
+  DrawnFrame now = drawnFrameOf(panels, plan, decorations);
+  if (!rest || !frame.holdsRest(target.extent) || !showTheSame(rest->shown, now))
+    rest.emplace(std::move(now), 0);
+  if (figures.residency.pages_over_budget > 0) rest_refused = input.view;
+
+  LiveFrame::Rest does;
+  does.draws =
+      rest->bands < kRestBands && figures.residency.pages_waiting == 0 && figures.residency.pages_over_budget == 0;
+  does.first = does.draws && rest->bands == 0;
+  std::vector<PatchChoice> parts;
+  if (does.draws) {
+    // Bands begin on even rows, so that no square of two by two fragments belongs to two of them.
+    const auto row = [&](int band) {
+      return band == kRestBands ? input.view.height : input.view.height * band / kRestBands & ~1;
+    };
+    parts = cutToRows(row(rest->bands), row(rest->bands + 1), chosen.queries(), panels);
+    ++rest->bands;
+    does.last = rest->bands == kRestBands;
+  }
+  does.shows = rest->bands == kRestBands;
+  frame.recordRest(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target, does);
+  stats.rests = does.shows;
+  stats.rest_left = rest_refused == input.view ? 0 : kRestBands - rest->bands;
 }
 
 LivePicture::LivePicture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -85,6 +85,10 @@ enum class Sharpness {
   kFull,  ///< every pixel
   kHalf,  ///< every second pixel in each direction, interpolated in between: while the camera moves. Decorations and overlay lines on top stay at full resolution, and the next frame of kFull is bit-identical to one without this frame before it
   kFine,  ///< four rays per pixel, averaged in linear light: for pictures that are drawn once. Decorations and overlay lines on top as usual
+  /// kFull as long as something changes, then kFine, without a long frame: each frame in which nothing of the surface changed
+  /// draws one of kRestBands bands of it, and the last one shows it. Lines hidden by the surface are drawn over it as at kFull.
+  /// What was drawn at kFull stays, so that an edit still draws only the part that it changes. In stereo: kFull.
+  kRest,
 };
 
 /// What may change every frame without an upload.
@@ -171,6 +175,10 @@ struct FrameStatistics {
   double redrawn = 1.0;             ///< share of the plots that was drawn again, 0 .. 1
   /// Whether the frame reused the one before and drew only what differs, which may be everything.
   bool continued = false;
+  /// At Sharpness::kRest: frames that must follow until the picture has four rays per pixel. 0: it has, or the device has no memory
+  /// for the pages that it would need.
+  int rest_left = 0;
+  bool rests = false;  ///< the picture has four rays per pixel by Sharpness::kRest
   bool within_budget =
       true;                 ///< false: refining stopped because of the vertices allowed, bound_px > error_px
   UploadStatistics upload;  ///< since the last frame

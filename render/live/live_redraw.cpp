@@ -16,7 +16,23 @@ bool onlyFieldDiffers(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
          a.pages == b.pages && std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) == 0;
 }
 
+bool sameList(const std::vector<gpu::Patch>& a, const std::vector<gpu::Patch>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(gpu::Patch)) == 0);
+}
+
 }  // namespace
+
+bool showTheSame(const DrawnFrame& before, const DrawnFrame& now) {
+  if (!canContinue(before, now)) return false;
+  for (std::size_t i = 0; i < now.panels.size(); ++i) {
+    const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
+    if (!onlyFieldDiffers(a, b) || !(a.field == b.field) || !sameList(a.choice.patches, b.choice.patches) ||
+        !sameList(a.choice.seams, b.choice.seams) || !sameList(a.choice.walls, b.choice.walls))
+      return false;
+  }
+  return true;
+}
 
 bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
   if (before.panels.size() != now.panels.size() || before.ground != now.ground ||
@@ -56,6 +72,19 @@ std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame&
     panels[i].redraw = damageOf(q);
     parts[i] = within(*panels[i].choice, queries[i], panels[i].redraw);
     panels[i].choice = &parts[i];
+  }
+  return parts;
+}
+
+std::vector<PatchChoice> cutToRows(int first, int last, std::span<const PatchQuery> queries,
+                                   std::vector<LivePanel>& panels) {
+  std::vector<PatchChoice> parts(panels.size());
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    LivePanel& panel = panels[i];
+    panel.redraw = cut(panel.visible, {panel.visible.x, first, panel.visible.width, last - first});
+    if (empty(panel.redraw)) continue;
+    parts[i] = within(*panel.choice, queries[i], panel.redraw);
+    panel.choice = &parts[i];
   }
   return parts;
 }

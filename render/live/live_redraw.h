@@ -36,11 +36,19 @@ struct DrawnFrame {
 /// of the same field in the same way.
 [[nodiscard]] bool canContinue(const DrawnFrame& before, const DrawnFrame& now);
 
+/// Whether a frame shows what the one before does.
+[[nodiscard]] bool showTheSame(const DrawnFrame& before, const DrawnFrame& now);
+
 /// Sets the part of each panel that is drawn again - the difference by damageOf, or the whole panel where
 /// more changed than samples and patches - and clips the panels' choices to it: to the returned ones, which
 /// must outlive the panels.
 [[nodiscard]] std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
                                                    std::span<const PatchQuery> queries,
                                                    std::vector<LivePanel>& panels);
+
+/// Sets LivePanel::redraw to the rows [first, last) of each panel's part of the picture, and clips the panels' choices to them, as
+/// cutToDamage.
+[[nodiscard]] std::vector<PatchChoice> cutToRows(int first, int last, std::span<const PatchQuery> queries,
+                                                 std::vector<LivePanel>& panels);
 
 }  // namespace fettle::render

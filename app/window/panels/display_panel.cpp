@@ -35,6 +35,11 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
+  ImGui::Checkbox("smooth edges at rest", &display.smooth_at_rest);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "While nothing changes, the surface is drawn with four rays per pixel, band by band, so that no "
+        "frame takes long.");
   ImGui::Checkbox("light at the size of a pixel", &display.form.filtered_normals);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(

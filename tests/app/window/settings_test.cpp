@@ -22,6 +22,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.theme = render::Theme::kLight;
   settings.display.light_azimuth_deg = 20.0F;
   settings.display.half_in_motion = false;
+  settings.display.smooth_at_rest = false;
   settings.display.vertices = 131072;
   settings.display.axes = false;
   settings.display.flights = false;

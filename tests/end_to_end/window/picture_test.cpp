@@ -40,6 +40,45 @@ double correlation(const Screen& a, const Screen& b, const Part& part) {
   return spread > 1e-9 ? (sab - sa * sb / n) / std::sqrt(spread) : 0.0;
 }
 
+TEST_F(WindowTest, edges_become_smooth_at_rest_and_a_stroke_goes_on_at_once) {
+  const auto program = start({scan}, {}, AtRest::kSmooth);
+  User user(display, *program, "smooth");
+  (void)opened(*program);
+  user.at({20, 790});  // where it lies in no picture
+  const auto smooth = [](ViewProgram& of, const std::string& what) {
+    return of.until(what, [](const State& s) { return s["smooth"] == true && s["settled"] == true; });
+  };
+  (void)smooth(*program, "smooth");
+  const Screen first = user.look("four rays");
+  (void)user.key("7");
+  (void)smooth(*program, "smooth from above");
+  const Screen above = user.look("four rays from above");
+  (void)user.key("1");
+  (void)smooth(*program, "smooth from the side");
+  (void)user.key("7");
+  (void)smooth(*program, "smooth from above again");
+  EXPECT_EQ(differing(above, user.look("four rays from above again"), user.surface()), 0);
+
+  (void)user.key("s");
+  EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 4)["steps"], 1);
+  (void)smooth(*program, "smooth after a stroke");
+  (void)user.press("ctrl+z");
+  user.at({20, 790});
+  (void)program->until("the stroke is undone", [](const State& s) { return s["smooth"] == false; });
+  (void)smooth(*program, "smooth after it was undone");
+  EXPECT_EQ(quit(user)["validation_messages"], State::array());
+
+  // Without it one ray decides a pixel's colour, most of all along edges.
+  const auto plain = start({scan});
+  User another(display, *plain, "plain");
+  (void)opened(*plain);
+  another.at({20, 790});
+  const Screen one = another.look("one ray");
+  EXPECT_GT(differing(first, one, another.surface()), 500);
+  EXPECT_EQ(plain->now()["smooth"], false);
+  EXPECT_EQ(quit(another)["validation_messages"], State::array());
+}
+
 TEST_F(WindowTest, an_inverted_field_shows_its_relief_and_so_does_the_field_turned_back) {
   const auto program = start({scan});
   User user(display, *program, "invert");

@@ -60,7 +60,9 @@ void WindowTest::SetUp() {
 }
 
 std::unique_ptr<ViewProgram> WindowTest::start(std::vector<std::string> arguments,
-                                               const std::map<std::string, std::string>& environment) const {
+                                               const std::map<std::string, std::string>& environment,
+                                               AtRest at_rest) const {
+  if (at_rest == AtRest::kPlain) arguments.emplace_back("--plain-rest");
   if (std::find(arguments.begin(), arguments.end(), "--size") == arguments.end())
     arguments.insert(arguments.end(), {"--size", std::to_string(width_) + "x" + std::to_string(height_)});
   return std::make_unique<ViewProgram>(arguments, environment);

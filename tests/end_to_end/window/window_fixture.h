@@ -33,9 +33,12 @@ class WindowTest : public ::testing::Test {
   WindowTest() : WindowTest(1100, 800) {}
   WindowTest(int width, int height);
   void SetUp() override;
+  /// Whether a picture that has been drawn changes once more when nothing else does: by four rays per pixel.
+  enum class AtRest { kPlain, kSmooth };
   /// Starts the program with these arguments, at the size of the display unless they say another.
   std::unique_ptr<ViewProgram> start(std::vector<std::string> arguments,
-                                     const std::map<std::string, std::string>& environment = {}) const;
+                                     const std::map<std::string, std::string>& environment = {},
+                                     AtRest at_rest = AtRest::kPlain) const;
   /// Waits until it shows the scan and rests.
   static User::State opened(ViewProgram& program);
   /// Ctrl+Shift+S to a path, until it is written.
