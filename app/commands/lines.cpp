@@ -21,6 +21,7 @@
 #include "engine/edges/edge_profile.h"
 #include "engine/field/grid.h"
 #include "engine/inspect/noise.h"
+#include "engine/inspect/noise_model.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/lines/lines.h"
 
@@ -223,13 +224,19 @@ engine::Result<Report> measureLines(const LinesArguments& options, engine::JobCo
   if (!lines) return tl::unexpected(lines.error());
   const auto noise = engine::estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
+  const auto shared = engine::measureNoise(field, job);
+  if (!shared) return tl::unexpected(shared.error());
   // A field without any has no window to measure it in.
-  auto sections = engine::measureEdges(field, std::isnan(noise->sigma) ? 0.0 : noise->sigma, *lines, job);
-  if (!sections) return tl::unexpected(sections.error());
+  auto edges = engine::measureEdges(field,
+                                    {.sigma = std::isnan(noise->sigma) ? 0.0 : noise->sigma,
+                                     .rows = std::sqrt(shared->parts.row_offset),
+                                     .columns = std::sqrt(shared->parts.column_offset)},
+                                    *lines, job);
+  if (!edges) return tl::unexpected(edges.error());
   std::vector<MeasuredLine> measured;
   for (std::size_t i = 0; i < lines->size(); ++i) {
-    const engine::EdgeMeans means = engine::meansOf((*sections)[i]);
-    measured.emplace_back((*lines)[i], std::move((*sections)[i]), means, field.grid());
+    engine::MeasuredEdge& edge = (*edges)[i];
+    measured.emplace_back((*lines)[i], std::move(edge.sections), edge.means, field.grid());
   }
   if (auto status = keepOnly(options.only, measured); !status) return tl::unexpected(status.error());
   if (auto status = writeFiles(options, measured, field.grid(), job); !status)
@@ -303,7 +310,9 @@ void addLines(Command root, Chosen& chosen) {
   command.notes(
       "At each point of a line planes are fitted to the samples on both sides, up to 10 from the line and 5 "
       "points along. Step: their difference in height at the line. Turn: their difference in inclination "
-      "across it.");
+      "across it. Standard deviations follow from the scan's noise, with what whole rows and columns are off "
+      "together; next "
+      "to rounded corners, whose sides are no planes, and of a filtered scan they are too small.");
   command.examples({{"fettle lines scan.tif lines.csv --csv steps.csv --plot steps.svg",
                      "A table, its values point by point, and a plot"}});
 }

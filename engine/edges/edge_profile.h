@@ -28,8 +28,15 @@ struct EdgeSection {
   double turn = 0.0, turn_deviation = 0.0;
 };
 
+/// Noise of a field, as standard deviations [height_unit], >= 0.
+struct EdgeNoise {
+  double sigma = 0.0;                ///< of each sample by itself
+  double rows = 0.0, columns = 0.0;  ///< of what all samples of a row, or of a column, are off together
+};
+
 /// Means over the measured points of a line; their deviations are those of the points or, where that is more, the
-/// spread of the values. Points share samples with their neighbours: 2 kHalf + 1 count once.
+/// spread of the values. Points share samples with their neighbours: 2 kHalf + 1 count once. What rows and columns are
+/// off is added as it enters the mean: along a row it hardly averages away.
 struct EdgeMeans {
   static constexpr int kHalf = 5;  ///< points before and after whose samples a section is fitted to
 
@@ -40,21 +47,25 @@ struct EdgeMeans {
   double turn_low = 0.0, turn_high = 0.0;   ///< [degrees]
 };
 
+/// A line's sections, one per point, and their means.
+struct MeasuredEdge {
+  std::vector<EdgeSection> sections;
+  EdgeMeans means;
+};
+
 /// The sections at the points of each line of a field. At a point, planes are fitted by least squares to the samples
 /// up to 10 samples from the line (fewer where these fit no plane), more than 0.75 from it, and kHalf points along, up
 /// to the next line; slopes come out 1.2e-4 of themselves too small. Samples that no surface explains, such as mixed
-/// pixels, are left out. `noise` is the standard deviation of the field's noise [height_unit], >= 0: where the samples
-/// scatter more about their planes, that counts. Noise that neighbouring samples share is not known: 1.3 times the
-/// variance is assumed, as by locateEdgeLines(). At rounded corners the surfaces are no planes, and the deviations say
-/// less than the error.
+/// pixels, are left out. Where the samples scatter more about their planes than `noise` says, that counts. Noise that
+/// neighbouring samples share is not known but for rows and columns: 1.3 times the variance is assumed, as by
+/// locateEdgeLines(). At rounded corners the surfaces are no planes, and the deviations say less than the error; of a
+/// field that was filtered they do as well.
 ///
 /// Signs follow Version::reader(): of an inverted version both figures have the other sign. Memory and time as
 /// locateEdgeLines(), a tenth of its time. Progress counts points. Thread: any; blocks, on all workers. Errors: kInput
 /// for a noise that is not a number; kCancelled.
-[[nodiscard]] Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field, double noise,
-                                                                         const std::vector<EdgeLine>& lines,
-                                                                         JobControl& job);
-
-[[nodiscard]] EdgeMeans meansOf(const std::vector<EdgeSection>& sections) noexcept;
+[[nodiscard]] Result<std::vector<MeasuredEdge>> measureEdges(const Version& field, const EdgeNoise& noise,
+                                                             const std::vector<EdgeLine>& lines,
+                                                             JobControl& job);
 
 }  // namespace fettle::engine

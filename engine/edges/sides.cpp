@@ -12,9 +12,8 @@ namespace {
 
 constexpr double kGuards[] = {1.25, 0.75};  // of each turn [samples]
 constexpr Offsets kFineOffsets{1.5};
-constexpr double kFineStep = 0.3;      // change from point to point [samples]
-constexpr double kMostMisfit = 50.0;   // of one sample [variances]: a spike decides nothing
-constexpr double kInsideExtent = 0.5;  // of a surface at whose end another begins [samples]
+constexpr double kFineStep = 0.3;     // change from point to point [samples]
+constexpr double kMostMisfit = 50.0;  // of one sample [variances]: a spike decides nothing
 constexpr double kUnsupported =
     0.4;  // chi-square per squared sample: keeps a point without surfaces in place
 
@@ -49,22 +48,10 @@ void addFineCosts(const SideContext& context, const StripLine& line, int i, doub
 }  // namespace
 
 Sides sidesAt(const SideContext& context, const StripLine& line, int i, double guard) {
-  const auto at = static_cast<std::size_t>(i);
-  const Extent extent = line.extents[at];
   Moments left, right;
-  forEachKept(context.line, context.strip, context.window, context.ranges, i, context.half,
-              [&](const StripSample& sample, double s, int j) {
-                // The surfaces' ends run along with the line.
-                const double offset = line.offsets[static_cast<std::size_t>(j)];
-                const double shift = offset - line.offsets[at];
-                if (sample.d < extent.low + std::min(shift, 0.0) + kInsideExtent ||
-                    sample.d > extent.high + std::max(shift, 0.0) - kInsideExtent)
-                  return;
-                if (sample.d > offset + guard)
-                  left.add(sample.d, s, sample.z);
-                else if (sample.d < offset - guard)
-                  right.add(sample.d, s, sample.z);
-              });
+  forEachBeside(context, line, i, guard, [&](const StripSample& sample, double s, bool is_left) {
+    (is_left ? left : right).add(sample.d, s, sample.z);
+  });
   return {fitPlane(left), fitPlane(right), fitPlane(left + right)};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "engine/edges/across.h"
@@ -35,7 +37,29 @@ struct Sides {
   static constexpr double kLeast = 5.0;
 };
 
-/// Planes of the samples at least `guard` from the line on either side, within its extent.
+/// Calls visit(sample, s, is_left) for the samples beside a line at one point: those at least `guard` from it on either side,
+/// within its extent, with s counted from the point.
+template <class Visit>
+void forEachBeside(const SideContext& context, const StripLine& line, int i, double guard, Visit&& visit) {
+  constexpr double kInsideExtent = 0.5;  // of a surface at whose end another begins [samples]
+  const auto at = static_cast<std::size_t>(i);
+  const Extent extent = line.extents[at];
+  forEachKept(context.line, context.strip, context.window, context.ranges, i, context.half,
+              [&](const StripSample& sample, double s, int j) {
+                // The surfaces' ends run along with the line.
+                const double offset = line.offsets[static_cast<std::size_t>(j)];
+                const double shift = offset - line.offsets[at];
+                if (sample.d < extent.low + std::min(shift, 0.0) + kInsideExtent ||
+                    sample.d > extent.high + std::max(shift, 0.0) - kInsideExtent)
+                  return;
+                if (sample.d > offset + guard)
+                  visit(sample, s, true);
+                else if (sample.d < offset - guard)
+                  visit(sample, s, false);
+              });
+}
+
+/// Planes of these samples.
 [[nodiscard]] Sides sidesAt(const SideContext& context, const StripLine& line, int i, double guard);
 
 /// Moves the line to where the samples next to it change from fitting one surface to fitting the other:

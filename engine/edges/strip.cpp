@@ -93,6 +93,8 @@ Strip stripAlong(const Polyline& line, SampleWindow& window, double depth, int t
     std::optional<StripSample> sample = inStrip(offset, strip.tangents[i], at_end);
     if (!sample) continue;
     sample->index = place.index;
+    sample->column = place.column;
+    sample->row = place.row;
     sample->z = double{known.height} - strip.reference;
     samples.push_back(*sample);
     owners.push_back(i);

@@ -17,6 +17,7 @@ struct StripSample {
   SampleWindow::Index index = 0;
   double d = 0.0, s = 0.0;  ///< [samples]
   double z = 0.0;           ///< height above Strip::reference [height_unit]
+  int column = 0, row = 0;  ///< in the coordinates of the SampleWindow
 };
 
 /// Offsets that belong to a point of a line: beyond them lie the surfaces of neighbouring lines. [samples]

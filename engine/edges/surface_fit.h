@@ -54,6 +54,11 @@ struct PlaneFit {
     const double u = d - centre_d, v = s - centre_s;
     return 1.0 / count + inverse_dd * u * u + 2.0 * inverse_ds * u * v + inverse_ss * v * v;
   }
+  /// By how much at(d, s) rises with the height of a sample at (of_d, of_s).
+  [[nodiscard]] double weightAt(double d, double s, double of_d, double of_s) const noexcept {
+    const double u = d - centre_d, v = s - centre_s, x = of_d - centre_d, y = of_s - centre_s;
+    return 1.0 / count + inverse_dd * u * x + inverse_ds * (u * y + v * x) + inverse_ss * v * y;
+  }
   /// Variance of the residuals, three parameters taken off. [height_unit^2]
   [[nodiscard]] double variance() const noexcept { return residual / (count > 4.0 ? count - 3.0 : 1.0); }
 };
