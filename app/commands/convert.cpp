@@ -68,6 +68,9 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   if (!done) return tl::unexpected(done.error());
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
     written->warnings.push_back("the marks of the session are not stored, the format has none");
+  if (imported->field.lines() != nullptr && !imported->field.lines()->empty() && written->format != "Fettle")
+    written->warnings.push_back(
+        "the edge lines of the session are not stored, the format has none; fettle lines --out writes them");
   for (const std::string& warning : written->warnings) warn(shownOutput(task.out) + ": " + warning);
   return Report{{"format", written->format},
                 {"from", imported->format},

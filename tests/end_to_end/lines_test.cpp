@@ -189,6 +189,20 @@ TEST_F(Lines, steps_and_angles_along_lines_come_as_table_plot_and_csv) {
   expectRefused(fettle({"lines", scan, lines, "--plot", "/no/such/folder/p.svg"}), "/no/such/folder");
 }
 
+TEST_F(Lines, of_a_session_are_not_lost_in_silence) {
+  const std::string lines = folder.file("lines.csv"), session = folder.file("work.fettle");
+  (void)fettleJson({"mark", scan, marks, "--edges", "--as-lines", "--lines-out", lines});
+  (void)fettleJson({"filter", scan, session, "--filter", "planes", "--lines", lines});
+  const auto lost = fettle({"convert", session, clean});
+  EXPECT_EQ(lost.status, 0);
+  EXPECT_NE(lost.err.find("the edge lines of the session are not stored"), std::string::npos) << lost.err;
+  const auto kept = fettle({"convert", session, folder.file("again.fettle")});
+  EXPECT_EQ(kept.status, 0);
+  EXPECT_EQ(kept.err.find("are not stored"), std::string::npos) << kept.err;
+  const auto none = fettle({"convert", scan, folder.file("again.tif")});
+  EXPECT_EQ(none.err.find("are not stored"), std::string::npos) << none.err;
+}
+
 TEST_F(Lines, are_drawn_from_a_file_or_a_session_and_missed_by_a_filter_that_knows_none) {
   ASSERT_NO_FATAL_FAILURE(drawTrueEdges());
   const std::string lines = folder.file("lines.csv"), session = folder.file("work.fettle");
