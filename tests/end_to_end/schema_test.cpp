@@ -40,7 +40,7 @@ class Schemas : public testing::Test {
 
 TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   const std::string scan = file("s.tif"), out = file("o.tif"), lines = file("l.csv"), marks = file("m.png");
-  run({"synth", scan, "--size", "96x80", "--truth", file("t.tif"), "--edges", file("e.png")});
+  run({"synth", scan, "--size", "128x96", "--truth", file("t.tif"), "--edges", file("e.png")});
   run({"info", scan, "--at", "3,4"});
   run({"info", scan, file("none.tif")}, 1);
   run({"filter", scan, out, "--filter", "tgv"});

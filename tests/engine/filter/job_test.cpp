@@ -39,7 +39,7 @@ TEST(Jobs, GiveTheSameBitsForAnyNumberOfThreadsAnyCutOfTheWorkAndAnyProcessor) {
     const Version& input = separatesScales(filterOf(kind)) ? small : large;
     for (const int window : windowsOf(kind, {3, 5, 7, 9, 11, 21, 131})) {
       // Its time goes with the window's samples.
-      if (kind == FilterKind::kBilateral && window > 21) continue;
+      if ((kind == FilterKind::kBilateral || kind == FilterKind::kOutliers) && window > 21) continue;
       FilterSpec spec = makeSpec(kind, window);
       spec.passes = window == 3 ? 1 : 2;
       spec.max_change = 4.0;
@@ -72,9 +72,11 @@ TEST(Jobs, GiveTheSameBitsForAnyNumberOfThreadsAnyCutOfTheWorkAndAnyProcessor) {
         EXPECT_EQ(first_report->rms_change, result->report.rms_change);
         EXPECT_EQ(first_report->max_change, result->report.max_change);
       }
-      EXPECT_GT(first_report->changed,
-                static_cast<double>(input.grid().samples()) * (kind == FilterKind::kPlanes ? 0.08 : 0.59))
-          << name(kind);
+      // Of a large window no sample stands apart.
+      const double share = kind == FilterKind::kPlanes ? 0.08 : kind == FilterKind::kOutliers ? 0.007 : 0.59;
+      if (kind != FilterKind::kOutliers || window <= 5) {
+        EXPECT_GT(first_report->changed, static_cast<double>(input.grid().samples()) * share) << name(kind);
+      }
     }
   }
 }

@@ -34,8 +34,9 @@ TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
       const Filtered result = filtered(toVersion(plain), spec);
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec), "") << name(kind) << " " << window;
       EXPECT_EQ(toPlain(result.field).marks, plain.marks);
-      // Few windows of so rough a field fit a plane.
-      EXPECT_GT(result.report.changed, kind == FilterKind::kPlanes ? 30 : 10000);
+      // Few windows of so rough a field fit a plane, and few samples stand apart.
+      const bool few = kind == FilterKind::kPlanes || kind == FilterKind::kOutliers;
+      EXPECT_GT(result.report.changed, few ? 30 : 10000);
     }
 }
 
@@ -47,8 +48,8 @@ TEST(Marks, AloneAreFilteredWhenTheScopeSaysSo) {
       spec.scope = FilterScope::kOnlyMarks;
       const Filtered result = filtered(toVersion(plain), spec);
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec), "") << name(kind) << " " << window;
-      // Few windows of so rough a field fit a plane.
-      EXPECT_GT(result.report.changed, kind == FilterKind::kPlanes ? 30 : 5000);
+      const bool few = kind == FilterKind::kPlanes || kind == FilterKind::kOutliers;
+      EXPECT_GT(result.report.changed, few ? 30 : 5000);
     }
 }
 

@@ -27,7 +27,8 @@ TEST(FilterRevision, IsRaisedWhenTheBitsOfAnyFilterChange) {
                                                          {"opening", 0xf42c1e8dbc0f2391},
                                                          {"closing", 0x29f8879b37723d88},
                                                          {"spline", 0x9b97aa90ccba80c2},
-                                                         {"robust-spline", 0xae7ab919e89bb36a}};
+                                                         {"robust-spline", 0xae7ab919e89bb36a},
+                                                         {"outliers", 0x79007aae0759f746}};
   const Version scan = scanWithEverything(330, 290);
   for (const Filter& filter : filters()) {
     JobControl job;
