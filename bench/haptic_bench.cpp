@@ -80,23 +80,36 @@ engine::Version makeGround(const HardGround& ground, std::int32_t side, double s
 
 constexpr std::size_t kTimedTicks = 100'000;
 
+std::uint64_t mixed(std::uint64_t hash, double value) noexcept {
+  return std::rotl(hash, 7) ^ std::bit_cast<std::uint64_t>(value);
+}
+
 // Times of single ticks, separate from the runs that measure ticks per second: reading the clock takes a
 // noticeable part of a tick. A tick does the same work in each of `repeats` passes, so the least of them leaves out what else
-// the machine did.
-void timeTicks(const haptic::Scene& scene, const engine::Version& field,
-               std::span<const haptic::StrokeSample> strokes, int repeats, HapticBenchRow& row) {
+// the machine did. Adds what was felt to the hash, since a tick that only feels leaves every field as it was; false when
+// two passes felt differently.
+[[nodiscard]] bool timeTicks(const haptic::Scene& scene, const engine::Version& field,
+                             std::span<const haptic::StrokeSample> strokes, int repeats,
+                             HapticBenchRow& row) {
   const auto timed = strokes.first(std::min(strokes.size(), kTimedTicks));
   std::vector<double> ns(timed.size(), std::numeric_limits<double>::infinity());
   const haptic::DenormalScope as_in_the_loop;
+  std::uint64_t first = 0;
   for (int pass = 0; pass < repeats; ++pass) {
     engine::LiveField live(field, engine::Growth::kAllowed);
     haptic::Tick tick(scene, live, field);
+    std::uint64_t hash = row.hash;
     for (std::size_t i = 0; i < timed.size(); ++i) {
       const engine::Stopwatch watch;
-      (void)tick.run(timed[i]);
+      const haptic::ForceSample felt = tick.run(timed[i]);
       ns[i] = std::min(ns[i], watch.ns());
+      for (const glm::dvec3& of : {felt.force_n, felt.proxy_mm})
+        hash = mixed(mixed(mixed(hash, of.x), of.y), of.z);
     }
+    if (pass == 0) first = hash;
+    if (hash != first) return false;
   }
+  row.hash = first;
   std::sort(ns.begin(), ns.end());
   const auto quantile = [&](double q) {
     return ns[std::min(ns.size() - 1, static_cast<std::size_t>(q * static_cast<double>(ns.size())))];
@@ -106,6 +119,7 @@ void timeTicks(const haptic::Scene& scene, const engine::Version& field,
   row.p999_ns = quantile(0.999);
   row.p9999_ns = quantile(0.9999);
   row.worst_ns = ns.back();
+  return true;
 }
 
 engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Version& field,
@@ -129,6 +143,9 @@ engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Ve
   raised_mm = radius_mm;
   const auto part = std::span<const haptic::StrokeSample>(strokes).first(
       std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(test_case.share)));
+  const auto differ = [&] {
+    return engine::failure("two runs of the same strokes differ", test_case.name, "please report this");
+  };
   HapticBenchRow row;
   row.name = test_case.name;
   std::vector<double> rates;
@@ -136,8 +153,7 @@ engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Ve
     const auto result = haptic::replay(field, field, part, scene, {}, job);
     if (!result) return tl::unexpected(result.error());
     const std::uint64_t hash = engine::contentHash(result->field);
-    if (i > 0 && hash != row.hash)
-      return engine::failure("two runs of the same strokes differ", test_case.name, "please report this");
+    if (i > 0 && hash != row.hash) return differ();
     row.hash = hash;
     row.ticks = result->report.ticks;
     row.contact_ticks = result->report.contact_ticks;
@@ -147,7 +163,7 @@ engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Ve
   row.slowest = rates.front();
   row.median = rates[rates.size() / 2];
   row.fastest = rates.back();
-  timeTicks(scene, field, part, options.repeats, row);
+  if (!timeTicks(scene, field, part, options.repeats, row)) return differ();
   return row;
 }
 
@@ -169,7 +185,7 @@ engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
     for (const haptic::StrokeSample& sample : strokes) {
       const glm::dvec3 force = search.tick(sample.tip_mm, stiffness);
       row.contact_ticks += force.z != 0.0 ? 1 : 0;
-      row.hash = std::rotl(row.hash, 7) ^ std::bit_cast<std::uint64_t>(force.z);
+      row.hash = mixed(row.hash, force.z);
     }
     rates.push_back(static_cast<double>(strokes.size()) / watch.seconds());
     search.reset();

@@ -36,8 +36,9 @@ struct HapticBenchRow {
   double worst_ns = 0.0;
   // Of a contact, for the lower bound of level paper alone (LeastSearch).
   double cells = 0.0, newton_cells = 0.0, bytes = 0.0;
-  std::uint64_t hash = 0;  ///< of the field after it; of the forces for the plain search; the same in every
-                           ///< repeat, else an error
+  /// Of the field after it and of force and proxy in every timed tick; of the forces for the plain search, of the sum for the
+  /// lower bound. The same in every repeat, else an error.
+  std::uint64_t hash = 0;
 };
 
 struct HapticBenchReport {
