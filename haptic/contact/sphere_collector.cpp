@@ -57,7 +57,13 @@ void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valle
 // All minima of a cell that is steep(). Pieces are in proportion to the scale of g; where its slope has the same sign at
 // both ends of one and turns between them, the place where it turns decides whether there are two roots. Bounded, a cell
 // that holds no minimum within reach is left out and several pieces are looked at at a time: the same bits.
+//
+// A valley is some spacing / twist of a cell wide. Where that is less than the places along a cell differ by, no number of
+// pieces finds it, and some 250 pieces of every cell around the ball would be searched for minima among roundings, 20 ms a
+// tick. Scans hold such heights where 3.4e38 stands for a hole that the file does not declare.
 void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g, SphereSearch search) noexcept {
+  constexpr double kNarrowest = 4e-16;
+  if (std::min(g.sx, g.sy) < kNarrowest * std::abs(g.d)) return;
   if (search == SphereSearch::kBounded && !g.mayHold(0.0, 1.0, reach2_)) return;
   constexpr int kPieces = kSphereContactLanes;
   const Valley::Pieces pieces(g);
@@ -84,21 +90,25 @@ void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g, S
         to.slope = g.steepSlopeAt(v[k]);
         to.bend = g.bend;
       }
-      steepPiece(i, j, g, from, to);
+      steepPiece(i, j, g, from, to, search);
       from = to;
     }
   }
 }
 
 void SphereWindow::Collector::steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from,
-                                         const PieceEnd& to) noexcept {
+                                         const PieceEnd& to, SphereSearch search) noexcept {
+  const auto outOfReach = [&] {
+    return search == SphereSearch::kBounded && !g.mayHold(from.v, to.v, reach2_);
+  };
   if (from.slope < 0.0 && to.slope > 0.0) {
+    if (outOfReach()) return;
     steepMinimum(i, j, g, from.v, to.v);
     return;
   }
   const bool turns = from.slope < 0.0 ? to.slope < 0.0 && from.bend > 0.0 && to.bend < 0.0
                                       : to.slope > 0.0 && from.bend < 0.0 && to.bend > 0.0;
-  if (!turns) return;
+  if (!turns || outOfReach()) return;
   // A root with a rising slope is before the turn where the slope is below zero at the ends, else behind it.
   const bool below = from.slope < 0.0;
   double low = from.v;

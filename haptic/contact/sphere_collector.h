@@ -154,8 +154,8 @@ class SphereWindow::Collector {
   struct PieceEnd {
     double v, slope, bend;
   };
-  void steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from,
-                  const PieceEnd& to) noexcept;
+  void steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from, const PieceEnd& to,
+                  SphereSearch search) noexcept;
   void minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept;
   void inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept;
   void twisted(std::int32_t i, std::int32_t j) noexcept;
