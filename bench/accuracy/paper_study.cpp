@@ -24,7 +24,9 @@ namespace {
 constexpr int kPaperRepeats = 5;
 constexpr double kTruthRadiusMm = 1.0;  // deeper than the hand presses
 constexpr double kSamePointMm = 1e-7;   // tests/bench/literal_search_test.cpp derives it
-constexpr double kNearestMm = 1e-9;     // farther than the nearest by less counts as nearest
+constexpr double kBallCells = 2.0;      // of the smaller spacing
+constexpr const char* kBallName = "ball, radius 2 cells";
+constexpr double kNearestMm = 1e-9;  // farther than the nearest by less counts as nearest
 
 // What one method felt in every tick.
 struct Felt {
@@ -90,11 +92,8 @@ Felt feelLiteral(const Touched& hand) {
   });
 }
 
-AccuracyRow levelRow(const Touched& hand, const char* name, haptic::ContactLevel level, const Felt& literal) {
-  haptic::Scene scene = haptic::defaultScene();
-  scene.effects = {haptic::EffectKind::kSpring};
-  scene.level = level;
-  scene.certified_radius_cells = 8;
+// Ticks of a scene, timed all together and one by one; the row has the cost alone.
+Felt feelScene(const Touched& hand, const haptic::Scene& scene, AccuracyRow& row) {
   const haptic::DenormalScope as_in_the_loop;
   std::vector<double> ns;
   for (int i = 0; i < kPaperRepeats; ++i) {
@@ -104,15 +103,52 @@ AccuracyRow levelRow(const Touched& hand, const char* name, haptic::ContactLevel
     for (const haptic::StrokeSample& s : hand.strokes) (void)tick.run(s);
     ns.push_back(watch.ns() / static_cast<double>(hand.strokes.size()));
   }
+  spread(std::move(ns), row);
   engine::LiveField live(hand.ground.field, engine::Growth::kAllowed);
   haptic::Tick tick(scene, live, hand.ground.field);
-  const Felt felt = feel(hand.strokes, [&](const haptic::StrokeSample& s, glm::dvec3& proxy_mm) {
-    const haptic::ForceSample force = tick.run(s);
-    proxy_mm = force.proxy_mm;
-    return force.contact;
+  return feel(hand.strokes, [&](const haptic::StrokeSample& s, glm::dvec3& proxy_mm) {
+    const bool touches = tick.run(s).contact;
+    // Of a point the proxy, of a ball its centre.
+    if (touches) proxy_mm = s.tip_mm + tick.contact().penetration_mm;
+    return touches;
   });
+}
+
+haptic::Scene plainScene() {
+  haptic::Scene scene = haptic::defaultScene();
+  scene.effects = {haptic::EffectKind::kSpring};
+  return scene;
+}
+
+AccuracyRow levelRow(const Touched& hand, const char* name, haptic::ContactLevel level, const Felt& literal) {
+  haptic::Scene scene = plainScene();
+  scene.level = level;
+  scene.certified_radius_cells = 8;
+  AccuracyRow cost;
+  const Felt felt = feelScene(hand, scene, cost);
   AccuracyRow row = paperRow(hand, name, felt, literal);
-  spread(std::move(ns), row);
+  row.cost = cost.cost;
+  row.cost_worst = cost.cost_worst;
+  return row;
+}
+
+// The same hand with a ball, whose endpoint is its centre: for the same press one radius higher. It rests at its first
+// contacts, so that neither the nearest point nor a point tip's contact is its reference.
+AccuracyRow ballRow(const Touched& hand) {
+  haptic::Scene scene = plainScene();
+  scene.tip = haptic::TipShape::kSphere;
+  const engine::Grid& grid = hand.ground.field.grid();
+  scene.tip_radius_mm = kBallCells * std::min(grid.spacingXMm(), grid.spacingYMm());
+  std::vector<haptic::StrokeSample> raised = hand.strokes;
+  for (haptic::StrokeSample& s : raised) s.tip_mm.z += scene.tip_radius_mm;
+  const Touched ball{hand.ground, raised, hand.nearest_mm};
+  AccuracyRow cost;
+  const Felt felt = feelScene(ball, scene, cost);
+  AccuracyRow row = paperRow(ball, kBallName, felt, felt);
+  row.cost = cost.cost;
+  row.cost_worst = cost.cost_worst;
+  row.wrong = row.more[0] = row.more[1] = std::numeric_limits<double>::quiet_NaN();
+  row.note = "distance of its centre from the endpoint";
   return row;
 }
 
@@ -135,7 +171,7 @@ engine::Result<Study> paperStudy(const AccuracyOptions& options, engine::JobCont
   } kLevels[] = {{"descent", haptic::ContactLevel::kDescent},
                  {"paper", haptic::ContactLevel::kPaper},
                  {"certified, 8 cells", haptic::ContactLevel::kCertified}};
-  job.begin("the source's search", grounds->size() * (1 + std::size(kLevels)));
+  job.begin("the source's search", grounds->size() * (2 + std::size(kLevels)));
   std::int64_t ticks = 0;
   double flags = 0.0, points = 0.0;
   for (const Subject& ground : *grounds) {
@@ -169,6 +205,9 @@ engine::Result<Study> paperStudy(const AccuracyOptions& options, engine::JobCont
       }
       job.advance();
     }
+    if (job.cancelled()) return engine::cancelled();
+    study.rows.push_back(ballRow(hand));
+    job.advance();
   }
   for (AccuracyRow& row : study.rows) row.more.push_back(1e3 / row.cost);
   study.reference =

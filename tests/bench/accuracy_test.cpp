@@ -116,7 +116,40 @@ TEST(ContactStudy, CertifiedIsExactWithinItsRadiusAndMoreStepsAreNeverWorse) {
   EXPECT_GT(rowOf(*study, "flat", "descent, 1 Newton step per tick").error, rest.error);
 }
 
-// A ball whose steps are limited in plan and that searches 20 times a tick is as near as one before contact revision 4, on
+// The table of the accuracy page: each method on each ground, with its time, its longest ticks and what differs from the
+// source's text.
+TEST(PaperStudy, ComparesEveryMethodOnEveryGround) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.02;
+  const auto study = paperStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  const auto grounds = searchGrounds(256);
+  ASSERT_TRUE(grounds);
+  ASSERT_EQ(study->columns.size(), 4U);
+  for (const Subject& ground : *grounds) {
+    const AccuracyRow& literal = rowOf(*study, ground.name, "literal paper");
+    const AccuracyRow& paper = rowOf(*study, ground.name, "paper");
+    EXPECT_GT(literal.error, 0.01) << ground.name;
+    EXPECT_NEAR(paper.error, literal.error, 1e-7) << ground.name;
+    EXPECT_EQ(paper.wrong, literal.wrong) << ground.name;
+    EXPECT_EQ(paper.more[0], 0.0) << ground.name;
+    EXPECT_EQ(paper.more[1], 0.0) << ground.name;
+    EXPECT_EQ(rowOf(*study, ground.name, "certified, 8 cells").wrong, 0.0) << ground.name;
+    const AccuracyRow& ball = rowOf(*study, ground.name, "ball, radius 2 cells");
+    EXPECT_GT(ball.error, 0.01) << ground.name;
+    EXPECT_TRUE(std::isnan(ball.wrong) && std::isnan(ball.more[0])) << ground.name;
+    for (const char* method :
+         {"literal paper", "descent", "paper", "certified, 8 cells", "ball, radius 2 cells"}) {
+      const AccuracyRow& row = rowOf(*study, ground.name, method);
+      ASSERT_EQ(row.more.size(), study->columns.size()) << method;
+      EXPECT_GT(row.more[2], 0.0) << ground.name << ", " << method;
+      EXPECT_NEAR(row.more[3], 1e3 / row.cost, 1e-9 * row.more[3]) << ground.name << ", " << method;
+    }
+  }
+}
+
+// A ball whose steps are limited in plan and whose searches are bounded is as near as one before contact revision 4, on
 // average over the ticks; at a step it falls faster.
 TEST(ContactTrial, ABallIsAsNearAsBeforeRevision4) {
   engine::JobControl job;
