@@ -138,9 +138,21 @@ void UiLayer::fit(vk::Extent2D extent) {
   framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
+void UiLayer::notePress(int key, int modifiers) {
+  // Characters come by themselves; of their keys the panels know those with Ctrl alone.
+  const bool types = key > GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;
+  if (types && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0) return;
+  pressed_.push_back(
+      {key, modifiers, waiting_.size() + static_cast<std::size_t>(ImGui::GetIO().InputQueueCharacters.Size)});
+}
+
 // Sets all keys pressed since the last frame as held at this frame's beginning; returns those whose state is to be read
 // again afterwards. ImGui sees a press only where the key was up in the frame before: a second press of a key that it saw
 // held waits for the next frame, and the key is up in this one.
+//
+// In a frame with Ctrl it drops what was typed. So characters before a press with Ctrl have a frame without it, and that press
+// and what follows the next; what was typed after one waits, too. A slow frame else loses the beginning of a path that is
+// typed after Ctrl+A.
 std::vector<int> UiLayer::holdShortPresses() {
   ImGuiIO& io = ImGui::GetIO();
   std::vector<int> changed;
@@ -150,22 +162,42 @@ std::vector<int> UiLayer::holdShortPresses() {
   io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
   io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  std::vector<ImWchar> typed = std::exchange(waiting_, {});
+  typed.insert(typed.end(), io.InputQueueCharacters.begin(), io.InputQueueCharacters.end());
+  std::size_t now = typed.size();  // of these characters, in this frame
+  bool with_ctrl = false, ends = false;
   for (const Press& press : std::exchange(pressed_, {})) {
-    const auto& [key, modifiers] = press;
+    const int key = press.key;
     if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown)) continue;
-    if (io.KeysDownDuration[key] >= 0.0F || std::find(changed.begin(), changed.end(), key) != changed.end()) {
-      if (io.KeysDownDuration[key] >= 0.0F) io.KeysDown[key] = false;
+    const bool ctrl = (press.modifiers & GLFW_MOD_CONTROL) != 0 && (press.modifiers & GLFW_MOD_ALT) == 0;
+    const bool seen =
+        io.KeysDownDuration[key] >= 0.0F || std::find(changed.begin(), changed.end(), key) != changed.end();
+    if (ctrl && (seen || press.typed_before > 0)) {
+      now = ends ? now : std::min(now, press.typed_before);
+      ends = true;
+    }
+    if (ends || seen) {
+      io.KeysDown[key] = false;
       pressed_.push_back(press);
       changed.push_back(key);
       continue;
     }
-    io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
-    io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
-    io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
+    with_ctrl = with_ctrl || ctrl;
+    io.KeyCtrl = io.KeyCtrl || (press.modifiers & GLFW_MOD_CONTROL) != 0;
+    io.KeyShift = io.KeyShift || (press.modifiers & GLFW_MOD_SHIFT) != 0;
+    io.KeyAlt = io.KeyAlt || (press.modifiers & GLFW_MOD_ALT) != 0;
     // A key that is still held may have lost its modifiers already.
     io.KeysDown[key] = true;
     changed.push_back(key);
   }
+  if (with_ctrl) now = 0;
+  // Typed before Ctrl went down.
+  if (now > 0 && !io.KeyAlt) io.KeyCtrl = false;
+  const auto next = typed.begin() + static_cast<std::ptrdiff_t>(now);
+  waiting_.assign(next, typed.end());
+  io.InputQueueCharacters.resize(0);
+  for (auto c = typed.begin(); c != next; ++c) io.InputQueueCharacters.push_back(*c);
+  for (Press& press : pressed_) press.typed_before -= std::min(press.typed_before, now);
   return changed;
 }
 

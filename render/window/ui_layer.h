@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
+
+#include <imgui.h>
 
 #include "render/vulkan/memory.h"
 
@@ -33,7 +36,7 @@ class UiLayer {
   void fit(vk::Extent2D extent);
   /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
   /// gets keys that were released by then, for one frame.
-  void notePress(int key, int modifiers) { pressed_.push_back({key, modifiers}); }
+  void notePress(int key, int modifiers);
   void beginFrame();
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
   /// ends.
@@ -54,6 +57,7 @@ class UiLayer {
  private:
   struct Press {
     int key, modifiers;
+    std::size_t typed_before;  // characters that came before it and wait for a frame
   };
   void makeStyle(double scale) const;
   [[nodiscard]] std::vector<int> holdShortPresses();
@@ -61,8 +65,9 @@ class UiLayer {
   Context* context_ = nullptr;
   bool entered_ = false;
   GLFWwindow* window_;
-  std::vector<Press> pressed_;  // since the last frame began
-  std::string layout_file_;     // ImGui keeps a pointer to its text
+  std::vector<Press> pressed_;    // since the last frame began, or waiting for the next one
+  std::vector<ImWchar> waiting_;  // characters that wait for the next frame
+  std::string layout_file_;       // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;
   GpuImage image_;

@@ -90,5 +90,28 @@ TEST_F(LockTest, what_comes_after_the_answer_in_a_frame_is_done_after_it) {
   (void)quit(user);
 }
 
+// A frame with Ctrl in it takes no text: what is typed in a slow frame comes to the next one, in its order.
+TEST_F(LockTest, what_is_typed_after_a_key_with_ctrl_in_one_frame_is_all_there) {
+  const auto program = startOpened();
+  User user(display, *program, "typed");
+  user.at({20, 740});
+  (void)user.press("ctrl+e");
+  program->until("where to", [](const State& s) {
+    return s["dialog"] == "export" && s["settled"] == true && s["text_field"] == true;
+  });
+  const auto typed = [&](const std::string& path) {
+    program->until(path, [&](const State& s) { return s["dialog_path"] == path; });
+  };
+  inOneFrame({"key", "--delay", "0", "ctrl+a", "type", "--delay", "0", "/tmp/see.tif"});
+  typed("/tmp/see.tif");
+  // Keys that are pressed again and again take a frame each; text does not wait for them.
+  inOneFrame({"key", "--delay", "0", "End", "BackSpace", "BackSpace", "type", "--delay", "0", "eeeee"});
+  inOneFrame({"key", "--delay", "0", "ctrl+a", "type", "--delay", "0", "/tmp/again.tif"});
+  typed("/tmp/again.tif");
+  (void)user.press("Escape");
+  program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  (void)quit(user);
+}
+
 }  // namespace
 }  // namespace fettle::tests

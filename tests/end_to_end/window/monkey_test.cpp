@@ -49,7 +49,7 @@ class MonkeyTest : public WindowTest {
     for (const std::string& copy : {second_, left_, fresh_}) fs::copy_file(scan, copy);
     std::ofstream(broken_) << "II*";
     // Work that was not saved, to be found again.
-    const auto program = start({left_});
+    const auto program = start({left_}, {}, AtRest::kSmooth);
     User user(display, *program, "left");
     (void)opened(*program);
     (void)user.key("ctrl+i");
