@@ -383,6 +383,7 @@ void addRecord(Command root, Chosen& chosen) {
       {.name = "--device",
        .to = &options->device,
        .text = fmt::format("An id of fettle devices or one of {}", haptic::driverWords()),
+       .proposed = haptic::driversAlone(),
        .required = true},
       {.name = "--scene",
        .to = &options->scene,

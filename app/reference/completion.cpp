@@ -52,6 +52,11 @@ std::vector<std::string> optionNames(const CommandTable& command) {
   return names;
 }
 
+// "fettle help" takes the words of a command's path, as "fettle" does: "fettle help bench haptic".
+bool takesAPath(const CommandTable& command) {
+  return command.path == "fettle help";
+}
+
 // For '...' in a shell.
 std::string inQuotes(const std::string& text) {
   std::string out = "'";
@@ -170,6 +175,18 @@ std::string zshAction(const Parameter& p) {
   return " ";
 }
 
+// Only the second word and a third one are asked for: no command lies deeper.
+std::string zshHelpFunction(const CommandTable& root) {
+  std::string body = fmt::format(
+      "_fettle_help() {{\n  case $CURRENT in\n    2) compadd -- {} ;;\n    3)\n      case $words[2] in\n",
+      fmt::join(commandNames(root), " "));
+  for (const CommandTable& command : root.commands)
+    if (!command.commands.empty())
+      body +=
+          fmt::format("        {}) compadd -- {} ;;\n", command.name, fmt::join(commandNames(command), " "));
+  return body + "      esac ;;\n  esac\n}\n";
+}
+
 std::string zshFunction(const CommandTable& command) {
   std::string name = command.path;
   std::replace(name.begin(), name.end(), ' ', '_');
@@ -207,7 +224,9 @@ std::string zshFunction(const CommandTable& command) {
 
 std::string zshScript(const CommandTable& root) {
   std::string script = "#compdef fettle\n# zsh completion for fettle, made by fettle reference\n";
-  forEachCommand(root, [&](const CommandTable& command) { script += zshFunction(command); });
+  forEachCommand(root, [&](const CommandTable& command) {
+    script += takesAPath(command) ? zshHelpFunction(root) : zshFunction(command);
+  });
   return script + "_fettle \"$@\"\n";
 }
 
@@ -225,6 +244,11 @@ std::string fishFunction(const CommandTable& root) {
   end
   test "$path" = "$argv"
 end
+# The same of the words after "help".
+function __fettle_help
+  set -l words (commandline -opc)[2..]
+  test "$words[1]" = help; and test (string join ' ' fettle $words[2..]) = "$argv"
+end
 )",
                      fmt::join(paths, " "));
 }
@@ -234,10 +258,15 @@ std::string fishScript(const CommandTable& root) {
   forEachCommand(root, [&](const CommandTable& command) {
     const std::string head =
         fmt::format("complete -c fettle -n {}", inQuotes("__fettle_command " + command.path));
-    for (const CommandTable& below : command.commands)
-      script += fmt::format("{} -f -a {} -d {}\n", head, inQuotes(below.name), inQuotes(below.summary));
+    for (const CommandTable& below : command.commands) {
+      const std::string offered =
+          fmt::format("-f -a {} -d {}\n", inQuotes(below.name), inQuotes(below.summary));
+      script += head + " " + offered;
+      script +=
+          fmt::format("complete -c fettle -n {} {}", inQuotes("__fettle_help " + command.path), offered);
+    }
     for (const Parameter& p : command.parameters) {
-      if (p.positional() && !offeredBy(p).empty())
+      if (p.positional() && !offeredBy(p).empty() && !takesAPath(command))
         script +=
             fmt::format("{} -f -a {}\n", head, inQuotes(fmt::format("{}", fmt::join(offeredBy(p), " "))));
       if (p.positional()) continue;

@@ -183,6 +183,13 @@ std::string driverWords() {
   return words;
 }
 
+std::vector<std::string> driversAlone() {
+  std::vector<std::string> words;
+  for (const KnownDriver& driver : kDrivers)
+    if (driver.argument.empty()) words.emplace_back(driver.word);
+  return words;
+}
+
 std::string_view deviceKindName(DeviceKind kind) noexcept {
   switch (kind) {
     case DeviceKind::kOther:

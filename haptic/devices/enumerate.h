@@ -95,6 +95,8 @@ struct NamedDriver {
 
 /// What a user may say: "woodenhaptics, serial, spacemouse, hand:STROKES, ...".
 [[nodiscard]] std::string driverWords();
+/// Those of them that need no argument: "woodenhaptics", "serial", ...
+[[nodiscard]] std::vector<std::string> driversAlone();
 
 /// A device by the words a user gives, not started yet: those of driverNamed(), or a path of listDevices().
 /// A device that is not plugged in is no error, it may be plugged in later; a path that does not exist is

@@ -191,6 +191,7 @@ TEST_F(Reference, FishKnowsTheCommandByItsPlace) {
   EXPECT_NE(offered("fettle --json bench render --sce").find("--scene"), std::string::npos);
   EXPECT_NE(offered("fettle filter a b --filter tg").find("tgv"), std::string::npos);
   EXPECT_NE(offered("fettle bench filters --kind tgv,pl").find("tgv,planes"), std::string::npos);
+  EXPECT_EQ(offered("fettle help bench acc"), "");  // "accuracy" is no command of "bench"
 }
 
 // What is typed and what Tab makes of it, the same in each shell, in a terminal.
@@ -205,6 +206,9 @@ TEST_F(Reference, EachShellCompletesValuesInATerminal) {
       {"fettle bench filters --kind=tgv,med", "fettle bench filters --kind=tgv,median"},
       {"fettle measure scan.tif --only hyb", "fettle measure scan.tif --only hybrid"},
       {"fettle trans", "fettle transform"},
+      {"fettle help trans", "fettle help transform"},
+      {"fettle help bench hap", "fettle help bench haptic"},
+      {"fettle record scan.tif s.csv --device inv", "fettle record scan.tif s.csv --device inverse3"},
   };
   std::vector<std::string> typed;
   typed.reserve(lines.size());
