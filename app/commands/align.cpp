@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/align_estimate.h"
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"

@@ -15,8 +15,6 @@
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
-#include "engine/field/builder.h"
-#include "engine/field/piece.h"
 #include "engine/nominal/nominal_align.h"
 
 namespace fettle::app {
@@ -55,58 +53,6 @@ std::string alignKey(const AlignFigure& figure, const char* between) {
   return fmt::format("{}{}_{}", figure.key, between, figure.unit);
 }
 
-engine::AlignOptions alignOptionsOf(const AlignArguments& arguments) {
-  engine::AlignOptions options;
-  options.moves = movesNamed(arguments.moves).moves;
-  options.region = arguments.region == "marked"     ? engine::Region::kMarked
-                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
-                                                    : engine::Region::kAll;
-  options.most_rotation_deg = arguments.rotation.value_or(options.most_rotation_deg);
-  return options;
-}
-
-constexpr double kMostAligned = 1 << 20;  // samples to which a scan is reduced
-
-// Every n-th sample, so that a side of A has about as many as a square: what is searched is the whole shape.
-engine::Version thinned(const engine::Version& field, std::int32_t step) {
-  engine::Grid grid = field.grid();
-  grid.width = (grid.width + step - 1) / step;
-  grid.height = (grid.height + step - 1) / step;
-  grid.spacing_x *= step;
-  grid.spacing_y *= step;
-  std::vector<float> row(static_cast<std::size_t>(field.grid().width)), heights;
-  heights.reserve(static_cast<std::size_t>(grid.samples()));
-  for (std::int32_t r = 0; r < field.grid().height; r += step) {
-    field.reader().readHeights(0, r, field.grid().width, 1, row.data(), field.grid().width);
-    for (std::int32_t c = 0; c < field.grid().width; c += step)
-      heights.push_back(row[static_cast<std::size_t>(c)]);
-  }
-  return engine::makeField(grid, heights);
-}
-
-std::int32_t stepFor(const engine::Version& a, const engine::SampleRect& square) {
-  const double samples = static_cast<double>(square.columns) * square.rows;
-  return std::max(1, static_cast<std::int32_t>(
-                         std::lround(std::sqrt(static_cast<double>(a.grid().samples()) / samples))));
-}
-
-// `align` of a thinned A: its time is that of so many samples, whatever they show.
-PlannedOnPieces plannedFinding(const engine::Version& a, const AlignArguments& arguments, const auto& align) {
-  PlannedOnPieces pieces;
-  pieces.most_samples = kMostAligned;
-  pieces.memory_each = kAligningMemory;
-  pieces.side = 256;
-  pieces.work = [&a, align, options = alignOptionsOf(arguments)](
-                    const engine::SampleRect& r, engine::JobControl& job) -> engine::Result<engine::Version> {
-    const std::int32_t step = stepFor(a, r);
-    // So few samples may show too little of the shape: it was searched all the same.
-    const engine::Result<engine::Alignment> found = align(thinned(a, step), step, options, job);
-    if (!found && found.error().kind != engine::ErrorKind::kInput) return tl::unexpected(found.error());
-    return engine::pieceOf(a, r.column, r.row, r.columns, r.rows);
-  };
-  return pieces;
-}
-
 // What `align` finds under the options that the arguments mean; errors name the files.
 engine::Result<engine::Alignment> namedAlignment(const engine::Version& a, const std::string& path_a,
                                                  const std::string& path_b, const AlignArguments& arguments,
@@ -137,6 +83,16 @@ std::vector<Word> alignWords() {
 
 const engine::AlignMoves& movesOf(const std::string& word) {
   return movesNamed(word).moves;
+}
+
+engine::AlignOptions alignOptionsOf(const AlignArguments& arguments) {
+  engine::AlignOptions options;
+  options.moves = movesNamed(arguments.moves).moves;
+  options.region = arguments.region == "marked"     ? engine::Region::kMarked
+                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
+                                                    : engine::Region::kAll;
+  options.most_rotation_deg = arguments.rotation.value_or(options.most_rotation_deg);
+  return options;
 }
 
 void addAlignOptions(Command command, AlignArguments& arguments) {
@@ -187,22 +143,6 @@ engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const en
                         [&](const engine::Version& counted, const engine::AlignOptions& options) {
                           return engine::alignNominal(counted, b, options, job);
                         });
-}
-
-PlannedOnPieces plannedAlignment(const engine::Version& a, const engine::Version& b,
-                                 const AlignArguments& arguments) {
-  return plannedFinding(
-      a, arguments,
-      [&b](const engine::Version& thin, std::int32_t step, const engine::AlignOptions& options,
-           engine::JobControl& job) { return engine::alignFields(thin, thinned(b, step), options, job); });
-}
-
-PlannedOnPieces plannedAlignment(const engine::Version& a, const engine::NominalMesh& b,
-                                 const AlignArguments& arguments) {
-  return plannedFinding(
-      a, arguments,
-      [&b](const engine::Version& thin, std::int32_t, const engine::AlignOptions& options,
-           engine::JobControl& job) { return engine::alignNominal(thin, b, options, job); });
 }
 
 Report alignReport(const AlignArguments& arguments, const engine::Alignment& alignment) {

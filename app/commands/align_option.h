@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/work/work_estimate.h"
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/measure/align.h"
@@ -27,6 +26,9 @@ struct AlignArguments {
 /// What one of them allows.
 [[nodiscard]] const engine::AlignMoves& movesOf(const std::string& word);
 
+/// What the arguments mean to the engine, but for the picture of marks.
+[[nodiscard]] engine::AlignOptions alignOptionsOf(const AlignArguments& arguments);
+
 /// --rotation, --region, --marks.
 void addAlignOptions(Command command, AlignArguments& arguments);
 
@@ -42,17 +44,6 @@ void addAlignOptions(Command command, AlignArguments& arguments);
 [[nodiscard]] engine::Result<engine::Alignment> alignmentOf(
     const engine::Version& a, const engine::NominalMesh& b, const std::string& path_a,
     const std::string& path_b, const AlignArguments& arguments, engine::JobControl& job);
-
-/// What alignFields() takes for each height to which it reduces a scan [bytes]; measured on scans of 1200 and 2500 samples a side.
-inline constexpr double kAligningMemory = 145.0;
-
-/// The search for it, for an estimate: its time is that of the 2^20 heights at most to which both scans are reduced. What is given
-/// lives as long as what is returned.
-[[nodiscard]] PlannedOnPieces plannedAlignment(const engine::Version& a, const engine::Version& b,
-                                               const AlignArguments& arguments);
-/// Of a nominal mesh.
-[[nodiscard]] PlannedOnPieces plannedAlignment(const engine::Version& a, const engine::NominalMesh& b,
-                                               const AlignArguments& arguments);
 
 /// The alignment as keys of a report (docs/commands.md); errors of what was not free are null.
 [[nodiscard]] Report alignReport(const AlignArguments& arguments, const engine::Alignment& alignment);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/align_estimate.h"
 #include "app/commands/align_option.h"
 #include "app/commands/batch.h"
 #include "app/commands/command.h"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/align_estimate.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/typed_values.h"

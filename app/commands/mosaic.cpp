@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/align_estimate.h"
 #include "app/commands/align_option.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
@@ -109,7 +110,6 @@ MosaicSize mosaicSizeOf(const std::vector<engine::Version>& scans,
     const engine::Grid& grid = scans[k].grid();
     return glm::dvec2(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm());
   };
-  constexpr double kReduced = 1 << 20;  // alignFields()
   MosaicSize size;
   glm::dvec2 low(0.0), high(0.0);
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -122,7 +122,7 @@ MosaicSize mosaicSizeOf(const std::vector<engine::Version>& scans,
       glm::dvec2 both = glm::min(sides(i), sides(j));
       if (places) both = glm::min(end, (*places)[j] + sides(j)) - glm::max(at, (*places)[j]) + 2.0 * play;
       if (!(both.x > 2.0 * play && both.y > 2.0 * play)) continue;
-      const double samples = std::min(kReduced, both.x * both.y / cell);
+      const double samples = std::min(kMostAligned, both.x * both.y / cell);
       size.aligned += samples;
       size.largest = std::max(size.largest, samples);
     }
@@ -145,6 +145,13 @@ engine::Result<Foreseen> foreseeMosaic(const MosaicRun& options, const std::vect
   how.moves = options.moves;
   how.rotation = options.rotation;
   PlannedOnPieces aligning = plannedAlignment(first, scans[1], how);
+  // As many times as long as the pairs have more samples.
+  aligning.whole->seconds = [one = aligning.whole->seconds,
+                             times = size.aligned / std::min(kMostAligned, samples)](
+                                engine::JobControl& own) -> engine::Result<double> {
+    const auto seconds = one(own);
+    return seconds ? engine::Result<double>(*seconds * times) : seconds;
+  };
   aligning.most_samples = 1e18;
   aligning.share = size.aligned / samples;
   aligning.memory_each *= size.largest / std::max(1.0, size.aligned);

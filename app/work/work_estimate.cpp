@@ -244,8 +244,9 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
   // Of work that is long for few samples the largest piece is what the share allows.
   const double affordable = std::sqrt(kMostShare * all / 1.3125);
   if (!always && affordable < 64.0) return std::nullopt;
-  const std::int32_t largest =
-      std::clamp(static_cast<std::int32_t>(affordable), always ? step.side : 64, 1024);
+  if (!always && step.whole && step.share * static_cast<double>(grid.samples()) < step.whole->fewest_samples)
+    return std::nullopt;
+  const std::int32_t largest = std::clamp(static_cast<std::int32_t>(affordable), always ? 192 : 64, 1024);
   Pieces pieces;
   engine::JobControl own = engine::JobControl::partOf(job);  // whose stages are not shown
   for (int i = 0; i < 3; ++i) {
@@ -343,10 +344,15 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
       if (!*pieces) continue;
       long_enough = true;
       result = **pieces;
-      // Work that small squares say little of is in proportion to the largest one: it did not grow evenly up to there.
-      const bool largest_counts = on_pieces->side > PlannedOnPieces().side;
-      estimate.work_seconds += largest_counts ? result.seconds[2] / result.amounts[2] * result.all
-                                              : ofAll(result.all, 1, 2, result.amounts, result.seconds);
+      double seconds = ofAll(result.all, 1, 2, result.amounts, result.seconds);
+      if (on_pieces->whole) {
+        engine::JobControl own = engine::JobControl::partOf(job);  // whose stages are not shown
+        const auto whole = on_pieces->whole->seconds(own);
+        if (job.cancelled()) return engine::cancelled();
+        if (!whole) return tl::unexpected(whole.error());
+        seconds = *whole;
+      }
+      estimate.work_seconds += seconds;
       const double all = std::min(on_pieces->most_samples, on_pieces->share * samples);
       beside =
           std::max(beside, on_pieces->memory_each > 0.0 ? all * on_pieces->memory_each

@@ -53,8 +53,13 @@ struct PlannedOnPieces {
   Work of_original = {};
   /// [bytes] for each sample up to most_samples, where pieces are too small to show what the work takes; 0: by the pieces.
   double memory_each = 0.0;
-  /// Side of the largest square where an estimate alone is asked for, longer for work that small ones say little of [samples].
-  std::int32_t side = 192;
+  /// The time of the whole measured in another way than on squares, which say little of it; without --estimate only of a field of
+  /// so many samples (each counted `share` times), where that is a small part of the work.
+  struct Whole {
+    std::function<engine::Result<double>(engine::JobControl& job)> seconds;
+    double fewest_samples = 0.0;
+  };
+  std::optional<Whole> whole = {};
   /// The disk is that of squares all over the field, as where the writing is all of the work: what is made lies densely here
   /// and not there.
   bool uneven = false;

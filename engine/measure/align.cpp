@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "engine/base/stopwatch.h"
 #include "engine/measure/align_level.h"
 #include "engine/measure/align_search.h"
 #include "engine/measure/height_map.h"
@@ -28,6 +29,8 @@ using Under = AlignLevel::Under;
 constexpr int kBlocks = AlignLevel::kBlocks;
 constexpr double kSigmas = 1.25;  // of the window, in spacings of the coarser map
 constexpr double kMostPlaces = 1 << 20;
+constexpr double kCoarser = 4.0;         // a resolution than the next
+constexpr std::size_t kFinerStarts = 3;  // of a resolution that are refined in the next one
 constexpr double kTukey = 4.685;
 constexpr double kNormal = 1.4826;  // of the median of absolute values
 
@@ -326,6 +329,11 @@ std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, d
   return text;
 }
 
+// Samples in a direction that become one height, for the spacing `side` that is wished for.
+std::int32_t blockFor(double side, double spacing) noexcept {
+  return std::max(1, static_cast<std::int32_t>(side / spacing * (1.0 + 1e-9)));
+}
+
 // Both fields at one resolution; `side` is the spacing that is wished for.
 struct Maps {
   HeightMap first, second;
@@ -333,16 +341,14 @@ struct Maps {
 };
 Result<Maps> mapsAt(const Version& first, const Version& second, const AlignOptions& options, double side,
                     double base_first, double base_second, JobControl& job) {
-  const auto blockOf = [side](double spacing) {
-    return std::max(1, static_cast<std::int32_t>(side / spacing * (1.0 + 1e-9)));
-  };
   Maps maps;
   for (const bool of_first : {true, false}) {
     const Version& field = of_first ? first : second;
     const Grid& grid = field.grid();
-    auto map = heightMapOf(
-        field, of_first ? options.region : Region::kAll, std::min(grid.width, blockOf(grid.spacingXMm())),
-        std::min(grid.height, blockOf(grid.spacingYMm())), of_first ? base_first : base_second, job);
+    auto map = heightMapOf(field, of_first ? options.region : Region::kAll,
+                           std::min(grid.width, blockFor(side, grid.spacingXMm())),
+                           std::min(grid.height, blockFor(side, grid.spacingYMm())),
+                           of_first ? base_first : base_second, job);
     if (!map) return tl::unexpected(map.error());
     dropSpikes(*map);
     maps.sigma = std::max({maps.sigma, kSigmas * map->spacing_x, kSigmas * map->spacing_y});
@@ -351,7 +357,35 @@ Result<Maps> mapsAt(const Version& first, const Version& second, const AlignOpti
   return maps;
 }
 
+// Spacings of the resolutions [mm], the finest last: a factor of 4 from one to the next.
+std::vector<double> resolutionsOf(const Grid& first, const Grid& second) {
+  const double finest = std::max(spacingFor(first, kMostPlaces), spacingFor(second, kMostPlaces));
+  const double coarsest = std::max(spacingFor(first, 64.0 * 64.0), spacingFor(second, 64.0 * 64.0));
+  std::vector<double> sides;
+  for (double side = finest; side < 1.5 * coarsest || sides.empty(); side *= kCoarser)
+    sides.insert(sides.begin(), side);
+  return sides;
+}
+
 }  // namespace
+
+FinestAlignment finestAlignment(const Grid& first, const Grid& second) {
+  const std::vector<double> sides = resolutionsOf(first, second);
+  FinestAlignment finest{.spacing_mm = sides.back(),
+                         .starts = sides.size() > 1 ? kFinerStarts : 0,
+                         .resolutions = static_cast<int>(sides.size())};
+  const auto across = [&](double spacing, std::int32_t samples) {
+    return std::max(1, samples / std::min(samples, blockFor(finest.spacing_mm, spacing)));
+  };
+  const std::int32_t columns = across(first.spacingXMm(), first.width),
+                     rows = across(first.spacingYMm(), first.height);
+  const auto places = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  const std::int32_t stride = AlignLevel::strideFor(places);
+  finest.places = places;
+  finest.points = static_cast<std::size_t>((columns + stride - 1) / stride) *
+                  static_cast<std::size_t>((rows + stride - 1) / stride);
+  return finest;
+}
 
 Result<Alignment> alignFields(const Version& first, const Version& second, const AlignOptions& options,
                               JobControl& job) {
@@ -371,12 +405,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   const double arm = std::max(0.5 * glm::length(size), 1e-9);
   Frame frame = frameOf(glm::dvec3(0.5 * size, 0.0), arm, options.moves);
 
-  // Resolutions, the finest last: a factor of 4 from one to the next.
-  const double finest = std::max(spacingFor(grid, kMostPlaces), spacingFor(other, kMostPlaces));
-  const double coarsest = std::max(spacingFor(grid, 64.0 * 64.0), spacingFor(other, 64.0 * 64.0));
-  std::vector<double> sides;
-  for (double side = finest; side < 1.5 * coarsest || sides.empty(); side *= 4.0)
-    sides.insert(sides.begin(), side);
+  const std::vector<double> sides = resolutionsOf(grid, other);
   // Where the files place both, if that makes them overlap; else both begin at one corner.
   RigidMotion stated{glm::dmat3(1.0), glm::dvec3(0.0), frame.centre};
   const glm::dvec2 offset(other.origin_x * other.lateral_unit.mm - grid.origin_x * grid.lateral_unit.mm,
@@ -391,11 +420,13 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   std::size_t whole = 0;
   double sigma = 0.0;
   for (std::size_t k = 0; k < sides.size(); ++k) {
+    const Stopwatch watch;
     const auto maps = mapsAt(first, second, options, sides[k], base_first, base_second, job);
     if (!maps) return tl::unexpected(maps.error());
     level.emplace(maps->first, maps->second, maps->sigma);
     sigma = maps->sigma;
     whole = level->points().size();
+    const double map_seconds = watch.seconds();
     if (whole < 12)
       return inputError(
           fmt::format("{} heights of A that count are too few to align by", whole), "A",
@@ -415,6 +446,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
     }
     if (job.cancelled()) return cancelled();
     job.begin("aligning", starts.size());
+    const Stopwatch refining;
     std::vector<Refined> refined;
     refined.reserve(starts.size());
     for (const RigidMotion& start : starts) {
@@ -422,9 +454,16 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
       job.advance();
     }
     if (job.cancelled()) return cancelled();
+    if (options.stages != nullptr)
+      options.stages->push_back({.resolution = static_cast<int>(k),
+                                 .places = maps->first.z.size(),
+                                 .points = whole,
+                                 .starts = starts.size(),
+                                 .map_seconds = map_seconds,
+                                 .refine_seconds = refining.seconds()});
     std::ranges::stable_sort(refined, std::greater<>(), &Refined::gain);
     // Where shapes repeat, the finer heights decide.
-    refined.resize(std::min<std::size_t>(refined.size(), last ? 1 : 3));
+    refined.resize(std::min<std::size_t>(refined.size(), last ? 1 : kFinerStarts));
     candidates = std::move(refined);
   }
   const Refined& best = candidates.front();

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -18,6 +20,16 @@ struct AlignMoves {
   bool tilt = true;      ///< about x and y
 };
 
+/// What one resolution of alignFields() took, by which the time of larger fields is foreseen (finestAlignment).
+struct AlignStage {
+  int resolution = 0;           ///< 0: the coarsest; the finest is the last
+  std::size_t places = 0;       ///< of the first field's map
+  std::size_t points = 0;       ///< of these that are compared
+  std::size_t starts = 0;       ///< motions that were refined
+  double map_seconds = 0.0;     ///< of reducing and smoothing both fields
+  double refine_seconds = 0.0;  ///< of all starts
+};
+
 struct AlignOptions {
   AlignMoves moves;
   Region region = Region::kAll;     ///< the samples of the first field that count
@@ -25,6 +37,8 @@ struct AlignOptions {
   /// Whether shift and rotation are searched for over the whole field. Without it the start is where the fields' positions
   /// place them.
   bool search = true;
+  std::vector<AlignStage>* stages =
+      nullptr;  ///< where what each resolution took is added; lives during the call
 };
 
 /// A rigid motion that brings a second field onto a first, in millimetres of the first's field coordinates: a point of the
@@ -44,7 +58,7 @@ struct Alignment {
   double sigma_mm = 0.0;     ///< of the Gaussian window through which both were compared
 };
 
-/// Finds it. Both fields are reduced by means of blocks without spikes (to at most 2^20 heights each, nearly alike spacing), single
+/// Finds it. Both fields are reduced by means of blocks without spikes (whole samples, so to fewer than 2^22 heights each, nearly alike spacing), single
 /// spikes become holes, both go through one Gaussian window of 1.25 spacings, and the motion is that of the least sum of
 /// Tukey's biweight of the height differences (Gauss-Newton, from coarse to fine; J. Tukey 1974), so that samples which only
 /// one field has - dust, steps, spikes - do not count, as long as they are fewer
@@ -67,5 +81,16 @@ struct Alignment {
 /// Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<Alignment> alignFields(const Version& first, const Version& second,
                                             const AlignOptions& options, JobControl& job);
+
+/// The finest resolution of alignFields() of fields on two grids.
+struct FinestAlignment {
+  double spacing_mm = 0.0;  ///< of the heights to which both are reduced
+  std::size_t places = 0;   ///< of these in the first field: about 2^20 of larger ones, fewer than 2^22
+  std::size_t points = 0;   ///< of these that are compared, at most 300,000
+  std::size_t starts = 0;   ///< motions that are refined there, at most; 0 where it is the only resolution
+  int resolutions = 1;      ///< it and those before, each of four times the spacing of the next
+};
+/// Throws std::bad_alloc.
+[[nodiscard]] FinestAlignment finestAlignment(const Grid& first, const Grid& second);
 
 }  // namespace fettle::engine

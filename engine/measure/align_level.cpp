@@ -15,14 +15,17 @@ constexpr std::size_t kMostPoints = 300'000;
 
 }  // namespace
 
+std::int32_t AlignLevel::strideFor(std::size_t places) noexcept {
+  return std::max(1, static_cast<std::int32_t>(std::ceil(
+                         std::sqrt(static_cast<double>(places) / static_cast<double>(kMostPoints)))));
+}
+
 AlignLevel::AlignLevel(const HeightMap& first, const HeightMap& second, double sigma)
     : sigma_(sigma), spline_(smoothed(second, sigma, AtHoles::kFill, Borders::kLeftOut).value) {
   const SmoothMap smooth = smoothed(first, sigma, AtHoles::kStay, Borders::kLeftOut);
   std::size_t count = 0;
   for (const double z : smooth.value.z) count += std::isnan(z) ? 0 : 1;
-  const std::int32_t stride =
-      std::max(1, static_cast<std::int32_t>(
-                      std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(kMostPoints)))));
+  const std::int32_t stride = strideFor(count);
   points_.reserve(count);
   for (std::int32_t r = 0; r < first.height; r += stride)
     for (std::int32_t c = 0; c < first.width; c += stride) {

@@ -38,6 +38,9 @@ class AlignLevel {
     double slope_x = 0.0, slope_y = 0.0, z = 0.0;  ///< of the second, moved
   };
 
+  /// Every n-th place of a map in each direction is used, so that these are 300,000 at most.
+  [[nodiscard]] static std::int32_t strideFor(std::size_t places) noexcept;
+
   /// `sigma`: of the window. At most 300,000 places are used. Throws std::bad_alloc.
   AlignLevel(const HeightMap& first, const HeightMap& second, double sigma);
 

@@ -118,6 +118,35 @@ TEST(Align, FindsEveryMotionOfAKnownSurface) {
   }
 }
 
+// Sizes around those at which a resolution comes in, or samples become one height.
+TEST(Align, ItsFinestResolutionIsThatWhichIsForeseen) {
+  for (const auto& [width, height] :
+       {std::pair{40, 30}, {170, 171}, {260, 90}, {600, 540}, {1025, 1023}, {2100, 2060}}) {
+    const Grid a = squareGrid(width, height, 0.1, 0.1), b = squareGrid(width - 7, height + 5, 0.1, 0.11);
+    const auto field = [](const Grid& grid) {
+      std::vector<float> heights;
+      for (int r = 0; r < grid.height; ++r)
+        for (int c = 0; c < grid.width; ++c) heights.push_back(static_cast<float>(hilly(0.03 * c, 0.03 * r)));
+      return makeField(grid, heights);
+    };
+    std::vector<AlignStage> stages;
+    AlignOptions options{.moves = {false, false, false}, .search = false};
+    options.stages = &stages;
+    JobControl job;
+    ASSERT_TRUE(alignFields(field(a), field(b), options, job));
+    const FinestAlignment finest = finestAlignment(a, b);
+    ASSERT_EQ(static_cast<int>(stages.size()), finest.resolutions) << width;
+    for (int k = 0; k < finest.resolutions; ++k)
+      EXPECT_EQ(stages[static_cast<std::size_t>(k)].resolution, k) << width;
+    EXPECT_EQ(stages.back().places, finest.places) << width;
+    // Without those at borders, where the window is not whole: two rows of 30 on each side.
+    EXPECT_LE(stages.back().points, finest.points) << width;
+    EXPECT_GT(stages.back().points, 7 * finest.points / 10) << width;
+    EXPECT_GT(stages.back().refine_seconds, 0.0) << width;
+    EXPECT_EQ(finest.resolutions > 1, finest.starts > 0) << width;
+  }
+}
+
 TEST(Align, FindsShiftsOfMoreThanHalfTheField) {
   const Grid grid = squareGrid(128, 128, 0.1, 0.1);
   for (const glm::dvec3& shift :
