@@ -11,15 +11,19 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
 #include "engine/field/builder.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/marks/change_marks.h"
 #include "engine/measure/areal.h"
@@ -38,6 +42,7 @@ struct FeatureRun {
   double prune = 5.0;  // [% of Sz]
   std::string csv, labels, edges, to;
   Replacing replacing = Replacing::kNoWork;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -204,6 +209,38 @@ engine::Status writeFeatures(const FeatureRun& options, const Segments& segments
   });
 }
 
+// The surface, its order by height and the segment of each sample [bytes for each]; measured on 1200, 4096 and 8192 a side.
+constexpr double kSegmentingMemory = 30.0;
+
+engine::Result<Foreseen> foreseeFeatures(const FeatureRun& options, const engine::Version& counted,
+                                         const engine::Imported& imported, engine::JobControl& job) {
+  const auto segmentsOfPiece = [&](const engine::SampleRect& r,
+                                   engine::JobControl& own) -> engine::Result<engine::Version> {
+    const KeptMessages said;  // of the scan the command itself says it
+    const engine::Version piece = engine::pieceOf(counted, r.column, r.row, r.columns, r.rows);
+    // Of a piece of holes there is nothing to segment.
+    const auto taken = [&](const engine::Error& error) -> engine::Result<engine::Version> {
+      if (error.kind == engine::ErrorKind::kInput) return piece;
+      return tl::unexpected(error);
+    };
+    const auto limited = scaleLimited(piece, options.scan, imported, options.form, options.scale, own);
+    if (!limited) return taken(limited.error());
+    const auto segments = segmentsOf(options, *limited, own);
+    if (!segments) return taken(segments.error());
+    return options.labels.empty() ? piece : labelled(*segments, piece.grid(), own);
+  };
+  PlannedOnPieces segmenting{.work = segmentsOfPiece, .memory_each = kSegmentingMemory};
+  // The picture of --edges and the table are small beside labels.
+  const PlannedWork planned{
+      .field = counted,
+      .original = counted,
+      .steps = {std::move(segmenting)},
+      .out = memoryPlace(options.labels) == nullptr ? options.labels : std::string(),
+      .extension = isStream(options.labels) ? withDot(options.to) : engine::extensionOf(options.labels),
+      .writing = options.writing};
+  return foresee(planned, shownInput(options.scan), options.estimate, job);
+}
+
 engine::Result<Report> features(const FeatureRun& options, engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"},
@@ -216,6 +253,9 @@ engine::Result<Report> features(const FeatureRun& options, engine::JobControl& j
   if (!imported) return tl::unexpected(imported.error());
   const auto counted = countedOf(imported->field, imported->original, options.scan, options.form, job);
   if (!counted) return tl::unexpected(counted.error());
+  auto foreseen = foreseeFeatures(options, *counted, *imported, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const auto limited = scaleLimited(*counted, options.scan, *imported, options.form, options.scale, job);
   if (!limited) return tl::unexpected(limited.error());
   const auto segments = segmentsOf(options, *limited, job);
@@ -242,6 +282,7 @@ engine::Result<Report> features(const FeatureRun& options, engine::JobControl& j
 }
 
 void printFeatures(const Report& report) {
+  if (report.contains("text")) return printReport(report);
   constexpr std::size_t kShown = 12;
   const ReadAs height = readLengthAs(report["sz"].get<double>(), report["unit_mm"], report["unit"]);
   const std::string length = report["lateral_unit"];
@@ -303,6 +344,7 @@ void addFeatures(Command root, Chosen& chosen) {
         .text = "Write the samples at which segments meet, as a picture of marks",
         .kind = ValueKind::kNewMarks}});
   addForceOption(command, options->replacing);
+  addEstimateOption(command, options->estimate);
   addStreamFormat(command, options->to);
   addCompressOption(command, options->writing);
   addFormOptions(command, options->form);

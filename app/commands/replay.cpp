@@ -1,24 +1,35 @@
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/live/placement.h"
 #include "app/terminal.h"
+#include "app/work/filter_compute.h"
+#include "app/work/memory_places.h"
 #include "app/work/open_document.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
+#include "engine/field/piece.h"
 #include "engine/formats/formats.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/session.h"
 #include "haptic/base/strokes.h"
+#include "haptic/journal/journal.h"
 #include "haptic/journal/session_player.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/scene/scene.h"
@@ -39,9 +50,66 @@ struct ReplayArguments {
   std::string forces;
   std::string original;
   bool certify = false;
+  bool estimate = false;
   Replacing replacing = Replacing::kNoWork;
   ScanOptions reading;
 };
+
+// A step whose samples stay as they are, for the estimate of what is written.
+engine::Result<engine::Version> pieceAt(const engine::Version& field, const engine::SampleRect& r) {
+  return engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+}
+
+engine::Result<Foreseen> foreseeReplay(const ReplayArguments& options, const engine::Version& field,
+                                       const engine::Version& original, std::vector<PlannedStep> steps,
+                                       engine::JobControl& job) {
+  if (memoryPlace(options.out) != nullptr) return Foreseen{};
+  const PlannedWork planned{
+      .field = field,
+      .original = original,
+      .steps = std::move(steps),
+      .out = options.out,
+      .extension = isStream(options.out) ? withDot(options.to) : engine::extensionOf(options.out),
+      .writing = beginningWith(original)};
+  return foresee(planned, shownOutput(options.out), options.estimate, job);
+}
+
+// Of a journal its filters take long: a second of them is as long as millions of ticks.
+engine::Result<Foreseen> foreseeJournal(const ReplayArguments& options, const engine::Session& session,
+                                        engine::JobControl& job) {
+  FilterCompute processor(Compute::kCpu, nullptr);
+  std::vector<engine::FilterSpec> specs;
+  for (const engine::JournalEntry& row : session.journal) {
+    const auto entry = haptic::journalEntry(row.action);
+    const auto* begun = entry ? std::get_if<haptic::journal::FilterBegun>(&*entry) : nullptr;
+    if (begun != nullptr) specs.push_back(begun->spec);
+  }
+  std::vector<PlannedStep> steps;
+  steps.reserve(specs.size());
+  for (const engine::FilterSpec& spec : specs) steps.emplace_back(PlannedFilter{spec, processor});
+  return foreseeReplay(options, session.history.current(), session.original, std::move(steps), job);
+}
+
+// The first ticks of strokes, and the others as long as these.
+engine::Result<Foreseen> foreseeStrokes(const ReplayArguments& options, const engine::Version& field,
+                                        const engine::Version& original,
+                                        const std::vector<haptic::StrokeSample>& strokes,
+                                        const haptic::Scene& scene, const haptic::ReplayOptions& how,
+                                        engine::JobControl& job) {
+  constexpr std::size_t kShown = 20'000;
+  constexpr double kLong = 32.0;  // times as many: then what is shown is a small part
+  if (!options.estimate && static_cast<double>(strokes.size()) < kLong * kShown) return Foreseen{};
+  PlannedOnPieces ticking{
+      .work = [&](const engine::SampleRect& r, engine::JobControl&) { return pieceAt(field, r); }};
+  ticking.whole = {.seconds = [&](engine::JobControl& own) -> engine::Result<double> {
+    const std::span<const haptic::StrokeSample> some =
+        std::span(strokes).first(std::min(kShown, strokes.size()));
+    const auto done = haptic::replay(field, original, some, scene, how, own);
+    if (!done) return tl::unexpected(done.error());
+    return done->report.seconds * static_cast<double>(strokes.size()) / static_cast<double>(some.size());
+  }};
+  return foreseeReplay(options, field, original, {std::move(ticking)}, job);
+}
 
 // The journal of a session, from the scan on.
 engine::Result<Report> replayJournal(const ReplayArguments& options, engine::JobControl& job) {
@@ -67,6 +135,9 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   if (session->journal.empty() && session->history.number() > 0)
     return engine::inputError("the session has no journal", options.scan,
                               "convert or export its present state instead");
+  auto foreseen = foreseeJournal(options, *session, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
   const auto played = haptic::playSession(*session, job);
   if (!played) return tl::unexpected(played.error());
@@ -164,6 +235,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
     if (const auto problem =
             problemOnEveryDevice(*scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
       warn(fmt::format("{}: {}", options.scene, withoutForceText(*problem)));
+  auto foreseen = foreseeStrokes(options, field, *original, *strokes, *scene, replay_options, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const auto result = haptic::replay(field, *original, *strokes, *scene, replay_options, job);
   if (!result) return tl::unexpected(result.error());
 
@@ -241,6 +315,7 @@ void addReplay(Command root, Chosen& chosen) {
   });
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
+  addEstimateOption(command, options->estimate);
   command.add(
       {{.name = "--certify",
         .to = &options->certify,

@@ -168,14 +168,16 @@ TEST(Estimate, OfMeasuringCommandsForeseesMemoryAndDisk) {
       {"level", file("s.tif"), file("o.fettle"), "--layer", "put"},
       {"fit", file("s.tif"), "--residuals", file("o.tif")},
       {"measure", file("s.tif"), "--noise-trials", "4"},
+      {"features", file("s.tif"), "--labels", file("o.tif")},
       {"align", file("s.tif"), file("t.tif"), file("o.tif")},
       {"compare", file("s.tif"), file("n.stl"), "--deviation", file("o.tif")},
       {"mosaic", file("s.tif"), file("t.tif"), file("o.tif"), "--layout", "2x1", "--overlap", "90"}};
   for (std::vector<std::string> command : commands) {
-    const std::string out = command[0] == "fit" || command[0] == "compare" ? command.back()
-                            : command[0] == "level"                        ? command[2]
-                            : command[0] == "measure"                      ? ""
-                                                                           : command[3];
+    const bool named_last = command[0] == "fit" || command[0] == "compare" || command[0] == "features";
+    const std::string out = named_last                ? command.back()
+                            : command[0] == "level"   ? command[2]
+                            : command[0] == "measure" ? ""
+                                                      : command[3];
     command.emplace_back("--estimate");
     const auto estimate = fettleJson(command);
     EXPECT_EQ(entriesOf(folder), 3) << command[0];

@@ -47,6 +47,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, file("none.tif"), "--filter", "median", "--out-dir", file("d")}, 1);
   run({"filter", scan, out, "--filter", "tgv", "--estimate"});
   run({"convert", scan, file("none.stl"), "--estimate"});
+  run({"features", scan, "--labels", file("none.tif"), "--estimate"});
   run({"compare", scan, out, "--estimate"});
   run({"mark", scan, file("none.png"), "--edges", "--estimate"});
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--estimate"});
@@ -113,8 +114,10 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
                              session);
   run({"journal", session});
   run({"replay", session, file("j.tif")});
+  run({"replay", session, file("none.tif"), "--estimate"});
   run({"demo", file("demo"), "--side", "256"});
   run({"replay", file("demo/scan.tif"), file("demo/strokes.csv"), out, "--certify"});
+  run({"replay", file("demo/scan.tif"), file("demo/strokes.csv"), file("none.tif"), "--estimate"});
   run({"record", scan, file("rec.csv"), "--device", "hand:" + file("demo/strokes.csv"), "--seconds", "0.5"});
   run({"accuracy", file("a"), "--only", "energy", "--effort", "0.01"});
   run({"bench", "haptic", "--side", "64", "--ticks", "10", "--repeats", "1"});
