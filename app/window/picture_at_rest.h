@@ -23,14 +23,17 @@ class PictureAtRest {
 
   /// The result of a frame.
   struct Drawn {
-    bool changed = false;  ///< some of the surface was drawn again
-    bool at_rest = false;  ///< it was one at rest
-    int left = 0;          ///< of one at rest: FrameStatistics::rest_left
+    bool changed = false;     ///< some of the surface was drawn again
+    bool at_rest = false;     ///< it was one at rest
+    int left = 0;             ///< of one at rest: FrameStatistics::rest_left
+    bool asked_here = false;  ///< nothing but due() asked for it
   };
   void drawn(const Drawn& frame, Clock::time_point now) noexcept {
     if (frame.changed) changed_ = now;
-    // Where there is no such picture - for two eyes - every frame draws the surface again.
-    if (frame.at_rest)
+    // Where there is no such picture - for two eyes - or frames cannot go on from each other, it must not ask for ever.
+    if (frame.at_rest && frame.asked_here && frame.changed)
+      complete_ = true;
+    else if (frame.at_rest)
       complete_ = frame.left == 0;
     else if (frame.changed)
       complete_ = false;

@@ -72,10 +72,11 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 bool WindowPicture::takeDue(Draws draws) {
   const auto now = Refinement::Clock::now();
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
-  const bool due =
-      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
-      (draws == Draws::kRefined &&
-       (refinement_.due(now) || (smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now))));
+  const bool refines = draws == Draws::kRefined;
+  const bool changes =
+      needs_redraw_ || figures_.upload.pending_tiles > 0 || (refines && refinement_.due(now));
+  only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
+  const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;
   return due;
 }
@@ -102,9 +103,13 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.times.add(static_cast<std::int64_t>(took_ns));
   draw_figures_.tiles_uploaded += figures_.upload.tiles;
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
-  at_rest_.drawn({.changed = figures_.redrawn > 0.0, .at_rest = rests, .left = figures_.rest_left},
+  at_rest_.drawn({.changed = figures_.redrawn > 0.0,
+                  .at_rest = rests,
+                  .left = figures_.rest_left,
+                  .asked_here = only_rest_asked_},
                  PictureAtRest::Clock::now());
-  if (draws == Draws::kRefined)
+  // One that was drawn for the sake of rest alone has as many vertices as the one before.
+  if (draws == Draws::kRefined && !only_rest_asked_)
     refinement_.drawn({.whole = figures_.redrawn == 1.0,
                        .continued = figures_.continued,
                        .tiles_coming = figures_.upload.pending_tiles > figures_.residency.pages_waiting,

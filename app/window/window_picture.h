@@ -118,6 +118,7 @@ class WindowPicture {
   Refinement refinement_;
   PictureAtRest at_rest_;
   bool smooth_at_rest_ = false;
+  bool only_rest_asked_ = false;  // for the frame that is due
   bool needs_redraw_ = true;
   DrawFigures draw_figures_;
 };

@@ -47,6 +47,16 @@ TEST_F(AtRest, AStrokeEndsIt) {
   EXPECT_FALSE(due(1299));
 }
 
+// Frames that cannot go on from each other are drawn as a whole each: it gives up until something else changes.
+TEST_F(AtRest, DoesNotAskForFramesThatBeginAnewForEver) {
+  frame(0, {.changed = true});
+  frame(400, {.changed = true, .at_rest = true, .left = 8, .asked_here = true});
+  EXPECT_FALSE(due(10'000));
+  EXPECT_FALSE(rest.pending());
+  frame(10'000, {.changed = true});
+  EXPECT_TRUE(due(10'400));
+}
+
 // For two eyes a frame at rest is one as any other, drawn as a whole: it must not ask for the next one.
 TEST_F(AtRest, WithoutSuchAPictureItEndsAtOnce) {
   frame(0, {.changed = true});
