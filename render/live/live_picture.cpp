@@ -338,8 +338,8 @@ void LivePicture::Impl::recordRest(const FrameInput& input, const PicturePlan& p
   if (figures.residency.pages_over_budget > 0) rest_refused = input.view;
 
   LiveFrame::Rest does;
-  does.draws =
-      rest->bands < kRestBands && figures.residency.pages_waiting == 0 && figures.residency.pages_over_budget == 0;
+  does.draws = rest->bands < kRestBands && figures.residency.pages_waiting == 0 &&
+               figures.residency.pages_over_budget == 0;
   does.first = does.draws && rest->bands == 0;
   std::vector<PatchChoice> parts;
   if (does.draws) {
