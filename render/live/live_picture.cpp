@@ -334,7 +334,7 @@ void LivePicture::Impl::recordRest(const FrameInput& input, const PicturePlan& p
   std::vector<LivePanel>& panels = chosen.panels();
   DrawnFrame now = drawnFrameOf(panels, plan, decorations);
   if (!rest || !frame.holdsRest(target.extent) || !showTheSame(rest->shown, now))
-    rest.emplace(std::move(now), 0);
+    rest = Rest{std::move(now), 0};
   if (figures.residency.pages_over_budget > 0) rest_refused = input.view;
 
   LiveFrame::Rest does;
