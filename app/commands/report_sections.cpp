@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -177,7 +178,8 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& key) {
 void addFigureRows(const std::string& key, const Report& figure, std::size_t state, std::size_t states,
                    std::vector<FigureRow>& rows) {
   for (const auto& [member, value] : figure.items()) {
-    auto [name, unit] = nameAndUnit(member);
+    std::string name, unit;
+    std::tie(name, unit) = nameAndUnit(member);
     if (!(value.is_number() || value.is_null()) || name.ends_with("_error")) continue;
     const auto number = [](const Report& of) {
       return of.is_number() ? fmt::format("{:.5g}", of.get<double>()) : "-";

@@ -261,7 +261,7 @@ std::string fishScript(const CommandTable& root) {
     for (const CommandTable& below : command.commands) {
       const std::string offered =
           fmt::format("-f -a {} -d {}\n", inQuotes(below.name), inQuotes(below.summary));
-      script += head + " " + offered;
+      script += fmt::format("{} {}", head, offered);
       script +=
           fmt::format("complete -c fettle -n {} {}", inQuotes("__fettle_help " + command.path), offered);
     }

@@ -46,7 +46,7 @@ class Sessions(unittest.TestCase):
             session.at(session.states[-1] + 1)
 
     def test_a_field_is_written_with_what_it_began_as(self):
-        scan = fettle.synth(size=(64, 64), seed=2)
+        scan = fettle.synth(size=(128, 96), seed=2)
         scan.mark(edges=True, lines_out=True).filter("median").write(self.path)
         session = fettle.Session(self.path)
         self.assertEqual(session.original.hash, scan.hash)
@@ -55,7 +55,7 @@ class Sessions(unittest.TestCase):
         np.testing.assert_array_equal(np.asarray(session.original), np.asarray(scan))
 
     def test_a_recipe_applies_to_a_field(self):
-        scan = fettle.synth(size=(64, 64), seed=2)
+        scan = fettle.synth(size=(128, 96), seed=2)
         recipe = os.path.join(os.path.dirname(self.path), "clean.toml")
         with open(recipe, "w", encoding="ascii") as file:
             file.write('recipe = 1\n\n[[step]]\ndo = "filter"\nfilter = "median"\nwindow = 5\n')

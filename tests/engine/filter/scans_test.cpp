@@ -45,7 +45,10 @@ TEST_P(Scans, AreFilteredAsNearTheReferenceAsStatedAndTheMedianExactly) {
       const Filtered result = filtered(in_part ? middle : whole, spec);
       // Holes and their neighbours everywhere, windows at about 1000 places.
       EXPECT_EQ(checkPass(in_part ? plain_middle : plain_whole, toPlain(result.field), spec, 1000), "");
-      EXPECT_GT(result.report.changed, 0);
+      // Of some scans no sample stands apart by so much.
+      if (kind != FilterKind::kOutliers) {
+        EXPECT_GT(result.report.changed, 0);
+      }
     }
   }
 }
