@@ -11,7 +11,6 @@
 #include <imgui.h>
 
 #include "app/terminal.h"
-#include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
 #include "app/window/scene_edits.h"
 #include "engine/base/stopwatch.h"
@@ -173,7 +172,6 @@ void Workstation::takeResults() {
   p.document.poll(p.view, p.feedback);
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
-  followButtons(p);
   followForm();
   bool changed = p.filters.poll(client, notices);
   // An adoption ends first: its result belongs to the form under which it was computed.

@@ -138,7 +138,6 @@ class LoopClient final {
   void arm() { loop_.arm(); }
   void disarm() { loop_.disarm(); }
   void calibrate() { loop_.calibrate(); }
-  [[nodiscard]] DeviceChoices takeDeviceChoices() noexcept { return loop_.takeChoices(); }
   void setView(double azimuth_deg, double zoom) { loop_.setView(azimuth_deg, zoom); }
   [[nodiscard]] haptic::MouseStylus* mouse() noexcept { return loop_.mouse(); }
   [[nodiscard]] const haptic::Device& device() const noexcept { return loop_.device(); }
