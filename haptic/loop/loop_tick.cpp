@@ -26,7 +26,6 @@ LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, 
       guard_(options.limits),
       workspace_(options.workspace),
       tool_(options.tool),
-      chosen_(options.tool),
       tile_prefetcher_(tile_prefetcher) {
   static_cast<void>(scene_->field.adopt(scene_->scene.invert ? start.inverted() : std::move(start)));
   scene_->tick.fieldChanged();
@@ -83,7 +82,7 @@ void LoopTick::takeCommands() noexcept {
 void LoopTick::take(LoopCommand& command) noexcept {
   switch (command.kind) {
     case CommandKind::kTool:
-      chosen_ = command.tool;
+      tool_ = command.tool;
       break;
     case CommandKind::kWorkspace:
       workspace_ = command.workspace;
@@ -198,7 +197,7 @@ Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexce
       guard_.state() != SafetyState::kActive)
     return Tool::kFeel;
   if (input.tool) return *input.tool;
-  const bool on = options_.tool_switch == ToolSwitch::kAlways || buttons_.stroke();
+  const bool on = options_.tool_switch == ToolSwitch::kAlways || (input.buttons & kPrimaryButton) != 0;
   return on ? tool_ : Tool::kFeel;
 }
 
@@ -282,11 +281,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const double age_s = 1e-9 * static_cast<double>(std::max<std::int64_t>(now_ns - input.arrival_ns, 0));
   motion_.note(input);
   const bool in_field = device_.profile().space == DeviceSpace::kField;
-  const std::uint32_t clutch_buttons = in_field ? 0U : options_.clutch_buttons;
-  buttons_.note(input, clutch_buttons, now_ns);
-  // A stroke keeps its tool.
-  if (options_.tool_switch == ToolSwitch::kAlways || !buttons_.stroke()) tool_ = chosen_;
-  const bool clutched = (input.buttons & clutch_buttons) != 0;
+  const bool clutched = !in_field && (input.buttons & options_.clutch_buttons) != 0;
   if (clutched != clutched_) disturbance_ = Disturbance::kSurfaceReplaced;
   clutched_ = clutched;
   workspace_.setClutch(clutched ? Workspace::Clutch::kHeld : Workspace::Clutch::kReleased, input.position_mm);
@@ -324,9 +319,6 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   state_.given_n = given;
   state_.contact = force.contact;
   state_.tool = tool;
-  state_.buttons = input.buttons;
-  state_.tool_choices = buttons_.tools();
-  state_.tip_choices = buttons_.tips();
   state_.link = input.link;
   state_.safety = guard_.state();
   state_.cause = guard_.cause();
