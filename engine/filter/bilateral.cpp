@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "engine/filter/block.h"
+#include "engine/filter/padded_block.h"
 #include "engine/simd/kernel.h"
 
 namespace fettle::engine {
@@ -42,7 +42,7 @@ class BilateralFilter final : public BlockFilter {
   bool run(const Block& block, const JobControl& job) override {
     // Past the field's other side there are holes alone, which add nothing.
     const int reach_x = std::min(radius_, block.columns - 1), reach_y = std::min(radius_, block.rows - 1);
-    pad(block);
+    padded_.fill(block, radius_, kChunk);
     const int chunks = (block.out_columns + kChunk - 1) / kChunk;
     const auto per_range = static_cast<float>(1.0 / range_);
     const auto add_rows = FETTLE_AT_LEVEL(level_, addRows);
@@ -50,10 +50,10 @@ class BilateralFilter final : public BlockFilter {
     for (int r = 0; r < block.out_rows; ++r) {
       sum_.assign(static_cast<std::size_t>(chunks * kChunk), 0.0);
       sum_weight_.assign(static_cast<std::size_t>(chunks * kChunk), 1.0);  // the centre's own
-      const float* centre = centreOf(r);
+      const float* centre = padded_.row(r);
       for (int dy = 0; dy <= reach_y; ++dy) {
         if (job.cancelled()) return false;
-        add_rows(centre, centreOf(r + dy), centreOf(r - dy), weights_.data() + dy * side_ + radius_,
+        add_rows(centre, padded_.row(r + dy), padded_.row(r - dy), weights_.data() + dy * side_ + radius_,
                  dy == 0 ? 1 : -reach_x, reach_x, per_range, chunks, sum_.data(), sum_weight_.data());
       }
       finish_row(centre, sum_.data(), sum_weight_.data(), range_, block.out_columns,
@@ -63,30 +63,12 @@ class BilateralFilter final : public BlockFilter {
   }
 
  private:
-  // The block with holes all round as far as windows of whole chunks of outputs reach.
-  void pad(const Block& block) {
-    const int outputs = (block.out_columns + kChunk - 1) / kChunk * kChunk;
-    stride_ = outputs + 2 * radius_;
-    const int rows = block.out_rows + 2 * radius_;
-    padded_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows),
-                   std::numeric_limits<float>::quiet_NaN());
-    const int column = radius_ - block.first_column;  // where the block's first goes; >= 0
-    const int row = radius_ - block.first_row;
-    for (int r = 0; r < block.rows; ++r)
-      std::copy_n(block.row(r), block.columns, padded_.data() + (row + r) * stride_ + column);
-  }
-
-  [[nodiscard]] const float* centreOf(int row) const noexcept {
-    return padded_.data() + (row + radius_) * stride_ + radius_;
-  }
-
   CpuLevel level_;
   double range_;
   int radius_;
   int side_;
-  std::ptrdiff_t stride_ = 0;
   std::vector<float> weights_;  // radius + 1 rows of side
-  std::vector<float> padded_;
+  PaddedBlock padded_;
   std::vector<double> sum_, sum_weight_;
 };
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "engine/filter/block.h"
+#include "engine/filter/padded_block.h"
 #include "engine/simd/kernel.h"
 
 namespace fettle::engine {
@@ -30,7 +30,7 @@ class OutlierFilter final : public BlockFilter {
   bool run(const Block& block, const JobControl& job) override {
     // Past the field's other side there are holes alone.
     const int reach_x = std::min(radius_, block.columns - 1), reach_y = std::min(radius_, block.rows - 1);
-    pad(block);
+    padded_.fill(block, radius_, kOutputs);
     const int chunks = (block.out_columns + kOutputs - 1) / kOutputs;
     const auto outputs = static_cast<std::size_t>(chunks * kOutputs);
     const auto count_row = FETTLE_AT_LEVEL(level_, countRow);
@@ -38,10 +38,10 @@ class OutlierFilter final : public BlockFilter {
       there_.assign(outputs, 0);
       below_.assign(outputs, 0);
       above_.assign(outputs, 0);
-      const float* const centre = rowOf(r);
+      const float* const centre = padded_.row(r);
       for (int dy = -reach_y; dy <= reach_y; ++dy) {
         if (job.cancelled()) return false;
-        count_row(centre, rowOf(r + dy), reach_x, range_, chunks, there_.data(), below_.data(),
+        count_row(centre, padded_.row(r + dy), reach_x, range_, chunks, there_.data(), below_.data(),
                   above_.data());
       }
       float* const out = block.out + r * block.out_stride;
@@ -50,7 +50,7 @@ class OutlierFilter final : public BlockFilter {
         const auto i = static_cast<std::size_t>(c);
         const std::int32_t apart = std::max(below_[i], above_[i]), others = there_[i] - apart;
         if (others > radius_ || apart <= others) continue;
-        const Window window{rowOf(r) + c, reach_x, reach_y, below_[i] > above_[i]};
+        const Window window{padded_.row(r) + c, reach_x, reach_y, below_[i] > above_[i]};
         if (!hasPairApart(window)) continue;
         gatherApart(window);
         if (isFarFrom(*window.centre)) out[c] = middleOfApart();
@@ -60,23 +60,6 @@ class OutlierFilter final : public BlockFilter {
   }
 
  private:
-  // The block with holes all round, as far as windows of whole chunks of outputs reach.
-  void pad(const Block& block) {
-    const int outputs = (block.out_columns + kOutputs - 1) / kOutputs * kOutputs;
-    stride_ = outputs + 2 * radius_;
-    const int rows = block.out_rows + 2 * radius_;
-    padded_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows),
-                   std::numeric_limits<float>::quiet_NaN());
-    const int column = radius_ - block.first_column;  // where the block's first goes; >= 0
-    const int row = radius_ - block.first_row;
-    for (int r = 0; r < block.rows; ++r)
-      std::copy_n(block.row(r), block.columns, padded_.data() + (row + r) * stride_ + column);
-  }
-
-  [[nodiscard]] const float* rowOf(int row) const noexcept {
-    return padded_.data() + (row + radius_) * stride_ + radius_;
-  }
-
   // Of a sample that may stand apart: above all the others, or below them.
   struct Window {
     const float* centre;
@@ -93,7 +76,7 @@ class OutlierFilter final : public BlockFilter {
   [[nodiscard]] bool hasPairApart(const Window& window) const noexcept {
     for (int dy = 0; dy <= window.reach_y; ++dy)
       for (int dx = dy == 0 ? 1 : -window.reach_x; dx <= window.reach_x; ++dx) {
-        const std::ptrdiff_t off = dy * stride_ + dx;
+        const std::ptrdiff_t off = dy * padded_.stride() + dx;
         if (apart(window, window.centre[off]) && apart(window, window.centre[-off])) return true;
       }
     return false;
@@ -103,7 +86,7 @@ class OutlierFilter final : public BlockFilter {
     apart_.clear();
     for (int dy = -window.reach_y; dy <= window.reach_y; ++dy)
       for (int dx = -window.reach_x; dx <= window.reach_x; ++dx)
-        if (const float sample = window.centre[dy * stride_ + dx]; apart(window, sample))
+        if (const float sample = window.centre[dy * padded_.stride() + dx]; apart(window, sample))
           apart_.push_back(sample);
     std::ranges::sort(apart_);
   }
@@ -130,8 +113,8 @@ class OutlierFilter final : public BlockFilter {
   CpuLevel level_;
   float range_;
   int radius_;
-  std::ptrdiff_t stride_ = 0;
-  std::vector<float> padded_, apart_;
+  PaddedBlock padded_;
+  std::vector<float> apart_;
   std::vector<std::int32_t> there_, below_, above_;  // of a row of outputs
 };
 
