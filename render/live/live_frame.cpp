@@ -491,6 +491,28 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, next, reads);
 }
 
+void LiveFrame::recordSurface(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                              std::span<const LivePanel> panels, const glm::vec3& ground,
+                              const Layers& layers, Redraw redraw, const Before& before) {
+  Barriers begin;
+  begin.add(layers.depth.image(), kDepth,
+            {before.kept ? ImageLayout::eDepthAttachmentOptimal : ImageLayout::eUndefined, kDepthStages,
+             Access::eDepthStencilAttachmentWrite},
+            {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
+  begin.record(commands);
+  recordDepth(commands, slot, panels, layers, redraw);
+  Barriers shade;
+  shade.add(layers.depth.image(), kDepth,
+            {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
+            {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
+             Access::eDepthStencilAttachmentRead | Access::eShaderRead});
+  Barriers::Access base = before.base;
+  if (!before.kept) base.layout = ImageLayout::eUndefined;
+  shade.add(layers.base.image(), kColour, base, kColourUsed);
+  shade.record(commands);
+  recordBase(commands, slot, panels, ground, layers, redraw, before.lines);
+}
+
 void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
                        const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
                        const Glyphs& glyphs, const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
@@ -513,24 +535,10 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   Barriers compose;
   if (redraws) {
     // The previous frame may still draw lines against this depth and copy from that base.
-    Barriers begin;
-    begin.add(layers.depth.image(), kDepth,
-              {all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
-               Access::eDepthStencilAttachmentWrite},
-              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
-    begin.record(commands);
-    recordDepth(commands, slot, panels, layers, redraw);
-    Barriers shade;
-    shade.add(layers.depth.image(), kDepth,
-              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
-              {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
-               Access::eDepthStencilAttachmentRead | Access::eShaderRead});
-    Barriers::Access before = resized ? read : copied;
-    if (all) before.layout = ImageLayout::eUndefined;
-    shade.add(layers.base.image(), kColour, before, kColourUsed);
-    shade.record(commands);
-    recordBase(commands, slot, panels, ground, layers, redraw,
-               resized ? HiddenLines::kInBase : HiddenLines::kOverCopy);
+    recordSurface(commands, slot, panels, ground, layers, redraw,
+                  {.base = resized ? read : copied,
+                   .kept = !all,
+                   .lines = resized ? HiddenLines::kInBase : HiddenLines::kOverCopy});
     if (resized) recordResized(commands, layers, *(&layers == &half_ ? enlarge_ : reduce_), whole_.base);
     recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
@@ -554,25 +562,13 @@ void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
   Barriers compose;
   if (rest.draws) {
-    Barriers begin;
-    begin.add(fine_.depth.image(), kDepth,
-              {rest.first ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
-               Access::eDepthStencilAttachmentWrite},
-              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
-    begin.record(commands);
-    const Redraw redraw = rest.first ? Redraw::kFirstPart : Redraw::kParts;
-    recordDepth(commands, slot, panels, fine_, redraw);
-    Barriers shade;
-    shade.add(fine_.depth.image(), kDepth,
-              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
-              {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
-               Access::eDepthStencilAttachmentRead | Access::eShaderRead});
     // The first part may follow a frame that still reduces what was there before.
-    Barriers::Access before = kColourWritten;
-    if (rest.first) before = {ImageLayout::eUndefined, Stage::eFragmentShader, Access::eShaderRead};
-    shade.add(fine_.base.image(), kColour, before, kColourUsed);
-    shade.record(commands);
-    recordBase(commands, slot, panels, ground, fine_, redraw, HiddenLines::kOverCopy);
+    const Barriers::Access reduced{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
+                                   Access::eShaderRead};
+    recordSurface(commands, slot, panels, ground, fine_, rest.first ? Redraw::kFirstPart : Redraw::kParts,
+                  {.base = rest.first ? reduced : kColourWritten,
+                   .kept = !rest.first,
+                   .lines = HiddenLines::kOverCopy});
     if (rest.last) {
       recordResized(commands, fine_, *reduce_to_rest_, rest_);
       recordDecorations(commands, slot, panels, decorations, rest_, Redraw::kAll);

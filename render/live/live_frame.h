@@ -11,6 +11,7 @@
 #include "render/plan/glyphs.h"
 #include "render/plan/plan.h"
 #include "render/residency/live_texture.h"
+#include "render/vulkan/barrier.h"
 #include "render/vulkan/live_target.h"
 #include "render/vulkan/pipelines.h"
 #include "render/vulkan/submissions.h"
@@ -120,6 +121,15 @@ class LiveFrame {
   void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                   std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
                   Redraw redraw, HiddenLines lines);
+  /// What the frame before has done to the layers that a surface is drawn to.
+  struct Before {
+    Barriers::Access base;  ///< how it used `base` last
+    bool kept = false;      ///< whether their content stays
+    HiddenLines lines = HiddenLines::kOverCopy;
+  };
+  void recordSurface(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                     std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                     Redraw redraw, const Before& before);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
   void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
