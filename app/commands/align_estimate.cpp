@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/base/stopwatch.h"
-#include "engine/field/builder.h"
 #include "engine/field/piece.h"
 #include "engine/measure/align.h"
 #include "engine/measure/height_map.h"
@@ -27,21 +26,10 @@ constexpr double kAligningMemory = 92.0, kSearchMemory = 20e6;
 // Fewer are aligned in about ten seconds, of which the sample would be too large a part.
 constexpr double kFewestForeseen = 1 << 25;
 
-// Every n-th sample, so that the whole shape is searched. Without marks: marked or not, about as many samples count.
+// About every n-th sample, so that the whole shape is searched.
 engine::Version thinned(const engine::Version& field, std::int32_t step) {
-  engine::Grid grid = field.grid();
-  grid.width = (grid.width + step - 1) / step;
-  grid.height = (grid.height + step - 1) / step;
-  grid.spacing_x *= step;
-  grid.spacing_y *= step;
-  std::vector<float> row(static_cast<std::size_t>(field.grid().width)), heights;
-  heights.reserve(static_cast<std::size_t>(grid.samples()));
-  for (std::int32_t r = 0; r < field.grid().height; r += step) {
-    field.reader().readHeights(0, r, field.grid().width, 1, row.data(), field.grid().width);
-    for (std::int32_t c = 0; c < field.grid().width; c += step)
-      heights.push_back(row[static_cast<std::size_t>(c)]);
-  }
-  return engine::makeField(grid, heights);
+  const engine::Grid& grid = field.grid();
+  return engine::spreadOver(field, (grid.width + step - 1) / step, (grid.height + step - 1) / step);
 }
 
 // So that four heights of the finest resolution become one in each direction: one resolution less. 1 where there is but one.

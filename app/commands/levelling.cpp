@@ -118,7 +118,15 @@ PlannedOnPieces plannedLevel(const engine::Version& field, const engine::Version
       if (!without) return without;
       level = *std::move(without);
     }
-    auto fit = engine::fitNominalForm(level, formChoiceOf(form), job);
+    // How many rounds a robust fit needs depends on the whole field's shape: the time is that of as many samples from all over it,
+    // the form that of the piece.
+    engine::FormChoice choice = formChoiceOf(form);
+    if (choice.robust) {
+      const engine::Version spread = engine::spreadOver(counted, r.columns, r.rows);
+      if (auto fit = engine::fitNominalForm(spread, choice, job); !fit) return taken(fit.error());
+      choice.robust = false;
+    }
+    auto fit = engine::fitNominalForm(level, choice, job);
     if (!fit) return taken(fit.error());
     levelling.fit = *std::move(fit);
     auto result = levelling.takenFrom(piece, job);

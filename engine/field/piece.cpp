@@ -1,7 +1,9 @@
 #include "engine/field/piece.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -66,6 +68,31 @@ Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std
 Version rowsOf(const Version& field, std::int32_t first, std::int32_t count) {
   const Grid& grid = field.grid();
   return cutOut(field, {0, first, grid.width, count}, grid.origin_x, grid.origin_y + first * grid.spacing_y);
+}
+
+Version spreadOver(const Version& field, std::int32_t columns, std::int32_t rows) {
+  Grid grid = field.grid();
+  const auto [width, height] = std::pair{grid.width, grid.height};
+  assert(columns >= 1 && columns <= width && rows >= 1 && rows <= height);
+  grid.width = columns;
+  grid.height = rows;
+  grid.spacing_x *= static_cast<double>(width) / columns;
+  grid.spacing_y *= static_cast<double>(height) / rows;
+  std::vector<float> line(static_cast<std::size_t>(width)), heights;
+  std::vector<std::uint8_t> marked(line.size()), marks;
+  heights.reserve(static_cast<std::size_t>(grid.samples()));
+  marks.reserve(heights.capacity());
+  for (std::int64_t r = 0; r < rows; ++r) {
+    const auto from = static_cast<std::int32_t>(r * height / rows);
+    field.reader().readHeights(0, from, width, 1, line.data(), width);
+    field.reader().readMarks(0, from, width, 1, marked.data(), width);
+    for (std::int64_t c = 0; c < columns; ++c) {
+      const auto at = static_cast<std::size_t>(c * width / columns);
+      heights.push_back(line[at]);
+      marks.push_back(marked[at]);
+    }
+  }
+  return makeField(grid, heights, marks);
 }
 
 }  // namespace fettle::engine

@@ -19,6 +19,10 @@ namespace fettle::engine {
 /// std::bad_alloc.
 [[nodiscard]] Version rowsOf(const Version& field, std::int32_t first, std::int32_t count);
 
+/// `columns` x `rows` samples spread evenly over a field, with their marks and without its edge lines: its whole shape, coarsely. At least 1 and
+/// at most as many as the field has, in each direction. Throws std::bad_alloc.
+[[nodiscard]] Version spreadOver(const Version& field, std::int32_t columns, std::int32_t rows);
+
 /// Edge lines in the coordinates of a piece of their field: their points in and near it, and for each run of these a line.
 /// Throws std::bad_alloc.
 [[nodiscard]] EdgeLines linesOfPiece(const std::vector<EdgeLine>& lines, const SampleRect& piece);
