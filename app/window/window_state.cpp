@@ -208,31 +208,49 @@ void addDevice(const Parts& p, Report& r) {
   r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
 }
 
-// The picture shows the field as requested by the scene, and no work is running on it.
-bool fieldIsSettled(const Parts& p) {
+// What is still to come until all effects of the input are visible, by name; empty: nothing.
+Report waitedFor(const Parts& p, const Input& input) {
+  Report names = Report::array();
+  const auto waits = [&](const char* name, bool is) {
+    if (is) names.push_back(name);
+  };
+  waits("input", !input.empty());
+  waits("opening", p.opening.busy());
+  waits("files", p.files.busy());
+  waits("saving", p.saving.busy(p.document));
+  if (const Questions& questions = p.feedback.questions; questions.pending()) {
+    // A dialog needs some frames until it is in its final position.
+    constexpr int kInPlace = 4;
+    waits("a key held", p.held());
+    waits("tiles", p.picture.figures().upload.pending_tiles > 0);
+    waits("the dialog", questions.frames() < kInPlace);
+  } else {
+    waits("a movement", isActive(p, input));
+    waits("a finer picture", p.document.isOpen() && p.picture.refining());
+  }
+  if (!p.document.isOpen()) return names;
   const LoopClient& client = *p.document.client();
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
-  if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
-      p.heights.busy() || p.compare.busy() || p.transform.busy() || p.measure.busy() || p.section.busy() ||
-      p.marking.busy() || p.colours.busy() || p.picture.empty())
-    return false;
+  waits("the mouse's stylus", mouse != nullptr && mouse->busy());
+  waits("a filter", p.filters.computing() || p.filters.applying());
+  waits("a form", p.form.busy());
+  waits("heights", p.heights.busy());
+  waits("a comparison", p.compare.busy());
+  waits("a transform", p.transform.busy());
+  waits("figures", p.measure.busy());
+  waits("a section", p.section.busy());
+  waits("marks", p.marking.busy());
+  waits("a histogram", p.colours.busy());
+  if (p.picture.empty()) {
+    waits("a picture", true);
+    return names;
+  }
+  // The picture shows the field as requested by the scene.
   const render::Shown& shown = p.picture.shown();
-  return shown.accepted.value_or(shown.versions.front()) == client.field() &&
-         client.history().current() == client.upright() &&
-         (client.field().reader().sign() < 0.0F) == client.scene().invert;
-}
-
-// All effects of the input are visible.
-bool isSettled(const Parts& p, const Input& input) {
-  // A dialog needs some frames until it is in its final position.
-  constexpr int kInPlace = 4;
-  const Questions& questions = p.feedback.questions;
-  const bool moves =
-      !questions.pending()
-          ? isActive(p, input) || (p.document.isOpen() && p.picture.refining())
-          : p.held() || p.picture.figures().upload.pending_tiles > 0 || questions.frames() < kInPlace;
-  return !moves && input.empty() && !p.opening.busy() && !p.files.busy() && !p.saving.busy(p.document) &&
-         (!p.document.isOpen() || fieldIsSettled(p));
+  waits("the field in the picture", shown.accepted.value_or(shown.versions.front()) != client.field());
+  waits("the loop's step", client.history().current() != client.upright());
+  waits("inversion", (client.field().reader().sign() < 0.0F) != client.scene().invert);
+  return names;
 }
 
 }  // namespace
@@ -250,7 +268,8 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
     addFilters(parts, r);
     addDevice(parts, r);
   }
-  const bool settled = isSettled(parts, input);
+  const Report waited = waitedFor(parts, input);
+  const bool settled = waited.empty();
   // How close each panel is to the field, and what limits it: only of a picture at rest, since it differs
   // from frame to frame.
   Report bounds = Report::array(), limits = Report::array();
@@ -263,6 +282,7 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
   r["limits"] = limits;
   r["smooth"] = parts.picture.figures().rests;
   r["settled"] = settled;
+  r["waits_for"] = waited;
   return r;
 }
 
