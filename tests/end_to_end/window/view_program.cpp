@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -92,6 +93,29 @@ void ViewProgram::listen() {
   reported_.notify_all();
 }
 
+// The last state, and what changed in those before it.
+std::string ViewProgram::lastReported() const {
+  constexpr std::size_t kChanges = 16;
+  std::string text;
+  const auto without = [](State state) {
+    for (const char* figure : {"texts", "words", "frames"}) state.erase(figure);
+    return state;
+  };
+  for (std::size_t i = states_.size() - std::min(states_.size(), kChanges); i < states_.size(); ++i) {
+    if (i == 0 || !states_[i].is_object() || !states_[i - 1].is_object()) continue;
+    const State before = without(states_[i - 1]), after = without(states_[i]);
+    State changed;
+    for (const auto& [key, value] : after.items())
+      if (before.value(key, State()) != value) changed[key] = value;
+    text += fmt::format("changed in frame {}: {}\n", states_[i].value("frames", 0), changed.dump());
+  }
+  State last = states_.empty() ? State() : states_.back();
+  // Where texts stand is left out.
+  if (last.is_object())
+    for (State& written : last["texts"]) written = State(written.value("text", ""));
+  return text + "last reported: " + last.dump();
+}
+
 ViewProgram::State ViewProgram::until(const std::string& what, const std::function<bool(const State&)>& is) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   std::unique_lock lock(mutex_);
@@ -100,9 +124,7 @@ ViewProgram::State ViewProgram::until(const std::string& what, const std::functi
       if (is(states_[seen_])) return states_[seen_];
     if (ended_) throw std::runtime_error("the program ended before: " + what + "\n" + err_);
     if (reported_.wait_until(lock, end) == std::cv_status::timeout) {
-      State last = states_.empty() ? State() : states_.back();
-      if (last.is_object()) last.erase("texts");
-      throw std::runtime_error("never reported: " + what + "\nlast reported: " + last.dump());
+      throw std::runtime_error("never reported: " + what + "\n" + lastReported());
     }
   }
 }

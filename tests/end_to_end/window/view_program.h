@@ -54,6 +54,8 @@ class ViewProgram {
   [[nodiscard]] State report() const;
 
  private:
+  [[nodiscard]] std::string lastReported() const;  // mutex_ is held
+
   void listen();
 
   pid_t pid_ = -1;
