@@ -15,11 +15,9 @@ struct FigureWord {
   const char* word;
   bool KeptSection::*wanted;
 };
-constexpr FigureWord kKeptFigures[] = {{"line", &KeptSection::line},
-                                       {"step", &KeptSection::step},
-                                       {"groove", &KeptSection::groove},
-                                       {"arc", &KeptSection::arc},
-                                       {"roughness", &KeptSection::roughness}};
+constexpr FigureWord kKeptFigures[] = {
+    {"line", &KeptSection::line}, {"step", &KeptSection::step},   {"groove", &KeptSection::groove},
+    {"arc", &KeptSection::arc},   {"angle", &KeptSection::angle}, {"roughness", &KeptSection::roughness}};
 
 double finite(const Report& value) {
   const double number = value.get<double>();
@@ -33,6 +31,9 @@ KeptSection sectionOf(const Report& in) {
   section.to = {finite(in.at("to").at(0)), finite(in.at("to").at(1))};
   section.width_mm = std::max(0.0, finite(in.at("width_mm")));
   section.cursors = {finite(in.at("cursors_mm").at(0)), finite(in.at("cursors_mm").at(1))};
+  // Written where there is one.
+  if (in.contains("others_mm"))
+    section.others = {finite(in["others_mm"].at(0)), finite(in["others_mm"].at(1))};
   section.cutoff_mm = std::max(0.0, finite(in.at("cutoff_mm")));
   for (const Report& word : in.at("figures"))
     for (const FigureWord& figure : kKeptFigures)
@@ -46,6 +47,22 @@ double KeptSection::lengthMm() const noexcept {
   return glm::distance(from, to);
 }
 
+void KeptSection::placeStretches() noexcept {
+  const double length = lengthMm();
+  cursors = {0.25 * length, 0.75 * length};
+  if (!angle) return;
+  cursors = {0.1 * length, 0.4 * length};
+  others = {0.6 * length, 0.9 * length};
+}
+
+void KeptSection::placeSecond() noexcept {
+  if (!angle || others.first != others.second) return;
+  const auto [low, high] = std::minmax(cursors.first, cursors.second);
+  const double behind = lengthMm() - high;
+  const double begin = behind >= low ? high : 0.0, free = std::max(behind, low);
+  others = {begin + 0.1 * free, begin + 0.9 * free};
+}
+
 SectionWants wantsOf(const KeptSection& section) {
   const auto [low, high] = std::minmax(section.cursors.first, section.cursors.second);
   const std::vector<double> between = {low, high};
@@ -55,6 +72,9 @@ SectionWants wantsOf(const KeptSection& section) {
   wants.within = between;
   if (section.line) wants.line = between;
   if (section.arc) wants.arc = between;
+  if (const auto [from, to] = std::minmax(section.others.first, section.others.second);
+      section.angle && from < to)
+    wants.angle = {low, high, from, to};
   if (section.step) wants.step = "auto";
   if (section.groove) wants.groove = "auto";
   if (section.roughness && section.cutoff_mm > 0.0) wants.cutoff = section.cutoff_mm;
@@ -73,6 +93,8 @@ std::string sectionsText(const std::vector<KeptSection>& sections) {
                    {"cursors_mm", {section.cursors.first, section.cursors.second}},
                    {"figures", figures},
                    {"cutoff_mm", section.cutoff_mm}});
+    if (section.others.first != section.others.second)
+      out.back()["others_mm"] = {section.others.first, section.others.second};
   }
   return out.dump();
 }

@@ -68,8 +68,8 @@ void SectionTool::set(const KeptSection& section) {
              profile = kept.width_mm != section.width_mm;
   kept = section;
   const double length = kept.lengthMm();
-  // Until they are moved.
-  if (line) kept.cursors = {0.25 * length, 0.75 * length};
+  if (line) kept.placeStretches();
+  kept.placeSecond();
   if (!(kept.cutoff_mm > 0.0) && length > 0.0) kept.cutoff_mm = firstCutoff(0.5 * length);
   if (line || profile)
     lineChanged();
@@ -231,10 +231,16 @@ void SectionTool::moveCursor(double along_mm) {
   if (!profiles_ || section() == nullptr) return;
   KeptSection moved = *section();
   const double at = std::clamp(along_mm, 0.0, profiles_->now.lengthMm());
-  double& nearer = std::abs(at - moved.cursors.first) <= std::abs(at - moved.cursors.second)
-                       ? moved.cursors.first
-                       : moved.cursors.second;
-  nearer = at;
+  double* nearest = &moved.cursors.first;
+  const auto offer = [&](double& cursor) {
+    if (std::abs(at - cursor) < std::abs(at - *nearest)) nearest = &cursor;
+  };
+  offer(moved.cursors.second);
+  if (moved.angle) {
+    offer(moved.others.first);
+    offer(moved.others.second);
+  }
+  *nearest = at;
   set(moved);
 }
 

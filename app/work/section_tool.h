@@ -37,7 +37,7 @@ class SectionTool {
   /// Sets an end of the chosen section; the other one stays, or is the same point where there was none.
   void setFrom(const glm::dvec2& mm);
   void setTo(const glm::dvec2& mm);
-  /// Changes the chosen one; its cursors go to a quarter and three quarters where its line changes.
+  /// Changes the chosen one; its stretches are placed anew where its line changes, the second where there is none.
   void set(const KeptSection& section);
   /// The next end that is set begins another section, which is chosen then.
   void beginNew();
@@ -71,7 +71,7 @@ class SectionTool {
   /// Differs whenever a line does, or the choice.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
-  /// Moves the nearer cursor of the chosen section to a length along it.
+  /// Moves the nearest cursor of the chosen section to a length along it.
   void moveCursor(double along_mm);
 
  private:

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -84,9 +85,20 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
   drawProfile(frame, profiles.now,
               profiles.before.size() > 0 ? IM_COL32(213, 94, 0, 255) : IM_COL32(0, 114, 178, 255),
               0.1F * font);
-  for (const double at : {tool.section()->cursors.first, tool.section()->cursors.second}) {
-    const float x = frame.at(at, low).x;
-    list.AddLine(ImVec2(x, corner.y), ImVec2(x, corner.y + size.y), IM_COL32(60, 60, 60, 200), 0.1F * font);
+  const auto drawStretch = [&](const std::pair<double, double>& ends, ImU32 colour) {
+    for (const double at : {ends.first, ends.second}) {
+      const float x = frame.at(at, low).x;
+      list.AddLine(ImVec2(x, corner.y), ImVec2(x, corner.y + size.y), colour, 0.1F * font);
+    }
+  };
+  drawStretch(tool.section()->cursors, IM_COL32(60, 60, 60, 200));
+  if (tool.section()->angle) {
+    // The line of each stretch needs its extent to be seen: shaded.
+    for (const auto& [from, to] : {tool.section()->cursors, tool.section()->others})
+      list.AddRectFilled(ImVec2(frame.at(std::min(from, to), low).x, corner.y),
+                         ImVec2(frame.at(std::max(from, to), low).x, corner.y + size.y),
+                         IM_COL32(60, 60, 60, 30));
+    drawStretch(tool.section()->others, IM_COL32(128, 60, 150, 230));
   }
   list.PopClipRect();
   figure("shown", fmt::format("{}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
@@ -116,9 +128,16 @@ void figureChoice(KeptSection& section, const render::ShownUnit& length) {
   for (const auto& [name, id, wanted] : {std::tuple("step", "step##section", &section.step),
                                          {"groove", "groove##section", &section.groove},
                                          {"arc", "arc##section", &section.arc},
+                                         {"angle", "angle##section", &section.angle},
                                          {"roughness", "roughness##section", &section.roughness}}) {
     sameLineIfFits(name, ItemKind::kTick);
     ImGui::Checkbox(id, wanted);
+  }
+  if (section.angle) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(
+        "the angle is that from the line between them to the one of the second stretch, with violet ends");
+    ImGui::PopTextWrapPos();
   }
   if (!section.roughness) return;
   beginFields();

@@ -19,7 +19,10 @@ TEST(KeptSections, ComeBackToTheSameBits) {
   KeptSection second;
   second.to = {1.0, 0.0};
   second.line = second.groove = second.arc = true;
-  const std::vector<KeptSection> kept = {first, second};
+  KeptSection third = first;
+  third.angle = true;
+  third.others = {0.8, 1.0 / 7.0};
+  const std::vector<KeptSection> kept = {first, second, third};
   const auto read = sectionsOf(sectionsText(kept));
   ASSERT_TRUE(read) << read.error().line();
   EXPECT_EQ(*read, kept);
@@ -52,6 +55,39 @@ TEST(KeptSections, AreMeasuredBetweenTheirCursors) {
   wants = wantsOf(section);
   EXPECT_TRUE(wants.within.empty());
   EXPECT_TRUE(wants.step.empty()) << "nothing lies between the cursors";
+}
+
+TEST(KeptSections, WrittenBeforeThereWasASecondStretchAreRead) {
+  const auto read = sectionsOf(
+      R"([{"from":[0,0],"to":[1,1],"width_mm":0,"cursors_mm":[0,1],"figures":["arc"],"cutoff_mm":0}])");
+  ASSERT_TRUE(read) << read.error().line();
+  EXPECT_TRUE(read->front().arc);
+  EXPECT_FALSE(read->front().angle);
+  EXPECT_EQ(read->front().others.first, read->front().others.second);
+}
+
+TEST(KeptSections, AnAngleIsThatOfBothStretches) {
+  KeptSection section;
+  section.to = {10.0, 0.0};
+  section.angle = true;
+  section.placeStretches();
+  EXPECT_EQ(wantsOf(section).angle, (std::vector<double>{1.0, 4.0, 6.0, 9.0}));
+  section.others = {9.0, 7.0};
+  section.cursors = {4.0, 1.0};
+  EXPECT_EQ(wantsOf(section).angle, (std::vector<double>{1.0, 4.0, 7.0, 9.0})) << "each from its nearer end";
+  section.others = {9.0, 9.0};
+  EXPECT_TRUE(wantsOf(section).angle.empty()) << "a stretch of one place has no line";
+  // The longer part beside the first.
+  section.placeSecond();
+  EXPECT_EQ(section.others, (std::pair{4.6, 9.4}));
+  section.cursors = {5.0, 9.0};
+  section.others = {0.0, 0.0};
+  section.placeSecond();
+  EXPECT_EQ(section.others, (std::pair{0.5, 4.5}));
+  section.placeSecond();
+  EXPECT_EQ(section.others, (std::pair{0.5, 4.5})) << "only where there is none";
+  section.angle = false;
+  EXPECT_TRUE(wantsOf(section).angle.empty());
 }
 
 }  // namespace

@@ -157,6 +157,16 @@ TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
     });
   }();
   EXPECT_GT(whole["section_mm"].get<double>(), length);
+  // The angle between the lines of two stretches.
+  EXPECT_FALSE(whole["section_figures"].contains("angle"));
+  (void)user.click("angle");
+  const State angle = program->until("an angle", [](const State& s) {
+    return s["section_figures"].contains("angle") && s["settled"] == true;
+  });
+  EXPECT_NEAR(angle["section_figures"]["angle"]["included_deg"].get<double>(),
+              180.0 - std::abs(angle["section_figures"]["angle"]["turn_deg"].get<double>()), 1e-9);
+  EXPECT_TRUE(user.reads("angle turn"));
+  (void)user.look("angle between two stretches");
   // Behind the border there is no height, and nothing to show.
   (void)user.enter("from y", "5000");
   (void)user.enter("to y", "5000");
