@@ -37,6 +37,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"dialog", dialog != nullptr ? name(dialog->kind) : "none"},
            {"dialog_path", dialog != nullptr ? dialog->path : ""},
            {"text_field", ImGui::GetIO().WantTextInput},
+           {"field_text", p.window.fieldText()},
            {"message", dialog != nullptr ? dialog->said.what : ""},
            {"status", p.feedback.status},
            {"asks_before_quitting", p.settings.ask_before_quitting},

@@ -233,6 +233,17 @@ bool UiLayer::panelsHaveMouse(double x, double y) const noexcept {
   });
 }
 
+std::string UiLayer::fieldText() const {
+  const ImGuiInputTextState* const field = ImGui::GetInputTextState(ImGui::GetActiveID());
+  if (field == nullptr || !ImGui::GetIO().WantTextInput) return {};
+  const ImWchar* const first = field->TextW.Data;
+  const ImWchar* const end = first + field->CurLenW;
+  std::string text(static_cast<std::size_t>(ImTextCountUtf8BytesFromStr(first, end)) + 1, ' ');
+  text.resize(
+      static_cast<std::size_t>(ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), first, end)));
+  return text;
+}
+
 void UiLayer::endFrame() {
   ImGui::Render();
 }

@@ -46,6 +46,8 @@ class UiLayer {
   /// Whether a panel, or a menu that waits for a click outside it, has the mouse at this position of the
   /// window (GLFW's coordinates): at the current cursor, not at that of the last frame's beginning.
   [[nodiscard]] bool panelsHaveMouse(double x, double y) const noexcept;
+  /// The text of the field that has the keyboard; empty: none has.
+  [[nodiscard]] std::string fieldText() const;
   /// Ends the frame's panels and stores their draw lists.
   void endFrame();
 

@@ -434,6 +434,10 @@ std::vector<std::string> Window::validationMessages() const {
   }
   return all;
 }
+std::string Window::fieldText() const {
+  return impl_->usable ? impl_->ui->fieldText() : "";
+}
+
 std::vector<PanelText> Window::texts() const {
   const ImDrawData* drawn = ImGui::GetDrawData();
   return drawn != nullptr ? textsOf(*drawn) : std::vector<PanelText>{};

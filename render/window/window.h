@@ -162,6 +162,8 @@ class Window {
   [[nodiscard]] engine::Result<PresentReport> present();
   /// The text of the panels of the last frame, from back to front.
   [[nodiscard]] std::vector<PanelText> texts() const;
+  /// What stands in the field that has the keyboard; empty: none has.
+  [[nodiscard]] std::string fieldText() const;
 
   /// Whether the device works and the window can be presented on. False after a present() that lost one of
   /// them, or when the device reports its loss: then call renew(), and draw nothing before.

@@ -178,10 +178,7 @@ User::State User::enter(const std::string& name, const std::string& value) {
   (void)waitFor("a field to type " + name + " in", [](const State& s) { return s["text_field"] == true; });
   (void)press("ctrl+a");
   display_.hands({"type", "--delay", "0", value});
-  (void)waitFor("typed " + value, [&](const State& s) {
-    const State& texts = s["texts"];
-    return std::any_of(texts.begin(), texts.end(), [&](const State& t) { return t["text"] == value; });
-  });
+  (void)waitFor("typed " + value, [&](const State& s) { return s["field_text"] == value; });
   (void)press("Return");
   return waitFor("after typing " + name, [](const State& s) { return s["text_field"] == false && rests(s); });
 }
