@@ -95,19 +95,22 @@ void ViewProgram::listen() {
 
 // The last state, and what changed in those before it.
 std::string ViewProgram::lastReported() const {
-  constexpr std::size_t kChanges = 16;
+  constexpr int kChanges = 40;
   std::string text;
   const auto without = [](State state) {
     for (const char* figure : {"texts", "words", "frames"}) state.erase(figure);
     return state;
   };
-  for (std::size_t i = states_.size() - std::min(states_.size(), kChanges); i < states_.size(); ++i) {
-    if (i == 0 || !states_[i].is_object() || !states_[i - 1].is_object()) continue;
+  int changes = 0;
+  for (std::size_t i = states_.size(); i-- > 1 && changes < kChanges;) {
+    if (!states_[i].is_object() || !states_[i - 1].is_object()) continue;
     const State before = without(states_[i - 1]), after = without(states_[i]);
     State changed;
     for (const auto& [key, value] : after.items())
       if (before.value(key, State()) != value) changed[key] = value;
-    text += fmt::format("changed in frame {}: {}\n", states_[i].value("frames", 0), changed.dump());
+    if (changed.is_null()) continue;
+    text = fmt::format("changed in frame {}: {}\n", states_[i].value("frames", 0), changed.dump()) + text;
+    ++changes;
   }
   State last = states_.empty() ? State() : states_.back();
   // Where texts stand is left out.
