@@ -382,6 +382,7 @@ void addBench(Command root, Chosen& chosen) {
   addBenchEstimate(bench, chosen);
   addBenchFill(bench, chosen);
   addBenchMeasure(bench, chosen);
+  addBenchPreviews(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   Command drawing = addCommand(

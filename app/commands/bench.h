@@ -4,7 +4,7 @@
 
 namespace fettle::app {
 
-/// `fettle bench filters`, `estimate`, `fill`, `growth`, `import`, `large` and `measure`, added to `fettle bench`.
+/// `fettle bench filters`, `estimate`, `fill`, `growth`, `import`, `large`, `measure` and `previews`, added to `fettle bench`.
 void addBenchFilters(Command bench, Chosen& chosen);
 void addBenchEstimate(Command bench, Chosen& chosen);
 void addBenchFill(Command bench, Chosen& chosen);
@@ -12,5 +12,6 @@ void addBenchGrowth(Command bench, Chosen& chosen);
 void addBenchImport(Command bench, Chosen& chosen);
 void addBenchLarge(Command bench, Chosen& chosen);
 void addBenchMeasure(Command bench, Chosen& chosen);
+void addBenchPreviews(Command bench, Chosen& chosen);
 
 }  // namespace fettle::app

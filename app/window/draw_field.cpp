@@ -1,6 +1,8 @@
 #include "app/window/draw_field.h"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,6 +37,25 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, c
   return input;
 }
 
+// What the colours show the difference from.
+std::optional<engine::Version> comparedWith(Parts& parts) {
+  if (const auto& form = parts.form.previewed()) return form->surface;
+  if (parts.compare.shown && parts.compare.compared()) return parts.compare.compared()->other;
+  if (parts.settings.display.deviation) return parts.document.client()->original();
+  return std::nullopt;
+}
+
+// A preview that has fewer samples at first has no differences from others: it follows when it has all.
+std::vector<FilterPreview::Picture> previewsOf(Parts& parts) {
+  std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
+  const engine::Grid& grid = parts.document.client()->field().grid();
+  if (comparedWith(parts))
+    std::erase_if(previews, [&grid](const FilterPreview::Picture& preview) {
+      return preview.field.grid().width != grid.width || preview.field.grid().height != grid.height;
+    });
+  return previews;
+}
+
 render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& previews) {
   const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
@@ -47,12 +68,7 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
     return v.reader().sign() == sign ? v : v.inverted();
   };
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
-  if (const auto& form = parts.form.previewed())
-    shown.original = likeField(form->surface);
-  else if (parts.compare.shown && parts.compare.compared())
-    shown.original = likeField(parts.compare.compared()->other);
-  else if (display.deviation)
-    shown.original = likeField(client.original());
+  if (const auto original = comparedWith(parts)) shown.original = likeField(*original);
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
   if (parts.marking.edges.suggestion() != nullptr) shown.accepted = client.field();
   return shown;
@@ -75,7 +91,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   const haptic::LoopState state = client.state();
   if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) picture.requestRedraw();
   picture.fit(parts.view);
-  const std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
+  const std::vector<FilterPreview::Picture> previews = previewsOf(parts);
   if (const auto status = picture.show(shownOf(parts, previews)); !status) {
     // present() reports a lost device.
     if (parts.window.usable()) parts.feedback.message(status.error().line(), "");

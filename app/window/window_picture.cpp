@@ -174,11 +174,18 @@ std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const 
 std::vector<Seen> WindowPicture::seenPlaces() const {
   const render::Rectangle& area = window_.pictureArea();
   std::vector<Seen> seen;
+  if (shown_.versions.empty()) return seen;
+  // A preview next to the field may have fewer samples.
+  const engine::Grid& grid = shown_.versions.front().grid();
+  const auto sampleAt = [](double mm, double spacing_mm, std::int32_t side) {
+    return std::clamp(static_cast<std::int32_t>(mm / spacing_mm), 0, side - 1);
+  };
   for (int y = 0; y <= kPicks; ++y)
     for (int x = 0; x <= kPicks; ++x)
       if (const auto picked =
               pick(area.x + area.width * x / double(kPicks), area.y + area.height * y / double(kPicks)))
-        seen.push_back({picked->column, picked->row});
+        seen.push_back({sampleAt(picked->position_mm.x, grid.spacingXMm(), grid.width),
+                        sampleAt(picked->position_mm.y, grid.spacingYMm(), grid.height)});
   return seen;
 }
 
@@ -193,14 +200,12 @@ engine::SampleRect WindowPicture::seenRect() const {
   return {low.column, low.row, high.column - low.column + 1, high.row - low.row + 1};
 }
 
-std::vector<engine::TileRange> WindowPicture::seenPart(const engine::Grid& grid,
-                                                       const render::View& view) const {
-  const std::vector<Seen> seen = seenPlaces();
-  if (seen.empty()) return {};
+engine::FieldView WindowPicture::seenPart(const engine::Grid& grid, const render::View& view) const {
   const auto along = [](double share, int side) {
     return static_cast<std::int32_t>(std::clamp(share, 0.0, 1.0) * (side - 1));
   };
-  return visiblePart(grid, seen, {along(view.centre_x, grid.width), along(view.centre_y, grid.height)});
+  return visiblePart(grid, seenPlaces(),
+                     {along(view.centre_x, grid.width), along(view.centre_y, grid.height)});
 }
 
 render::Rectangle WindowPicture::plot(const render::View& view, const Display& display) const {

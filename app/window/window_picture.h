@@ -98,8 +98,7 @@ class WindowPicture {
   /// How the view becomes the camera of the first plot.
   [[nodiscard]] std::optional<render::Framing> framing() const;
   /// The visible part of the field, with which processing should begin.
-  [[nodiscard]] std::vector<engine::TileRange> seenPart(const engine::Grid& grid,
-                                                        const render::View& view) const;
+  [[nodiscard]] engine::FieldView seenPart(const engine::Grid& grid, const render::View& view) const;
   /// The samples that are visible, by some hundred places of the picture; empty where none is.
   [[nodiscard]] engine::SampleRect seenRect() const;
   /// Position of the first plot in the window's frame.

@@ -136,6 +136,8 @@ void addFilters(const Parts& p, Report& r) {
   r["max_change"] = filters.spec.max_change ? Report(*filters.spec.max_change) : Report();
   r["variants"] = variants;
   r["filtering"] = filters.computing();
+  const engine::FilterView::Picture& so_far = filters.soFar();
+  r["preview_so_far"] = so_far.field.empty() ? Report() : Report(previewState(so_far, so_far.field.grid()));
   r["suggested"] = edges.suggestion() != nullptr ? edges.suggestion()->samples : 0;
   r["looking_for_edges"] = edges.busy();
   const engine::EdgeLines lines = p.document.client()->newest().lines();

@@ -173,6 +173,7 @@ void Workstation::takeResults() {
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
   followForm();
+  if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
   bool changed = p.filters.poll(client, notices);
   // An adoption ends first: its result belongs to the form under which it was computed.
   if (!p.filters.applying()) {

@@ -1,43 +1,26 @@
 #include "app/work/filter_preview.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
 
-#include "engine/base/stopwatch.h"
-#include "engine/filter/noise_range.h"
-#include "engine/filter/region.h"
+#include "app/work/read_units.h"
 
 namespace fettle::app {
 namespace {
 
 // Rounds of adoption: each leaves only the edits of some milliseconds, so without edits one is enough.
 constexpr int kMostRounds = 50;
-constexpr double kSeenFirst_s = 1.0;
-constexpr std::int32_t kFarthestReach = 512;  // [samples]
+// Between two looks at what is there so far: each is drawn.
+constexpr auto kLookAgain = std::chrono::milliseconds(100);
+// All of the view at once looks better than one part after the other, if it does not take longer.
+constexpr auto kWaitForAll = std::chrono::milliseconds(200);
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
   return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
          a.nesting_mm == b.nesting_mm && a.element == b.element && a.passes == b.passes &&
          a.scope == b.scope && a.max_change == b.max_change;
-}
-
-// Filters the visible part and calls `done` after each piece. Limited to about a second, since this work is
-// done twice.
-void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
-                const std::vector<engine::TileRange>& seen, engine::JobControl& job, const auto& done) {
-  const engine::Stopwatch watch;
-  std::int64_t tiles = 0;
-  for (const engine::TileRange& range : seen) tiles += range.tiles();
-  // With a filter of a large reach, a part takes as long as the whole.
-  if (engine::reachOf(spec, base) > kFarthestReach) return;
-  const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
-  engine::Version so_far = base;
-  for (const engine::TileRange& range : seen) {
-    if (job.cancelled() || (most && watch.seconds() > kSeenFirst_s)) return;
-    auto next = engine::filterRange(base, original, so_far, spec, range, job);
-    if (!next) return;  // filtering the whole will report why
-    so_far = std::move(*next);
-    done(so_far);
-  }
 }
 
 }  // namespace
@@ -54,30 +37,71 @@ std::string filterName(const engine::FilterSpec& spec) {
   return text;
 }
 
-void FilterPreview::compute(LoopClient& client, Keep keep, std::vector<engine::TileRange> seen_first) {
+std::string previewState(const engine::FilterView::Picture& picture, const engine::Grid& grid) {
+  const auto percent = [](double share) { return static_cast<int>(100.0 * share); };
+  if (picture.step == 0)
+    return picture.exact == 1.0 ? "exact in view" : fmt::format("{} % so far", percent(picture.exact));
+  std::string text = "approximate";
+  if (picture.off) {
+    const ReadAs as = readLengthAs(picture.off->rms, grid.height_unit.mm, grid.height_unit.name);
+    text += fmt::format(", off by {}{:.3g} {} rms", picture.off->estimated ? "about " : "",
+                        picture.off->rms / as.size, as.name);
+  }
+  if (const int done = percent(picture.exact); done > 0) text += fmt::format(", {} % exact", done);
+  if (picture.untouched > 0.0) text += fmt::format(", {} % to come", std::max(1, percent(picture.untouched)));
+  return text;
+}
+
+void FilterPreview::compute(LoopClient& client, Keep keep, const engine::FieldView& view) {
   keep_ = keep;
   apply_when_done_ = false;
   // After a jump over a step that changes the form, field and original are still those under the form before.
   client.awaitRestored();
-  so_far_ = std::make_shared<SoFar>();
-  so_far_->spec = spec;
-  seen_so_far_ = {};
-  computing_.start([base = client.field(), id = client.noteFilterBase(), so_far = so_far_,
-                    seen = std::move(seen_first), original = client.original(), asked = spec,
-                    inverted = client.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
-    const engine::Version limit = inverted ? original.inverted() : original;
-    // Before any part of it is filtered: the result is adopted into the field in parts, and replayed.
-    const auto ready = engine::withMeasuredRange(asked, base, job);
-    if (!ready) return tl::unexpected(ready.error());
-    const engine::FilterSpec& what = *ready;
-    filterSeen(base, limit, what, seen, job, [&](const engine::Version& part) {
-      const std::scoped_lock lock(so_far->mutex);
-      so_far->field = part;
-    });
-    auto result = engine::applyFilter(base, limit, what, job);
-    if (!result) return tl::unexpected(result.error());
-    return Variant{asked, what, base, std::move(*result), id};
+  const engine::Version original = client.scene().invert ? client.original().inverted() : client.original();
+  dropSoFar();
+  view_ = std::make_shared<engine::FilterView>(client.field(), original, view);
+  of_view_ = spec;
+  begun_ = looked_ = Clock::now();
+  computing_.start([base = client.field(), id = client.noteFilterBase(), filtering = view_,
+                    asked = spec](engine::JobControl& job) -> engine::Result<Variant> {
+    auto done = filtering->run(asked, job);
+    if (!done) return tl::unexpected(done.error());
+    return Variant{asked, done->spec, base, std::move(done->filtered), id};
   });
+}
+
+bool FilterPreview::wantsView() const {
+  return view_ != nullptr && computing() && Clock::now() - looked_ >= kLookAgain;
+}
+
+void FilterPreview::look(const engine::FieldView& view) {
+  if (view_) view_->look(view);
+}
+
+void FilterPreview::dropSoFar() {
+  approximating_.cancel();
+  view_.reset();
+  so_far_ = {};
+}
+
+// The picture so far, some times in a second. True when it is another one.
+bool FilterPreview::takeSoFar() {
+  (void)approximating_.take();
+  if (!view_ || !computing() || computing_.cancelling()) return false;
+  const auto now = Clock::now();
+  const bool first = so_far_.field.empty();
+  if (!first && now - looked_ < kLookAgain) return false;
+  if (!approximating_.busy() && view_->wantsCoarse() && !first)
+    approximating_.start([view = view_](engine::JobControl& job) -> engine::Result<bool> {
+      if (auto done = view->coarsen(job); !done) return tl::unexpected(done.error());
+      return true;
+    });
+  engine::FilterView::Picture picture = view_->picture();
+  if (picture.field.empty() || (first && picture.untouched > 0.0 && now - begun_ < kWaitForAll)) return false;
+  looked_ = now;
+  if (picture.field == so_far_.field) return false;
+  so_far_ = std::move(picture);
+  return true;
 }
 
 void FilterPreview::apply(LoopClient& client) {
@@ -112,8 +136,7 @@ void FilterPreview::cancel(LoopClient& client) {
   if (applying_.busy()) client.closePort();
   apply_when_done_ = false;
   variants_.clear();
-  so_far_.reset();
-  seen_so_far_ = {};
+  dropSoFar();
 }
 
 void FilterPreview::finish(LoopClient& client) {
@@ -127,11 +150,13 @@ void FilterPreview::drop(std::size_t variant) {
 
 std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
   std::vector<Picture> pictures;
-  const bool additional = seen_so_far_.empty() || keep_ == Keep::kAdd;
+  const bool additional = so_far_.field.empty() || keep_ == Keep::kAdd;
   if (additional)
     for (const Variant& variant : variants_)
       pictures.push_back({variant.result.field, filterName(variant.spec)});
-  if (!seen_so_far_.empty()) pictures.push_back({seen_so_far_, filterName(so_far_->spec) + " ..."});
+  if (!so_far_.field.empty())
+    pictures.push_back({so_far_.field, fmt::format("{}: {}", filterName(of_view_),
+                                                   previewState(so_far_, so_far_.field.grid()))});
   if (pictures.size() > kMostVariants)
     pictures.erase(pictures.begin(), pictures.end() - static_cast<std::ptrdiff_t>(kMostVariants));
   return pictures;
@@ -149,21 +174,14 @@ bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
       changed = true;
     }
   }
-  if (so_far_) {
-    const std::scoped_lock lock(so_far_->mutex);
-    if (!(so_far_->field == seen_so_far_) && !computing_.cancelling()) {
-      seen_so_far_ = so_far_->field;
-      changed = true;
-    }
-  }
+  changed |= takeSoFar();
   // A cancelled job may have finished meanwhile.
   const bool dropped = computing_.cancelling();
   if (auto done = computing_.take(); done && dropped) {
     changed = true;
   } else if (done) {
     changed = true;
-    so_far_.reset();
-    seen_so_far_ = {};
+    dropSoFar();
     if (*done) {
       if (keep_ == Keep::kReplace) variants_.clear();
       if (variants_.size() == kMostVariants) variants_.erase(variants_.begin());

@@ -1,20 +1,24 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
-#include "engine/field/sample_rect.h"
 #include "engine/filter/catalogue.h"
+#include "engine/filter/filter_view.h"
 #include "haptic/loop/adopt_filtered.h"
 
 namespace fettle::app {
 
 /// "Median 5 x 5", "Gaussian 7 x 7, 3 passes, only marks".
 [[nodiscard]] std::string filterName(const engine::FilterSpec& spec);
+
+/// What a preview is as long as it is not the filter's result: "approximate, off by 12 um rms", "40 %
+/// so far", "exact in view".
+[[nodiscard]] std::string previewState(const engine::FilterView::Picture& picture, const engine::Grid& grid);
 
 /// Filters previewed on the field in the background during touch, and the one that is applied. Threading:
 /// main.
@@ -40,9 +44,14 @@ class FilterPreview {
   };
 
   /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them.
-  /// `seen_first`: tiles that are filtered first (visiblePart), to be shown while the rest is computed.
+  /// `view`: what is shown of the field (visiblePart) is filtered first, approximately where that takes long.
   enum class Keep : std::uint8_t { kReplace, kAdd };
-  void compute(LoopClient& client, Keep keep, std::vector<engine::TileRange> seen_first = {});
+  void compute(LoopClient& client, Keep keep, const engine::FieldView& view = {});
+  /// Whether it is time to say what is shown now, since something is computed in its order.
+  [[nodiscard]] bool wantsView() const;
+  void look(const engine::FieldView& view);
+  /// The picture so far of what is computed; its field is empty before, and afterwards.
+  [[nodiscard]] const engine::FilterView::Picture& soFar() const noexcept { return so_far_; }
   /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`.
   void apply(LoopClient& client);
   void cancel(LoopClient& client);
@@ -66,12 +75,9 @@ class FilterPreview {
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
 
  private:
-  // The worker's latest result in parts; the main thread reads it once per frame.
-  struct SoFar {
-    std::mutex mutex;
-    engine::Version field;
-    engine::FilterSpec spec;
-  };
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] bool takeSoFar();
+  void dropSoFar();
   void adopt(LoopClient& client, Variant variant);
 
   std::vector<Variant> variants_;
@@ -79,10 +85,13 @@ class FilterPreview {
   bool apply_when_done_ = false;
   double seconds_ = 0.0;
   int applied_ = 0;
-  engine::FieldForm form_;  // over the field that is previewed
-  std::shared_ptr<SoFar> so_far_;
-  engine::Version seen_so_far_;
+  engine::FieldForm form_;                    // over the field that is previewed
+  std::shared_ptr<engine::FilterView> view_;  // of what is computed
+  engine::FilterSpec of_view_;
+  engine::FilterView::Picture so_far_;
+  Clock::time_point begun_, looked_;
   Background<Variant> computing_;
+  Background<bool> approximating_;  // what came into view meanwhile
   Background<haptic::AdoptionReport> applying_;
 };
 

@@ -14,7 +14,7 @@ namespace fettle::engine {
 /// Goes along with one applyFilter, block by block: what of its work is there already, and what it has worked out. It
 /// decides what is done, never what comes out.
 ///
-/// isDone() and done() are called by the workers of a pass, any number at a time; the rest on the thread of applyFilter,
+/// isDone(), done(), wish() and rank() are called by the workers of a pass, any number at a time; the rest on the thread of applyFilter,
 /// while none works.
 class FilterWork {
  public:
@@ -44,6 +44,12 @@ class FilterWork {
   /// Whether roundDone() would be of use now: it copies a surface.
   [[nodiscard]] virtual bool wantsRounds() { return false; }
   virtual void roundDone(const Rounds&) {}
+
+  /// Number of the order in which blocks are worked out; another number is another order. 0: row by row,
+  /// as long as the pass lasts.
+  [[nodiscard]] virtual std::uint64_t wish() { return 0; }
+  /// The block of the least rank comes first. Not called in the order of number 0.
+  [[nodiscard]] virtual double rank(const TileRect&) { return 0.0; }
 
   /// Whether the tiles of a block need not be worked out. Where it is false, done() or a cancel follows on this thread.
   [[nodiscard]] virtual bool isDone(const TileRect& block) = 0;

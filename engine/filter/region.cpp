@@ -16,8 +16,10 @@ tl::unexpected<Error> noMemory() {
   return failure("memory for filtering could not be had", "filter", "filter a smaller part");
 }
 
+// With the sign of the field: some filters ask for the heights of the scan itself.
 Version piece(const Version& field, const SampleRect& rect) {
-  return pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
+  if (field.reader().sign() > 0.0F) return pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
+  return pieceOf(field.inverted(), rect.column, rect.row, rect.columns, rect.rows).inverted();
 }
 
 }  // namespace

@@ -1,17 +1,13 @@
 #include "engine/filter/surface_pass.h"
 
 #include <algorithm>
-#include <iterator>
-#include <utility>
 #include <vector>
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "engine/filter/block_pass.h"
-#include "engine/filter/filter_work.h"
+#include "engine/filter/each_block.h"
 
 namespace fettle::engine {
 
@@ -37,10 +33,7 @@ Result<PassResult> passOfSurface(const SurfaceOf& surface, std::int32_t reach, c
   BlockPass blocks(input, original, spec, reach, 0, std::min(tuning.level, bestCpuLevel()));
   const FieldReader& reader = blocks.reader();
   const std::int32_t side = blockTiles(tuning, reader);
-  const std::int32_t across = (reader.tileColumns() + side - 1) / side;
-  const std::int32_t up = (reader.tileRows() + side - 1) / side;
   tbb::enumerable_thread_specific<BlockScratch> scratches;
-  tbb::enumerable_thread_specific<std::vector<NewTile>> made;
   const auto run = [&](const TileRect& rect, std::vector<NewTile>& tiles) {
     const TileRect wanted = blocks.toChange(rect);
     if (wanted.empty()) return true;
@@ -55,32 +48,7 @@ Result<PassResult> passOfSurface(const SurfaceOf& surface, std::int32_t reach, c
     return surface(samples, scratch.out.data(), scratch.out_stride) &&
            blocks.merge(wanted, reader.sign(), rect.column1 - rect.column0, scratch, tiles);
   };
-  tbb::parallel_for(
-      tbb::blocked_range<std::int64_t>(0, std::int64_t{across} * up, 1),
-      [&](const tbb::blocked_range<std::int64_t>& range) {
-        for (std::int64_t i = range.begin(); i != range.end(); ++i) {
-          if (job.cancelled() || blocks.outOfMemory()) return;
-          const auto bc = static_cast<std::int32_t>(i % across) * side;
-          const auto br = static_cast<std::int32_t>(i / across) * side;
-          const TileRect rect{bc, br, std::min(bc + side, reader.tileColumns()),
-                              std::min(br + side, reader.tileRows())};
-          if (tuning.work == nullptr || !tuning.work->isDone(rect)) {
-            std::vector<NewTile>& mine = made.local();
-            const std::size_t first = mine.size();
-            if (!run(rect, mine)) return;
-            if (tuning.work != nullptr) tuning.work->done(rect, mine, first);
-          }
-          job.advance(static_cast<std::uint64_t>(blocks.samplesOf(rect)));
-        }
-      },
-      tbb::simple_partitioner());
-  if (job.cancelled()) return cancelled();
-
-  std::vector<NewTile> tiles;
-  for (std::vector<NewTile>& some : made)
-    tiles.insert(tiles.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
-  if (tuning.work != nullptr) tuning.work->addMade(tiles);
-  return blocks.finish(std::move(tiles));
+  return passOverBlocks(blocks, {side, side}, tuning.work, run, job);
 }
 
 }  // namespace fettle::engine

@@ -1,20 +1,16 @@
 #include "engine/filter/window_pass.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
-#include <iterator>
 #include <utility>
 #include <vector>
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "engine/filter/block_pass.h"
 #include "engine/filter/catalogue.h"
-#include "engine/filter/filter_work.h"
+#include "engine/filter/each_block.h"
 #include "engine/filter/line_windows.h"
 
 namespace fettle::engine {
@@ -128,44 +124,16 @@ Cut suitableCut(const WindowFilter& filter, const FilterSpec& spec, const Grid& 
 Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input, const Version& original,
                                 const FilterSpec& spec, const FilterTuning& tuning, JobControl& job) {
   const Grid& grid = input.grid();
-  const FieldReader reader = input.reader();
   const int side = filter.squares.side > 0 ? filter.squares.side : tuning.block_side;
   const Cut cut = side > 0 ? Cut{side, side} : suitableCut(filter, spec, grid);
-  const std::int32_t wide = cut.columns / kTileSide;
-  const std::int32_t high = cut.rows / kTileSide;
-  assert(wide > 0 && high > 0);
-  const std::int32_t across = (reader.tileColumns() + wide - 1) / wide;
-  const std::int32_t up = (reader.tileRows() + high - 1) / high;
-
   Pass pass(filter, input, original, spec, std::min(tuning.level, bestCpuLevel()));
   tbb::enumerable_thread_specific<Scratch> scratches;
-  tbb::enumerable_thread_specific<std::vector<NewTile>> made;
-  tbb::parallel_for(
-      tbb::blocked_range<std::int64_t>(0, std::int64_t{across} * up, 1),
-      [&](const tbb::blocked_range<std::int64_t>& range) {
-        for (std::int64_t i = range.begin(); i != range.end(); ++i) {
-          if (job.cancelled() || pass.blocks().outOfMemory()) return;
-          const auto bc = static_cast<std::int32_t>(i % across);
-          const auto br = static_cast<std::int32_t>(i / across);
-          const TileRect rect{bc * wide, br * high, std::min((bc + 1) * wide, reader.tileColumns()),
-                              std::min((br + 1) * high, reader.tileRows())};
-          if (tuning.work == nullptr || !tuning.work->isDone(rect)) {
-            std::vector<NewTile>& mine = made.local();
-            const std::size_t first = mine.size();
-            if (!pass.run(rect, scratches.local(), job, mine)) return;
-            if (tuning.work != nullptr) tuning.work->done(rect, mine, first);
-          }
-          job.advance(static_cast<std::uint64_t>(pass.blocks().samplesOf(rect)));
-        }
+  return passOverBlocks(
+      pass.blocks(), {cut.columns / kTileSide, cut.rows / kTileSide}, tuning.work,
+      [&](const TileRect& rect, std::vector<NewTile>& made) {
+        return pass.run(rect, scratches.local(), job, made);
       },
-      tbb::simple_partitioner());
-  if (job.cancelled()) return cancelled();
-
-  std::vector<NewTile> tiles;
-  for (std::vector<NewTile>& some : made)
-    tiles.insert(tiles.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
-  if (tuning.work != nullptr) tuning.work->addMade(tiles);
-  return pass.blocks().finish(std::move(tiles));
+      job);
 }
 
 }  // namespace fettle::engine

@@ -93,6 +93,13 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
     workBar(filters.progress(), -ImGui::GetFontSize() * 5.0F, filters.applying() ? "applying" : "filtering");
     ImGui::SameLine();
     if (ImGui::Button("Cancel")) filters.cancel(context.client);
+    if (const engine::FilterView::Picture& so_far = filters.soFar(); so_far.step > 0) {
+      ImGui::PushTextWrapPos(0.0F);
+      ImGui::TextUnformatted(fmt::format("{}; from means of {} x {} samples",
+                                         previewState(so_far, so_far.field.grid()), so_far.step, so_far.step)
+                                 .c_str());
+      ImGui::PopTextWrapPos();
+    }
   } else {
     actionButton("Preview", Action::kFilterPreview, context.act);
     sameLineIfFits("Add preview");

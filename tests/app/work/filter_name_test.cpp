@@ -18,5 +18,23 @@ TEST(FilterName, says_what_the_filter_does) {
   EXPECT_EQ(filterName(spec), "Total variation 3 x 3");
 }
 
+TEST(FilterName, a_preview_says_what_it_is_until_it_is_exact) {
+  engine::Grid grid;
+  engine::FilterView::Picture picture;
+  picture.exact = 0.405;
+  EXPECT_EQ(previewState(picture, grid), "40 % so far");
+  picture.exact = 1.0;
+  EXPECT_EQ(previewState(picture, grid), "exact in view");
+  picture = {};
+  picture.step = 16;
+  EXPECT_EQ(previewState(picture, grid), "approximate");
+  picture.off = engine::FilterView::Off{0.2384, 3.0, false};
+  EXPECT_EQ(previewState(picture, grid), "approximate, off by 238 um rms");
+  picture.off->estimated = true;
+  picture.exact = 0.12;
+  picture.untouched = 0.002;
+  EXPECT_EQ(previewState(picture, grid), "approximate, off by about 238 um rms, 12 % exact, 1 % to come");
+}
+
 }  // namespace
 }  // namespace fettle::app

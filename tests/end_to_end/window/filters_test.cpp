@@ -1,9 +1,11 @@
 // The filters panel by hand: a filter cancelled while it runs, and a largest change that is kept.
 #include <cmath>
 #include <csignal>
+#include <string>
 
 #include "engine/filter/filter.h"
 #include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
 
 namespace fettle::tests {
 namespace {
@@ -96,6 +98,76 @@ TEST_F(WindowTest, a_largest_change_typed_in_is_kept_by_what_is_applied) {
   const auto expected = engine::applyFilter(original, original, spec, job);
   ASSERT_TRUE(expected);
   EXPECT_EQ(compare(expected->field, result).changed, 0);
+}
+
+// Minutes of a filter: what is seen of it is there at once, says how far it is off, and follows the camera.
+TEST_F(WindowTest, a_preview_shows_what_is_seen_first) {
+  const std::string large = folder.file("large.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "4096x4096", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({large});
+  User user(display, *program, "seen first");
+  (void)opened(*program);
+  user.at({360, 420});
+  for (int i = 0; i < 5; ++i) (void)user.key("n");
+  EXPECT_EQ(program->now()["filter"], "Generalised variation");
+  const auto soFar = [](const State& s) {
+    return s["preview_so_far"].is_string() ? s["preview_so_far"].get<std::string>() : std::string();
+  };
+  (void)user.press("p");
+  const State first = program->until("an approximation", [&](const State& s) {
+    return soFar(s).starts_with("approximate") && soFar(s).find("off by") != std::string::npos;
+  });
+  EXPECT_EQ(first["filtering"], true);
+  // In the panel too, with what it is made of.
+  EXPECT_NE(first["texts"].dump().find("from means of"), std::string::npos);
+  (void)user.look("approximate");
+  // Near one place: what is seen of it is there long before the rest.
+  for (int i = 0; i < 14; ++i) (void)user.press("Prior");
+  const State exact =
+      program->until("exact where it is seen", [&](const State& s) { return soFar(s) == "exact in view"; });
+  EXPECT_EQ(exact["filtering"], true);
+  (void)user.look("exact");
+  user.tap("Cancel");
+  const State ended = user.rest("cancelled");
+  EXPECT_TRUE(ended["preview_so_far"].is_null());
+  EXPECT_EQ(ended["variants"], State::array());
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// What is adopted of a preview that was approximate at first is the filter's result, bit by bit.
+TEST_F(WindowTest, a_preview_that_was_approximate_is_adopted_exactly) {
+  const std::string large = folder.file("large.tif"), saved = folder.file("filtered.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "1500x1500", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({large});
+  User user(display, *program, "adopted");
+  (void)opened(*program);
+  for (int i = 0; i < 2; ++i) (void)user.key("n");
+  (void)user.enter("window", "31");
+  EXPECT_EQ(user.enter("passes", "60")["filter"], "Median 31 x 31, 60 passes");
+  user.tap("Preview");
+  program->until("an approximation", [](const State& s) {
+    return s["preview_so_far"].is_string() &&
+           s["preview_so_far"].get<std::string>().starts_with("approximate");
+  });
+  EXPECT_EQ(user.rest("previewed")["variants"], State{"Median 31 x 31, 60 passes"});
+  EXPECT_EQ(user.key("Return")["filters_applied"], 1);
+  saveAs(user, saved);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+  const engine::Version original = load(large);
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kMedian;
+  spec.window = 31;
+  spec.passes = 60;
+  engine::JobControl job;
+  const auto expected = engine::applyFilter(original, original, spec, job);
+  ASSERT_TRUE(expected);
+  EXPECT_EQ(compare(expected->field, load(saved)).changed, 0);
 }
 
 }  // namespace

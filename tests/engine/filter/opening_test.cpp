@@ -260,9 +260,10 @@ TEST(Opening, OfARangeIsThatOfTheField) {
     for (const Element element : kElements)
       for (const double radius : {4.0, 20.0}) {
         const FilterSpec spec = rollingSpec(kind, element, radius);
-        const Version whole = applyFilter(field, field, spec, job)->field;
+        const Version turned = radius < 10.0 ? field : field.inverted();  // the scan's peaks all the same
+        const Version whole = applyFilter(turned, turned, spec, job)->field;
         for (const TileRange& range : {TileRange{1, 1, 2, 1}, {0, 5, 1, 2}, {5, 5, 1, 1}}) {
-          const auto part = filterRange(field, field, field, spec, range, job);
+          const auto part = filterRange(turned, turned, turned, spec, range, job);
           ASSERT_TRUE(part);
           for (int tr = range.row; tr < std::min(range.row + range.rows, 7); ++tr)
             for (int k = 0; k < 64 * 64; ++k) {

@@ -1,0 +1,205 @@
+#include "engine/filter/coarse_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "engine/field/builder.h"
+#include "engine/filter/catalogue.h"
+#include "engine/filter/limit_change.h"
+#include "engine/filter/merge.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr std::int32_t kRowsOfCell = 4;  // read of each cell: the others are a fetch from memory each
+
+// Which rows of a cell are read: every `every`-th.
+std::int32_t rowsApart(std::int32_t step) noexcept {
+  return std::max(1, step / kRowsOfCell);
+}
+
+std::int32_t samplesOfCell(std::int32_t step) noexcept {
+  return step * ((step + rowsApart(step) - 1) / rowsApart(step));
+}
+
+// The means of the samples of a rectangle as a field with the sign of `field`; a cell with half of its samples marked is.
+Version meansOf(const Version& field, const SampleRect& rect, std::int32_t step) {
+  const Version upright = field.reader().sign() > 0.0F ? field : field.inverted();
+  const FieldReader reader = upright.reader();
+  const bool marked = reader.root().marked_children != 0;
+  Grid grid = field.grid();
+  grid.width = (rect.columns + step - 1) / step;
+  grid.height = (rect.rows + step - 1) / step;
+  grid.spacing_x *= step;
+  grid.spacing_y *= step;
+  const auto wide = static_cast<std::size_t>(grid.width);
+  std::vector<float> heights(wide * static_cast<std::size_t>(grid.height));
+  std::vector<std::uint8_t> marks(marked ? heights.size() : 0);
+  tbb::parallel_for(std::int32_t{0}, grid.height, [&](std::int32_t y) {
+    std::vector<float> row(static_cast<std::size_t>(rect.columns));
+    std::vector<std::uint8_t> marks_of_row(marked ? row.size() : 0);
+    std::vector<double> sums(wide);
+    std::vector<std::int32_t> counts(wide), marks_in(marked ? wide : 0);
+    const std::int32_t end = std::min((y + 1) * step, rect.rows);
+    std::int32_t rows = 0;
+    for (std::int32_t r = y * step; r < end; r += rowsApart(step), ++rows) {
+      reader.readHeights(rect.column, rect.row + r, rect.columns, 1, row.data(), rect.columns);
+      for (std::size_t x = 0; x < wide; ++x) {
+        const std::size_t c1 = std::min((x + 1) * static_cast<std::size_t>(step), row.size());
+        double sum = 0.0;
+        std::int32_t count = 0;
+        for (std::size_t c = x * static_cast<std::size_t>(step); c < c1; ++c) {
+          const bool there = row[c] == row[c];
+          sum += there ? static_cast<double>(row[c]) : 0.0;
+          count += there ? 1 : 0;
+        }
+        sums[x] += sum;
+        counts[x] += count;
+      }
+      if (!marked) continue;
+      reader.readMarks(rect.column, rect.row + r, rect.columns, 1, marks_of_row.data(), rect.columns);
+      for (std::size_t c = 0; c < row.size(); ++c)
+        marks_in[c / static_cast<std::size_t>(step)] += marks_of_row[c];
+    }
+    for (std::size_t x = 0; x < wide; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y) * wide + x;
+      heights[at] = counts[x] > 0 ? static_cast<float>(sums[x] / counts[x]) : std::nanf("");
+      if (marked) marks[at] = 2 * marks_in[x] >= step * rows ? 1 : 0;
+    }
+  });
+  const Version means = makeField(grid, heights, marks);
+  return field.reader().sign() > 0.0F ? means : means.inverted();
+}
+
+// Between two heights, of which a hole does not count.
+inline float between(float a, float b, float share) noexcept {
+  const float mean = a + share * (b - a);
+  return a != a ? b : b != b ? a : mean;
+}
+
+// Between which cells a sample lies, counted from the rectangle's first sample.
+struct Place {
+  std::int32_t cell = 0, next = 0;
+  float share = 0.0F;
+};
+Place placeOf(std::int32_t sample, std::int32_t step, std::int32_t cells) noexcept {
+  const double x = (sample + 0.5) / step - 0.5;
+  const auto cell = static_cast<std::int32_t>(std::floor(x));
+  if (cell < 0) return {0, 0, 0.0F};
+  if (cell >= cells - 1) return {cells - 1, cells - 1, 0.0F};
+  return {cell, cell + 1, static_cast<float>(x - cell)};
+}
+
+}  // namespace
+
+std::optional<FilterSpec> coarseSpec(const FilterSpec& spec, std::int32_t step, std::int32_t counted,
+                                     double spacing_mm) noexcept {
+  const Filter& filter = filterOf(spec.kind);
+  FilterSpec coarse = spec;
+  coarse.threads = 0;
+  if (filter.range_sigma.exists())
+    coarse.range_sigma =
+        std::max(spec.range_sigma / std::sqrt(static_cast<double>(counted)), FilterSpec::kLeastRange);
+  if (filter.nesting.exists() && spec.nesting_mm < filter.least_nesting * spacing_mm) return std::nullopt;
+  if (!filter.window.exists() || step == 1) return coarse;
+  const int half = spec.window / 2;
+  const auto cells = static_cast<int>(std::lround(static_cast<double>(half) / step));
+  coarse.window = 2 * cells + 1;
+  coarse.sigma = spec.sigma / step;
+  if (cells >= 1) return coarse;
+  // As wide by fewer passes of the smallest window.
+  const double variance = half * (half + 1.0) / (2.0 * step * step);
+  coarse.passes = static_cast<int>(std::lround(spec.passes * variance));
+  coarse.window = 3;
+  coarse.sigma = 0.0;
+  if (coarse.passes < 1) return std::nullopt;
+  return coarse;
+}
+
+Result<CoarseFilter> CoarseFilter::make(const Version& input, const Version& original, const FilterSpec& spec,
+                                        const SampleRect& rect, std::int32_t step, JobControl& job) try {
+  Version means = meansOf(input, rect, step);
+  if (job.cancelled()) return cancelled();
+  const Grid grid = means.grid();
+  if (const auto coarse =
+          coarseSpec(spec, step, samplesOfCell(step), std::max(grid.spacingXMm(), grid.spacingYMm()))) {
+    // The original is only read where the change is measured against it.
+    const bool other = spec.max_change && !(original == input);
+    auto filtered = applyFilter(means, other ? meansOf(original, rect, step) : means, *coarse, job);
+    if (!filtered) return tl::unexpected(filtered.error());
+    means = std::move(filtered->field);
+  }
+  CoarseFilter made;
+  made.rect_ = rect;
+  made.step_ = step;
+  made.columns_ = grid.width;
+  made.rows_ = grid.height;
+  made.heights_.resize(static_cast<std::size_t>(grid.samples()));
+  means.reader().readHeights(0, 0, grid.width, grid.height, made.heights_.data(), grid.width);
+  made.means_ = std::move(means);
+  return made;
+} catch (const std::bad_alloc&) {
+  return failure("memory for filtering could not be had", "filter");
+}
+
+float CoarseFilter::heightAt(std::int32_t column, std::int32_t row) const noexcept {
+  const Place x = placeOf(column - rect_.column, step_, columns_);
+  const Place y = placeOf(row - rect_.row, step_, rows_);
+  const auto across = [&](const float* z) { return between(z[x.cell], z[x.next], x.share); };
+  return between(across(rowOfCells(y.cell)), across(rowOfCells(y.next)), y.share);
+}
+
+TileRef CoarseFilter::tile(const Version& input, const Version& original, const FilterSpec& spec,
+                           std::int32_t tc, std::int32_t tr) const {
+  const FieldReader reader = input.reader();
+  const Tile& before = reader.tile(tc, tr);
+  TileRef after = TileRef::adopt(input.memory()->bulk().acquire());
+  if (!after) return after;
+  std::array<Place, kTileSide> across;
+  for (std::int32_t c = 0; c < kTileSide; ++c)
+    across[static_cast<std::size_t>(c)] = placeOf(tc * kTileSide + c - rect_.column, step_, columns_);
+  using Row = std::array<float, kTileSide>;
+  // Two rows of cells, spread out over the samples of the tile.
+  std::array<Row, 2> spread{};
+  std::array<std::int32_t, 2> spread_of{-1, -1};
+  const auto rowOf = [&](std::int32_t cell) -> const Row& {
+    const auto slot = static_cast<std::size_t>(cell & 1);
+    if (spread_of[slot] != cell) {
+      spread_of[slot] = cell;
+      const float* const z = rowOfCells(cell);
+      for (std::size_t c = 0; c < kTileSide; ++c)
+        spread[slot][c] = between(z[across[c].cell], z[across[c].next], across[c].share);
+    }
+    return spread[slot];
+  };
+  alignas(64) std::array<float, kTileSamples> results;
+  const float sign = reader.sign();
+  for (std::int32_t r = 0; r < kTileSide; ++r) {
+    const Place y = placeOf(tr * kTileSide + r - rect_.row, step_, rows_);
+    const Row& low = rowOf(y.cell);
+    const Row& high = rowOf(y.next);
+    const float* const old = before.samples.data() + r * kTileSide;
+    float* const out = results.data() + r * kTileSide;
+    for (std::size_t c = 0; c < kTileSide; ++c) {
+      const float z = between(low[c], high[c], y.share);
+      // As stored, without the sign; a cell of holes alone says nothing of a sample in a row that was not read.
+      out[c] = z != z ? old[c] : sign * z;
+    }
+  }
+  if (spec.max_change) {
+    const float* const origin = original.reader().tile(tc, tr).samples.data();
+    for (std::size_t i = 0; i < kTileSamples; ++i)
+      if (before.samples[i] == before.samples[i])
+        results[i] = limitedChange(results[i], origin[i], *spec.max_change);
+  }
+  (void)mergeTile(before, results.data(), kTileSide, 1.0F, spec.scope, *after, bestCpuLevel());
+  return after;
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,51 @@
+// Previews: what is timed is there, in its order.
+#include "bench/preview_bench.h"
+
+#include <gtest/gtest.h>
+
+namespace fettle::bench {
+namespace {
+
+TEST(PreviewBench, EachFilterIsSeenWholeAndInPart) {
+  PreviewBenchOptions options;
+  options.sides = {256, 1500};
+  options.kinds = {engine::FilterKind::kMedian, engine::FilterKind::kGeneralisedVariation};
+  engine::JobControl job;
+  const auto report = benchPreviews(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  ASSERT_EQ(report->rows.size(), 8U);
+  EXPECT_EQ(report->rows[0].filter, "median 5");
+  EXPECT_EQ(report->rows[2].filter, "tgv");
+  for (std::size_t i = 0; i < report->rows.size(); ++i) {
+    const PreviewBenchRow& row = report->rows[i];
+    EXPECT_EQ(row.side, i < 4 ? 256 : 1500);
+    EXPECT_GT(row.first, 0.0);
+    EXPECT_GE(row.exact, row.first);
+    if (i % 2 == 0) {
+      EXPECT_GE(row.whole, row.exact);
+    } else {
+      EXPECT_EQ(row.whole, 0.0);
+    }
+  }
+  EXPECT_EQ(report->rows[4].seen, 24 * 24 * 4096);
+  EXPECT_LT(report->rows[5].seen, report->rows[4].seen);
+}
+
+TEST(PreviewBench, OptionsOutOfRangeAreRefusedAndACancelIsHeard) {
+  engine::JobControl job;
+  PreviewBenchOptions options;
+  options.sides = {100};
+  EXPECT_EQ(benchPreviews(options, job).error().kind, engine::ErrorKind::kInput);
+  options.sides = {256};
+  options.limit_s = 0.0;
+  EXPECT_EQ(benchPreviews(options, job).error().kind, engine::ErrorKind::kInput);
+  options.limit_s = 10.0;
+  options.window = 4;
+  EXPECT_EQ(benchPreviews(options, job).error().kind, engine::ErrorKind::kInput);
+  options.window = 5;
+  job.cancel();
+  EXPECT_EQ(benchPreviews(options, job).error().kind, engine::ErrorKind::kCancelled);
+}
+
+}  // namespace
+}  // namespace fettle::bench
