@@ -45,8 +45,15 @@ std::optional<engine::Version> comparedWith(Parts& parts) {
   return std::nullopt;
 }
 
+// Means of a large field, in its place until the surface of a previewed form is there for all of its samples.
+const CoarseForm* meansShown(const Parts& parts) {
+  const auto& form = parts.form.previewed();
+  return form && form->coarse ? &*form->coarse : nullptr;
+}
+
 // A preview that has fewer samples at first has no differences from others: it follows when it has all.
 std::vector<FilterPreview::Picture> previewsOf(Parts& parts) {
+  if (meansShown(parts) != nullptr) return {};
   std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
   const engine::Grid& grid = parts.document.client()->field().grid();
   if (comparedWith(parts))
@@ -60,13 +67,19 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
   render::Shown shown;
-  shown.versions.push_back(parts.marking.edges.over(client.field()));
   // All with the same sign: the loop inverts the field some ticks after the scene was changed, and a preview
   // may have been computed before that.
-  const float sign = shown.versions.front().reader().sign();
+  const float sign = client.field().reader().sign();
   const auto likeField = [sign](const engine::Version& v) {
     return v.reader().sign() == sign ? v : v.inverted();
   };
+  if (const CoarseForm* coarse = meansShown(parts)) {
+    shown.versions.push_back(likeField(coarse->means));
+    shown.original = likeField(coarse->surface);
+    shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+    return shown;
+  }
+  shown.versions.push_back(parts.marking.edges.over(client.field()));
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
   if (const auto original = comparedWith(parts)) shown.original = likeField(*original);
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
@@ -74,7 +87,9 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   return shown;
 }
 
-void addTitles(const std::vector<FilterPreview::Picture>& previews, render::FrameInput& input) {
+void addTitles(const Parts& parts, const std::vector<FilterPreview::Picture>& previews,
+               render::FrameInput& input) {
+  if (meansShown(parts) != nullptr) input.titles.emplace_back("without the form, approximate");
   if (previews.empty()) return;
   input.titles.emplace_back("unchanged");
   for (const FilterPreview::Picture& preview : previews) input.titles.push_back(preview.title);
@@ -102,7 +117,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   if (!picture.takeDue(Draws::kRefined)) return;
 
   render::FrameInput input = frameInput(parts, sharpness, options);
-  addTitles(previews, input);
+  addTitles(parts, previews, input);
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
     StylusOverlay::append(client, state, picture.mmPerPixel(), input.overlays);

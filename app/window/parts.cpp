@@ -101,7 +101,7 @@ void Parts::writeTransformed() {
   std::string path = document.suggestedPath("_transformed.fettle");
   for (int n = 2; std::filesystem::exists(path, none); ++n)
     path = document.suggestedPath(fmt::format("_transformed_{}.fettle", n).c_str());
-  transform.write(*document.client(), picture.seenRect(), std::move(path));
+  transform.write(*document.client(), picture.seenRect(document.client()->field().grid()), std::move(path));
 }
 
 void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {

@@ -171,12 +171,10 @@ std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const 
   return plane ? plane->fieldAt(pixel) : std::nullopt;
 }
 
-std::vector<Seen> WindowPicture::seenPlaces() const {
+std::vector<Seen> WindowPicture::seenPlaces(const engine::Grid& grid) const {
   const render::Rectangle& area = window_.pictureArea();
   std::vector<Seen> seen;
-  if (shown_.versions.empty()) return seen;
-  // A preview next to the field may have fewer samples.
-  const engine::Grid& grid = shown_.versions.front().grid();
+  // By millimetres: what is shown of the field, or next to it, may have fewer samples.
   const auto sampleAt = [](double mm, double spacing_mm, std::int32_t side) {
     return std::clamp(static_cast<std::int32_t>(mm / spacing_mm), 0, side - 1);
   };
@@ -189,8 +187,8 @@ std::vector<Seen> WindowPicture::seenPlaces() const {
   return seen;
 }
 
-engine::SampleRect WindowPicture::seenRect() const {
-  const std::vector<Seen> seen = seenPlaces();
+engine::SampleRect WindowPicture::seenRect(const engine::Grid& grid) const {
+  const std::vector<Seen> seen = seenPlaces(grid);
   if (seen.empty()) return {};
   Seen low = seen.front(), high = seen.front();
   for (const Seen& place : seen) {
@@ -204,7 +202,7 @@ engine::FieldView WindowPicture::seenPart(const engine::Grid& grid, const render
   const auto along = [](double share, int side) {
     return static_cast<std::int32_t>(std::clamp(share, 0.0, 1.0) * (side - 1));
   };
-  return visiblePart(grid, seenPlaces(),
+  return visiblePart(grid, seenPlaces(grid),
                      {along(view.centre_x, grid.width), along(view.centre_y, grid.height)});
 }
 

@@ -99,15 +99,15 @@ class WindowPicture {
   [[nodiscard]] std::optional<render::Framing> framing() const;
   /// The visible part of the field, with which processing should begin.
   [[nodiscard]] engine::FieldView seenPart(const engine::Grid& grid, const render::View& view) const;
-  /// The samples that are visible, by some hundred places of the picture; empty where none is.
-  [[nodiscard]] engine::SampleRect seenRect() const;
+  /// The samples of a field of this grid that are visible, by some hundred places of the picture; empty where none is.
+  [[nodiscard]] engine::SampleRect seenRect(const engine::Grid& grid) const;
   /// Position of the first plot in the window's frame.
   [[nodiscard]] render::Rectangle plot(const render::View& view, const Display& display) const;
   /// Whether two versions share one plot, with a line between them.
   [[nodiscard]] bool hasSplitLine(const Display& display) const;
 
  private:
-  [[nodiscard]] std::vector<Seen> seenPlaces() const;
+  [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
   render::Window& window_;
   std::unique_ptr<render::LivePicture> live_;

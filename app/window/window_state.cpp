@@ -156,6 +156,7 @@ void addFilters(const Parts& p, Report& r) {
   r["fitting_form"] = p.form.busy();
   const auto& preview = p.form.previewed();
   r["form_preview"] = preview ? Report(std::string(engine::infoOf(preview->options.kind).word)) : Report();
+  r["form_preview_means_of"] = preview && preview->coarse ? Report(preview->coarse->step) : Report();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
   r["computing_heights"] = p.heights.busy();
   r["heights_found"] = p.heights.found();

@@ -28,6 +28,7 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
 }  // namespace
 
 void FormTool::measure(const LoopClient& client) {
+  dropApproximation();
   working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
     auto fit = fitOf(field, what, job);
     if (!fit) return tl::unexpected(fit.error());
@@ -36,13 +37,22 @@ void FormTool::measure(const LoopClient& client) {
 }
 
 void FormTool::preview(const LoopClient& client) {
-  working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+  slot_ = std::make_shared<Slot>();
+  working_.start([field = client.newest(), what = options,
+                  slot = slot_](engine::JobControl& job) -> engine::Result<Work> {
+    if (field.formOver() == nullptr && formTakesLong(field.grid())) {
+      // Its errors are those of the whole, which will report them.
+      if (auto coarse = coarseForm(field, what, job)) {
+        const std::scoped_lock lock(slot->mutex);
+        slot->preview = Preview{what, coarse->surface, nullptr, *std::move(coarse)};
+      }
+    }
     auto fit = fitOf(field, what, job);
     if (!fit) return tl::unexpected(fit.error());
     const engine::FieldForm& over = field.formOver();
     auto surface = engine::formSurface(field.grid(), *fit->form, over.get(), job);
     if (!surface) return tl::unexpected(surface.error());
-    return Work{*std::move(fit), std::nullopt, Preview{what, *std::move(surface), over}};
+    return Work{*std::move(fit), std::nullopt, Preview{what, *std::move(surface), over, std::nullopt}};
   });
 }
 
@@ -51,10 +61,18 @@ void FormTool::followOptions(const LoopClient& client) {
 }
 
 void FormTool::dropPreview() {
+  if (slot_) working_.cancel();  // it works the rest out
   preview_.reset();
 }
 
+// Other work takes the place of what would make it exact.
+void FormTool::dropApproximation() {
+  slot_.reset();
+  if (preview_ && preview_->coarse) preview_.reset();
+}
+
 void FormTool::takeOut(const LoopClient& client) {
+  dropApproximation();
   working_.start([field = client.newest(), scan = client.scan(),
                   what = options](engine::JobControl& job) -> engine::Result<Work> {
     auto fit = fitOf(field, what, job);
@@ -68,6 +86,7 @@ void FormTool::takeOut(const LoopClient& client) {
 
 void FormTool::start(const LoopClient& client, FormStep step) {
   if (client.newest().formOver() == nullptr) return;
+  dropApproximation();
   working_.start(
       [field = client.newest(), scan = client.scan(), step](engine::JobControl& job) -> engine::Result<Work> {
         auto change = makeFormChange(step, nullptr, field, scan, job);
@@ -83,8 +102,16 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
     changed = true;
   }
   const bool dropped = working_.cancelling();
+  if (slot_ && !dropped && working_.busy()) {
+    const std::scoped_lock lock(slot_->mutex);
+    if (slot_->preview) {
+      preview_ = std::exchange(slot_->preview, std::nullopt);
+      changed = true;
+    }
+  }
   auto done = working_.take();
   if (!done) return changed;
+  slot_.reset();
   if (dropped) {
     preview_.reset();
     return true;
@@ -113,6 +140,7 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
 
 void FormTool::clear() {
   working_.cancel();
+  slot_.reset();
   fit_.reset();
   preview_.reset();
 }

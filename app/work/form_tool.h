@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "app/work/background.h"
+#include "app/work/coarse_form.h"
 #include "app/work/form_change.h"
 #include "app/work/loop_client.h"
 #include "engine/measure/form_fit.h"
@@ -33,6 +36,8 @@ class FormTool {
     engine::FormChoice options;
     engine::Version surface;  ///< upright
     engine::FieldForm over;   ///< that lies over the field: under another one the surface is another
+    /// Approximate, until the surface is there: `surface` is over its means, which are seen in place of the field.
+    std::optional<CoarseForm> coarse = {};
   };
 
   /// Fits `options` to the samples of the newest field, with the form that lies over it: fit() has the result.
@@ -66,10 +71,17 @@ class FormTool {
     std::optional<FormChange> change;
     std::optional<Preview> preview;
   };
+  // An approximation on its way from the worker, which goes on.
+  struct Slot {
+    std::mutex mutex;
+    std::optional<Preview> preview;
+  };
   void start(const LoopClient& client, FormStep step);
+  void dropApproximation();
 
   std::optional<Fit> fit_;
   std::optional<Preview> preview_;
+  std::shared_ptr<Slot> slot_;
   Background<Work> working_;
 };
 

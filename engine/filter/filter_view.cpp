@@ -19,7 +19,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kCoarse_s = 0.12;  // of filtering means
-constexpr double kFewestCells = 96.0 * 96.0, kMostCells = 1024.0 * 1024.0;
+constexpr double kFewestCells = 96.0 * 96.0, kMostCells = 1600.0 * 1600.0;
 // Of the field in view, as its inverse: from then on all of it is approximated.
 constexpr std::int64_t kMuch = 4;
 constexpr std::int64_t kFewSamples = 1 << 21;  // whose noise is found at once

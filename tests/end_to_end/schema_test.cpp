@@ -128,6 +128,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"bench", "large", "--side", "256", "--effort", "0.01", "--no-picture", "--folder", file("")});
   run({"bench", "import", "--side", "16", "--repeats", "1"});
   run({"bench", "fill", "--side", "512", "--repeats", "1"});
+  run({"bench", "previews", "--side", "256", "--kind", "median"});
   run({"bench", "measure", "--side", "512", "--repeats", "1"});
   run({"bench", "estimate", "--side", "256", "--kind", "box", "--threads", "1", "--repeats", "1"});
   run({"bench", "filters", "--side", "64", "--kind", "box", "--window", "3", "--ground", "plain", "--repeats",

@@ -64,6 +64,10 @@ void formPanel(const PanelContext& context, FormTool& form) {
     workBar(form.progress(), -ImGui::GetFontSize() * 5.0F, "fitting");
     ImGui::SameLine();
     if (ImGui::Button("Cancel##form")) form.cancel();
+    if (const auto& preview = form.previewed(); preview && preview->coarse)
+      writeWrapped(fmt::format("preview, approximate: from means of {} x {} samples, off by about {} rms",
+                               preview->coarse->step, preview->coarse->step,
+                               lengthText(preview->coarse->off_rms, context.units.change, 3)));
     return;
   }
   if (ImGui::Button("Fit")) form.measure(context.client);

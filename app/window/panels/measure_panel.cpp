@@ -77,7 +77,8 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
     if (ImGui::Button("Cancel##measure")) measure.cancel();
     return;
   }
-  if (ImGui::Button("Measure now")) measure.measure(context.client, picture.seenRect());
+  if (ImGui::Button("Measure now"))
+    measure.measure(context.client, picture.seenRect(context.client.field().grid()));
   const auto& figures = measure.figures();
   if (!figures) return;
   ImGui::PushTextWrapPos(0.0F);

@@ -115,12 +115,12 @@ TEST_F(WindowTest, a_preview_shows_what_is_seen_first) {
     return s["preview_so_far"].is_string() ? s["preview_so_far"].get<std::string>() : std::string();
   };
   (void)user.press("p");
+  // In the panel too, with what it is made of.
   const State first = program->until("an approximation", [&](const State& s) {
-    return soFar(s).starts_with("approximate") && soFar(s).find("off by") != std::string::npos;
+    return soFar(s).starts_with("approximate") && soFar(s).find("off by") != std::string::npos &&
+           s["texts"].dump().find("from means of") != std::string::npos;
   });
   EXPECT_EQ(first["filtering"], true);
-  // In the panel too, with what it is made of.
-  EXPECT_NE(first["texts"].dump().find("from means of"), std::string::npos);
   (void)user.look("approximate");
   // Near one place: what is seen of it is there long before the rest.
   for (int i = 0; i < 14; ++i) (void)user.press("Prior");
@@ -168,6 +168,31 @@ TEST_F(WindowTest, a_preview_that_was_approximate_is_adopted_exactly) {
   const auto expected = engine::applyFilter(original, original, spec, job);
   ASSERT_TRUE(expected);
   EXPECT_EQ(compare(expected->field, load(saved)).changed, 0);
+}
+
+// Of a large field what is left without a form is seen before all of its samples are fitted.
+TEST_F(WindowTest, a_form_of_a_large_field_is_previewed_approximately_first) {
+  const std::string large = folder.file("large.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "6000x6000", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({large});
+  User user(display, *program, "large form");
+  (void)opened(*program);
+  (void)user.press("ctrl+shift+l");
+  const State first = program->until("an approximation", [](const State& s) {
+    return s["form_preview"].is_string() && s["form_preview_means_of"].is_number();
+  });
+  EXPECT_EQ(first["form_preview_means_of"], 6);
+  (void)user.look("approximate, if soon enough");
+  const State full = user.rest("all of it");
+  EXPECT_TRUE(full["form_preview"].is_string());
+  EXPECT_TRUE(full["form_preview_means_of"].is_null());
+  (void)user.look("all of it");
+  EXPECT_TRUE(user.key("ctrl+shift+l")["form_preview"].is_null());
+  EXPECT_EQ(program->now()["steps"], 0);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
 }
 
 }  // namespace
