@@ -112,9 +112,9 @@ void StepKeeper::prepend(engine::Step step) {
 void StepKeeper::keepStroke(const engine::Version& field, const haptic::LoopPlace& at) {
   if (!differs(field)) return;
   const haptic::ToolRow& tool = haptic::rowOf(stroke_tool_);
-  push(tool.edits == haptic::ToolEdits::kNothing ? "Stroke" : std::string(tool.title),
-       tool.edits == haptic::ToolEdits::kMarks ? engine::StepKind::kMark : engine::StepKind::kStroke, field,
-       at);
+  (void)push(tool.edits == haptic::ToolEdits::kNothing ? "Stroke" : std::string(tool.title),
+             tool.edits == haptic::ToolEdits::kMarks ? engine::StepKind::kMark : engine::StepKind::kStroke,
+             field, at);
 }
 
 void StepKeeper::endStroke(const engine::Version& field, const engine::SampleRect& rect,
@@ -128,13 +128,13 @@ void StepKeeper::adopted(const engine::Version& field, const haptic::LoopPlace& 
     static_cast<void>(history_.undo());
     journal_.moveTo(history_.number());
   }
-  push(adoption_name_, engine::StepKind::kFilter, field, at);
-  adopting_ = true;
+  // A round that changed nothing made no step: the next one has none to replace.
+  adopting_ = push(adoption_name_, engine::StepKind::kFilter, field, at);
 }
 
 void StepKeeper::change(std::string name, engine::StepKind kind, const engine::Version& field,
                         const haptic::LoopPlace& at, HandChange change) {
-  push(std::move(name), kind, field, at, std::move(change));
+  (void)push(std::move(name), kind, field, at, std::move(change));
 }
 
 void StepKeeper::restoreRequested(std::uint64_t id) {
@@ -142,7 +142,7 @@ void StepKeeper::restoreRequested(std::uint64_t id) {
   journal_.restoreRequested(id, history_.number());
 }
 
-void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,
+bool StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,
                       const haptic::LoopPlace& at, std::optional<HandChange> change) {
   engine::StepInfo info;
   info.name = name;
@@ -150,14 +150,14 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   info.time = engine::stepTimeNow();
   const bool pushed = history_.push(std::move(info), after);
   committed_ = after;
-  if (!pushed) return;
+  if (!pushed) return false;
   const std::int64_t state = history_.number();
   if (kind == engine::StepKind::kFilter || change) last_rect_ = history_.info(state).rect;
-  if (!journal_.records()) return;
+  if (!journal_.records()) return true;
   haptic::journal::StepMade made{state, std::move(name), kind, at};
   if (!change) {
     journal_.commit(made, history_.step(state), {});
-    return;
+    return true;
   }
   made.heights = change->heights;
   made.form = kind == engine::StepKind::kForm && !made.heights;
@@ -167,6 +167,7 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   made.fitted = std::move(change->fitted);
   made.maker = change->maker;
   journal_.commit(made, history_.step(state), std::move(change->data));
+  return true;
 }
 
 }  // namespace fettle::app

@@ -124,8 +124,8 @@ class StepKeeper {
   void restored(const engine::Version& field) { committed_ = field; }
 
  private:
-  // Without a change the step was made by ticks and filters.
-  void push(std::string name, engine::StepKind kind, const engine::Version& after,
+  // Without a change the step was made by ticks and filters. False: it changed nothing, and is none.
+  bool push(std::string name, engine::StepKind kind, const engine::Version& after,
             const haptic::LoopPlace& at, std::optional<HandChange> change = {});
 
   engine::History history_;

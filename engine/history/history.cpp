@@ -138,7 +138,13 @@ Step History::step(std::int64_t number) const {
 
 bool History::push(StepInfo info, Version after, std::vector<Version>& dropped) {
   const Change change = measureChange(current(), after);
-  if (change.none()) return false;
+  if (change.none()) {
+    // The same tiles below another root, as after the adoption of a filter that changed nothing: who compares the state with
+    // the live field compares roots.
+    (number_ == first_ ? start_ : steps_[static_cast<std::size_t>(number_ - first_ - 1)].after) =
+        std::move(after);
+    return false;
+  }
   while (last() > number_) {
     bytes_ -= steps_.back().info.bytes;
     dropped.push_back(std::move(steps_.back().after));

@@ -98,7 +98,7 @@ class History {
           std::size_t bound_bytes);
 
   /// Adds the step from current() to `after` and goes there. No step is made, and false returned, when
-  /// `after` is the same state. An empty `rect` is replaced by that of the changed tiles; info.bytes is
+  /// `after` is the same state, which it then stands for. An empty `rect` is replaced by that of the changed tiles; info.bytes is
   /// filled in. `dropped` receives the versions that the history drops: redo states, and the oldest beyond
   /// the bound. The newest step is always kept. O(changed tiles), a few ns each.
   bool push(StepInfo info, Version after, std::vector<Version>& dropped);

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/difference.h"
 #include "engine/field/mark_setter.h"
 #include "haptic/loop/adopt_filtered.h"
 #include "tests/haptic/support/fields.h"
@@ -192,6 +193,43 @@ TEST_F(LoopClientTest, an_undo_while_an_offer_is_unanswered_leaves_history_and_f
     ASSERT_TRUE(until(*client, agree));
     EXPECT_TRUE(client->upright() == plain);
   }
+}
+
+// As a window of one sample does: its result has the field's tiles below a root of its own.
+TEST_F(LoopClientTest, a_filter_that_changes_nothing_is_no_step_and_takes_none_away) {
+  const auto client = start();
+  ASSERT_TRUE(client);
+  const auto agree = [&](const auto&) { return client->upright() == client->history().current(); };
+  ASSERT_TRUE(client->change(client->upright(), withMark(client->upright(), 3, 1), "Marks"));
+  ASSERT_TRUE(until(*client, agree));
+  const engine::Version marked = client->upright();
+  client->noteFilterBegun(client->noteFilterBase(), {}, "Filter");
+  const auto offer = [&](bool changes) {
+    std::atomic<bool> done{false};
+    std::thread worker([&] {
+      if (const auto live = client->port().snapshot()) {
+        // The marks as they were, in the tiles as they were.
+        const auto same = haptic::mergeResult(*live, *live, *live);
+        ASSERT_TRUE(same);
+        const auto answer = client->port().adopt(changes ? withMark(*live, 5, 5) : same->version);
+        EXPECT_TRUE(answer && answer->adopted);
+      }
+      done = true;
+    });
+    EXPECT_TRUE(until(*client, [&](const auto&) { return done.load(); }));
+    worker.join();
+  };
+  offer(false);
+  EXPECT_TRUE(until(*client, agree)) << "nothing is left to wait for";
+  EXPECT_EQ(client->history().number(), 1);
+  // The next round of the same adoption is a step of its own.
+  offer(true);
+  EXPECT_TRUE(until(*client, agree));
+  EXPECT_EQ(client->history().number(), 2);
+  client->undo();
+  EXPECT_TRUE(until(*client, agree));
+  EXPECT_TRUE(client->upright().reader().markedAt(3, 1)) << "the step before the filter is still there";
+  EXPECT_TRUE(engine::sameHeights(client->upright(), marked));
 }
 
 TEST_F(LoopClientTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {

@@ -200,6 +200,25 @@ TEST(History, AStepThatChangesNothingIsNone) {
   EXPECT_EQ(history.last(), 0);
 }
 
+// As where the loop's field is compared with the history's state.
+TEST(History, TheSameTilesBelowAnotherRootAreTheStateFromThenOn) {
+  const Version start = someField(200, 130);
+  for (const bool at_start : {true, false}) {
+    History history(start);
+    if (!at_start) {
+      ASSERT_TRUE(history.push(stroke("a"), edited(start, 70, 3, 9.0F)));
+    }
+    const Version now = history.current(), other = edited(now, 5, 5, 1000.0F);
+    LiveField back(other, Growth::kAllowed);
+    ASSERT_TRUE(back.replaceTile(0, 0, changedTiles(now, other).front().before));
+    const Version same = back.snapshot();
+    ASSERT_FALSE(same == now) << "another root";
+    EXPECT_FALSE(history.push(stroke("nothing"), same));
+    EXPECT_TRUE(history.current() == same);
+    EXPECT_EQ(history.last(), at_start ? 0 : 1);
+  }
+}
+
 TEST(History, AnInversionTouchesNoTileAndUndoesExactly) {
   History history(someField(70, 70));
   const Version start = history.current();
