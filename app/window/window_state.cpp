@@ -219,6 +219,7 @@ Report waitedFor(const Parts& p, const Input& input) {
     if (is) names.push_back(name);
   };
   waits("input", !input.empty());
+  waits("the panels' keys", p.window.panelsAreBehind());
   waits("opening", p.opening.busy());
   waits("files", p.files.busy());
   waits("saving", p.saving.busy(p.document));
@@ -260,7 +261,8 @@ Report waitedFor(const Parts& p, const Input& input) {
 }  // namespace
 
 bool isActive(const Parts& parts, const Input& input) {
-  return parts.picture.active() || !input.empty() || parts.held() || parts.flight.active();
+  return parts.picture.active() || !input.empty() || parts.held() || parts.flight.active() ||
+         parts.window.panelsAreBehind();
 }
 
 Report windowState(const Parts& parts, const Input& input, const RunFigures& run) {

@@ -138,7 +138,15 @@ void UiLayer::fit(vk::Extent2D extent) {
   framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
+// Whether a field, a dialog, a menu or the panels have the keyboard. What is pressed elsewhere must not wait for a frame of
+// theirs: a dialog that opens meanwhile would be left by an Escape that was pressed before it.
+bool UiLayer::wantsKeys() const noexcept {
+  return entered_ || ImGui::GetIO().WantTextInput ||
+         ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
 void UiLayer::notePress(int key, int modifiers) {
+  if (!wantsKeys()) return;
   // Characters come by themselves; of their keys the panels know those with Ctrl alone.
   const bool types = key > GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;
   if (types && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0) return;
@@ -156,6 +164,7 @@ void UiLayer::notePress(int key, int modifiers) {
 std::vector<int> UiLayer::holdShortPresses() {
   ImGuiIO& io = ImGui::GetIO();
   std::vector<int> changed;
+  if (!wantsKeys()) pressed_.clear();
   const auto held = [&](int a, int b) {
     return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS;
   };

@@ -37,6 +37,8 @@ class UiLayer {
   /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
   /// gets keys that were released by then, for one frame.
   void notePress(int key, int modifiers);
+  /// Whether presses or characters wait for a later frame.
+  [[nodiscard]] bool behind() const noexcept { return !pressed_.empty() || !waiting_.empty(); }
   void beginFrame();
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
   /// ends.
@@ -62,6 +64,7 @@ class UiLayer {
     std::size_t typed_before;  // characters that came before it and wait for a frame
   };
   void makeStyle(double scale) const;
+  [[nodiscard]] bool wantsKeys() const noexcept;
   [[nodiscard]] std::vector<int> holdShortPresses();
 
   Context* context_ = nullptr;

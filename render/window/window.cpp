@@ -434,6 +434,10 @@ std::vector<std::string> Window::validationMessages() const {
   }
   return all;
 }
+bool Window::panelsAreBehind() const noexcept {
+  return impl_->usable && impl_->ui->behind();
+}
+
 std::string Window::fieldText() const {
   return impl_->usable ? impl_->ui->fieldText() : "";
 }

@@ -162,6 +162,8 @@ class Window {
   [[nodiscard]] engine::Result<PresentReport> present();
   /// The text of the panels of the last frame, from back to front.
   [[nodiscard]] std::vector<PanelText> texts() const;
+  /// Whether the panels have not got all keys and characters yet: another frame must follow.
+  [[nodiscard]] bool panelsAreBehind() const noexcept;
   /// What stands in the field that has the keyboard; empty: none has.
   [[nodiscard]] std::string fieldText() const;
 

@@ -113,5 +113,30 @@ TEST_F(LockTest, what_is_typed_after_a_key_with_ctrl_in_one_frame_is_all_there) 
   (void)quit(user);
 }
 
+// Keys that nothing in the panels waits for do not come to a dialog that opens after them.
+TEST_F(LockTest, what_was_pressed_before_a_dialog_does_not_come_to_it) {
+  const auto program = startOpened();
+  User user(display, *program, "before a dialog");
+  user.at({20, 740});
+  for (const std::vector<std::string>& keys :
+       {std::vector<std::string>{"Escape", "Escape", "Escape", "ctrl+e"},
+        {"s", "Down", "Escape", "s", "Down", "Escape", "s", "Escape", "ctrl+e"}}) {
+    std::vector<std::string> hands{"key", "--delay", "0"};
+    hands.insert(hands.end(), keys.begin(), keys.end());
+    inOneFrame(hands);
+    program->until("where to", [](const State& s) {
+      return s["dialog"] == "export" && s["settled"] == true && s["text_field"] == true;
+    });
+    EXPECT_EQ(program->now()["dialog_path"], program->now()["field_text"]);
+    EXPECT_TRUE(program->now()["dialog_path"].get<std::string>().ends_with("part_fettled.tif"))
+        << program->now()["dialog_path"];
+    (void)user.key("ctrl+a");
+    user.type("/tmp/see.tif");
+    (void)user.press("Escape");
+    program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  }
+  (void)quit(user);
+}
+
 }  // namespace
 }  // namespace fettle::tests
