@@ -76,8 +76,7 @@ engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic
       return engine::inputError("the strokes contain no position", chosen.file, "give a recorded session");
     chosen.plays_s = path.back().t;
   }
-  const bool holds_up = std::find(scene.effects.begin(), scene.effects.end(), haptic::EffectKind::kGravity) !=
-                        scene.effects.end();
+  const bool holds_up = scene.lists(haptic::EffectKind::kGravity);
   if (holds_up && chosen.plays && named.driver->simulates_hand)
     warn(fmt::format(
         "the simulated hand holds no stylus, and gravity compensation for {:g} kg lifts it by {:.2g} mm",

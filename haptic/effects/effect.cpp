@@ -8,8 +8,8 @@
 
 namespace fettle::haptic {
 
-// In spring.cpp, coupling.cpp, viscosity.cpp, gravity.cpp; in haptic/tick.
-AddEffect addSpring, addCoupling, addViscosity, addGravity, addSmoothing, addMarking;
+// In spring.cpp, coupling.cpp, viscosity.cpp, gravity.cpp, sound.cpp; in haptic/tick.
+AddEffect addSpring, addCoupling, addViscosity, addGravity, addSound, addSmoothing, addMarking;
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr EffectEntry kEffects[] = {
     {EffectKind::kFriction, addFriction},   {EffectKind::kViscosity, addViscosity},
     {EffectKind::kEdgeSnap, addEdgeSnap},   {EffectKind::kTexture, addTexture},
     {EffectKind::kGravity, addGravity},     {EffectKind::kCoupling, addCoupling},
-    {EffectKind::kPassivity, addPassivity},
+    {EffectKind::kPassivity, addPassivity}, {EffectKind::kSound, addSound},
 };
 static_assert(engine::inOrder(kEffects, &EffectEntry::kind, EffectKind::kCount));
 

@@ -12,6 +12,7 @@
 #include "engine/field/live_field.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
+#include "haptic/base/sound_tick.h"
 #include "haptic/base/strokes.h"
 #include "haptic/base/tick_counters.h"
 #include "haptic/contact/contact.h"
@@ -37,6 +38,9 @@ struct TickState {
   glm::dvec3 weight_n{0.0};  ///< part of it that only holds up the stylus [N]
   double stored_mj = 0.0;    ///< energy that the forces so far can give back [N mm], at most
   double strength = 0.0;     ///< for tools: pressing force over limit, 0 .. 1
+  bool slipping = false;     ///< set by friction: the tip slides
+  double released_n =
+      0.0;  ///< set by friction: by how much it fell as the tip began to slip in this tick [N]
   /// Samples whose marks a tool may have changed, set by the marking tools; may reach beyond the field.
   engine::SampleRect marked{};
 };
@@ -47,6 +51,8 @@ enum class ResetCause : std::uint8_t {
   kInputLost,     ///< invalid input: zero force was applied, and the motion of the hand is unknown
   kFieldChanged,  ///< the field was replaced from outside (adoption, undo, scene)
 };
+
+class TextureTable;
 
 /// One effect as the tick calls it: a plain function and its data. noexcept is part of the type.
 struct EffectStep {
@@ -85,6 +91,8 @@ struct EffectList {
   std::vector<EffectStep> upkeep;                ///< after the tool: bounded work on data that edits touch
   std::vector<EffectReset> resets;               ///< called when contact, input or field is lost
   std::optional<VelocityFilter> motion;          ///< there when a listed effect needs it
+  std::shared_ptr<const TextureTable> relief;    ///< of the effect texture: felt and heard
+  const SoundTick* sound = nullptr;              ///< of the effect sound: what the last tick is heard as
   std::vector<EffectData> data;                  ///< what the steps point to
   std::vector<std::shared_ptr<void>> tool_data;  ///< of tools that are no effect: of every scene
 

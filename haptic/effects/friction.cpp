@@ -48,11 +48,14 @@ void Friction::run(TickState& state) noexcept {
                     (pull_n <= kRelativeTolerance * slide_n && state.t_s - slip_t_s_ >= kRest_s)))
     slipping_ = false;
   if (pull_n > kRelativeTolerance * (slipping_ ? slide_n : static_ * holding_n)) {
+    // A fast hand is beyond the break-away force within one tick, which friction never gave.
+    if (!slipping_) state.released_n = static_ * holding_n - slide_n;
     slipping_ = true;
     slip_t_s_ = state.t_s;
     strain *= slide_n / pull_n;
   }
   anchor_mm_ = state.endpoint_mm - strain;
+  state.slipping = slipping_;
   state.force_n -= stiffness_ * strain;
   state.stored_mj += 0.5 * stiffness_ * glm::dot(strain, strain);
 }

@@ -121,7 +121,7 @@ TextureTable::Value TextureTable::at(double x_mm, double y_mm) const noexcept {
 namespace {
 
 struct Texture {
-  TextureTable table;
+  const TextureTable& table;  // EffectList::relief
 
   static void run(void* data, TickState& state) noexcept {
     const double depth_mm = glm::length(state.contact.penetration_mm);
@@ -139,10 +139,15 @@ struct Texture {
 
 }  // namespace
 
+const TextureTable& needRelief(EffectList& list, const Scene& scene) {
+  if (!list.relief) list.relief = std::make_shared<const TextureTable>(scene.params.texture);
+  return *list.relief;
+}
+
 void addTexture(EffectList& list, const EffectSource& from) {
-  auto made = std::make_shared<Texture>(Texture{TextureTable(from.scene.params.texture)});
-  const std::size_t held = made->table.bytesHeld();
-  Texture& texture = addData(list, EffectKind::kTexture, std::move(made), held);
+  const TextureTable& table = needRelief(list, from.scene);
+  Texture& texture = addData(list, EffectKind::kTexture, std::make_shared<Texture>(Texture{table}),
+                             sizeof(TextureTable) + table.bytesHeld());
   list.in_contact.push_back({&Texture::run, &texture});
 }
 

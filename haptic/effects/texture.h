@@ -58,4 +58,7 @@ class TextureTable {
 /// only in a scene that lists it.
 AddEffect addTexture;
 
+/// The relief of a scene that lists texture: built once for all effects that use it.
+const TextureTable& needRelief(EffectList& list, const Scene& scene);
+
 }  // namespace fettle::haptic

@@ -23,6 +23,7 @@ enum class EffectKind : std::uint8_t {
   kGravity,    ///< holds up the stylus, in free space too
   kCoupling,   ///< damping between proxy and endpoint
   kPassivity,  ///< no more energy comes out than was put in
+  kSound,      ///< the surface, contact and friction to be heard; gives no force
   kCount
 };
 
@@ -38,7 +39,7 @@ inline constexpr std::array kEffectRows = {
     EffectRow{EffectKind::kFriction, "friction", true}, EffectRow{EffectKind::kViscosity, "viscosity"},
     EffectRow{EffectKind::kEdgeSnap, "edge_snap"},      EffectRow{EffectKind::kTexture, "texture", true},
     EffectRow{EffectKind::kGravity, "gravity"},         EffectRow{EffectKind::kCoupling, "coupling", true},
-    EffectRow{EffectKind::kPassivity, "passivity"},
+    EffectRow{EffectKind::kPassivity, "passivity"},     EffectRow{EffectKind::kSound, "sound"},
 };
 static_assert(engine::inOrder(kEffectRows, &EffectRow::kind, EffectKind::kCount));
 
@@ -124,6 +125,17 @@ struct PassivityParams {
   friend bool operator==(const PassivityParams&, const PassivityParams&) = default;
 };
 
+/// [sound]: how loud its parts are, and the body that rings. How loud all of it is belongs to the window, not to the scene.
+struct SoundParams {
+  double profile = 1.0;     ///< of the surface under the tip at the hand's speed, 0 .. 10
+  double knock = 1.0;       ///< of contact that begins, 0 .. 10
+  double slip = 1.0;        ///< of friction that lets go and slides; needs the effect friction, 0 .. 10
+  double body_hz = 1200.0;  ///< lowest mode of the body that is struck, 50 .. 8000
+  double ring_ms = 60.0;    ///< until that mode has fallen to a thousandth, 1 .. 2000
+
+  friend bool operator==(const SoundParams&, const SoundParams&) = default;
+};
+
 /// [velocity]: the estimate that viscosity and coupling share
 struct VelocityParams {
   double filter_ms = 2.0;  ///< time constant of its low pass, 0 .. 50
@@ -140,6 +152,7 @@ struct EffectParams {
   GravityParams gravity;
   CouplingParams coupling;
   PassivityParams passivity;
+  SoundParams sound;
   VelocityParams velocity;
 
   friend bool operator==(const EffectParams&, const EffectParams&) = default;
@@ -187,6 +200,14 @@ inline constexpr std::array kEffectNumbers = {
     EffectNumber{"passivity", "max_damping_n_s_per_mm",
                  [](EffectParams& p) noexcept -> double& { return p.passivity.max_damping_n_s_per_mm; }, 0,
                  1},
+    EffectNumber{"sound", "profile", [](EffectParams& p) noexcept -> double& { return p.sound.profile; }, 0,
+                 10},
+    EffectNumber{"sound", "knock", [](EffectParams& p) noexcept -> double& { return p.sound.knock; }, 0, 10},
+    EffectNumber{"sound", "slip", [](EffectParams& p) noexcept -> double& { return p.sound.slip; }, 0, 10},
+    EffectNumber{"sound", "body_hz", [](EffectParams& p) noexcept -> double& { return p.sound.body_hz; }, 50,
+                 8000},
+    EffectNumber{"sound", "ring_ms", [](EffectParams& p) noexcept -> double& { return p.sound.ring_ms; }, 1,
+                 2000},
     EffectNumber{"velocity", "filter_ms",
                  [](EffectParams& p) noexcept -> double& { return p.velocity.filter_ms; }, 0, 50},
 };

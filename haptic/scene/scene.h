@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -83,6 +84,9 @@ struct Scene {
   /// Which effects there are; each kind at most once. Forces act in this order, the spring before those that
   /// need it.
   std::vector<EffectKind> effects = {EffectKind::kSpring, EffectKind::kSmoothing};
+  [[nodiscard]] bool lists(EffectKind kind) const noexcept {
+    return std::find(effects.begin(), effects.end(), kind) != effects.end();
+  }
 
   friend bool operator==(const Scene&, const Scene&) = default;
 };

@@ -48,6 +48,8 @@ class Tick {
 
   /// The composed effects of the scene and their data.
   [[nodiscard]] const EffectList& effects() const noexcept { return effects_; }
+  /// What the last tick is heard as, `seconds` left out; null when the scene lists no sound.
+  [[nodiscard]] const SoundTick* heard() const noexcept { return effects_.sound; }
   /// Force of the last tick that only holds up the stylus [N]: also with the hand at rest in free space.
   [[nodiscard]] const glm::dvec3& weight() const noexcept { return weight_n_; }
 

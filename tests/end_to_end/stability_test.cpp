@@ -80,7 +80,7 @@ TEST_F(Stability, WithoutADeviceASceneThatNoneHoldsIsTakenWithAWarning) {
   EXPECT_EQ(played.status, 0);
   EXPECT_NE(played.err.find(warning), std::string::npos) << played.err;
   // The project's own say nothing.
-  for (const char* name : {"default", "everything", "gentle_clean", "trace_edges"}) {
+  for (const char* name : {"default", "everything", "gentle_clean", "listen", "trace_edges"}) {
     const std::string own = inSourceTree(std::string("assets/scenes/") + name + ".toml");
     EXPECT_EQ(fettle({"replay", scan, path, out, "--scene", own}).err, "") << name;
   }

@@ -74,10 +74,10 @@ TEST(Compose, StrengthOfTheBrushIsThePressAloneWhateverElseIsFelt) {
     return engine::contentHash(result->field);
   };
   const std::uint64_t plain = hashOf({EffectKind::kSpring, EffectKind::kSmoothing});
-  EXPECT_EQ(
-      hashOf({EffectKind::kSpring, EffectKind::kSmoothing, EffectKind::kFriction, EffectKind::kViscosity,
-              EffectKind::kEdgeSnap, EffectKind::kGravity, EffectKind::kCoupling, EffectKind::kPassivity}),
-      plain);
+  EXPECT_EQ(hashOf({EffectKind::kSpring, EffectKind::kSmoothing, EffectKind::kFriction,
+                    EffectKind::kViscosity, EffectKind::kEdgeSnap, EffectKind::kGravity,
+                    EffectKind::kCoupling, EffectKind::kPassivity, EffectKind::kSound}),
+            plain);
   EXPECT_NE(hashOf({EffectKind::kSpring, EffectKind::kSmoothing, EffectKind::kTexture}), plain);
 }
 

@@ -155,7 +155,7 @@ TEST(StableValues, AWholeSceneIsMendedAndADeviceThatHoldsNothingIsReported) {
 }
 
 TEST(StableValues, TheProjectsScenesAreHeldByTheSimulatedHandAndByEveryDeviceAtItsScale) {
-  for (const char* name : {"default", "everything", "gentle_clean", "trace_edges"}) {
+  for (const char* name : {"default", "everything", "gentle_clean", "listen", "trace_edges"}) {
     const auto scene = loadScene(fettle::tests::inSourceTree(std::string("assets/scenes/") + name + ".toml"));
     ASSERT_TRUE(scene) << scene.error().line();
     const DeviceProfile hand = SimulatedHand({HandTarget{}}, {}).profile();

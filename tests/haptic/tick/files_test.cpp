@@ -80,6 +80,20 @@ TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
   ASSERT_TRUE(gentle);
   EXPECT_EQ(gentle->level, ContactLevel::kCertified);
   EXPECT_EQ(gentle->max_change, 0.05);
+  const auto listen = loadScene(folder + "listen.toml");
+  ASSERT_TRUE(listen);
+  EXPECT_TRUE(listen->lists(EffectKind::kSound));
+  EXPECT_EQ(listen->params.sound.knock, 0.6);
+  EXPECT_FALSE(defaultScene().lists(EffectKind::kSound)) << "off unless a scene asks for it";
+}
+
+TEST(SceneFile, SoundIsReadBackAsItWasWritten) {
+  Scene scene;
+  scene.effects = {EffectKind::kSpring, EffectKind::kSound};
+  scene.params.sound = {0.1, 2.5, 0.0, 777.7, 12.3};
+  const auto again = parseScene(sceneText(scene), "text");
+  ASSERT_TRUE(again) << again.error().line();
+  EXPECT_EQ(*again, scene);
 }
 
 TEST(SceneFile, EverythingListsEveryEffectWithinWhatADeviceHolds) {
@@ -154,6 +168,15 @@ TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
                            "texture = { pattern = \"wood\" }",
                            "gravity = { stylus_kg = inf }",
                            "coupling = { in = \"contact\" }",
+                           "sound = 3",
+                           "sound = { volume = 1 }",
+                           "sound = { profile = 10.5 }",
+                           "sound = { knock = -1 }",
+                           "sound = { slip = \"loud\" }",
+                           "sound = { body_hz = 0 }",
+                           "sound = { body_hz = nan }",
+                           "sound = { ring_ms = inf }",
+                           "effects = [\"sound\", \"sound\"]",
                            "effects = [\"friction\", \"spring\"]",
                            "velocity = { filter_ms = 51 }",
                            "brush = { radius_samples = 65 }",
