@@ -40,7 +40,7 @@ engine::Result<std::unique_ptr<HapticLoop>> HapticLoop::create(const engine::Ver
     return engine::inputError("the original field has another size than the field", "loop",
                               "give the scan that the field was made from");
   try {
-    auto prepared = std::make_unique<PreparedScene>(scene, original);
+    auto prepared = std::make_unique<PreparedScene>(scene, original, settings.sounds);
     return std::unique_ptr<HapticLoop>(new HapticLoop(start, std::move(prepared), device, settings));
   } catch (const std::bad_alloc&) {
     return engine::failure("memory for the loop could not be allocated", "loop", "close other programs");

@@ -26,6 +26,7 @@ class HapticLoop {
     double rate_hz = 1000.0;  ///< 1000 .. 10000
     RealTimeRequest real_time;
     PoolKeeper::Levels pool;
+    std::shared_ptr<SoundRing> sounds;  ///< see PreparedScene
   };
 
   /// Works on `start` (upright) according to `scene`; `original` is what Scene::max_change is measured

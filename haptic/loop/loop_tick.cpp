@@ -206,6 +206,15 @@ void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::
   if (!channels_.records.push({input, guard_.force(), since_ns, force.contact})) ++state_.lost_records;
 }
 
+// A full ring: nothing plays, and the stream that empties it begins with the newest ticks.
+void LoopTick::sound(std::int64_t since_ns) noexcept {
+  const SoundTick* const heard = scene_->tick.heard();
+  if (heard == nullptr || scene_->sounds == nullptr) return;
+  SoundTick tick = *heard;
+  tick.seconds = static_cast<float>(1e-9 * static_cast<double>(since_ns));
+  static_cast<void>(scene_->sounds->push(std::move(tick)));
+}
+
 // A tick may read samples around the tip, the previous tip and the proxy.
 bool LoopTick::samplesArePrefetched(const glm::dvec3& tip_mm) noexcept {
   if (!finite(tip_mm)) return true;  // no input reads nothing
@@ -305,6 +314,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
        1e-9 * static_cast<double>(input.output_waits_ns), at_rest, input.output_pending});
   device_.write(given);
 
+  sound(since_ns);
   ++state_.tick;
   record(sample, force, since_ns);
   noteEdit(force, tool);

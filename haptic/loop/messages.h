@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include <glm/vec3.hpp>
 
 #include "engine/field/live_field.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
+#include "haptic/base/sound_tick.h"
 #include "haptic/base/strokes.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/workspace.h"
@@ -25,13 +27,17 @@ namespace fettle::haptic {
 struct PreparedScene {
   /// `scene` in range (sceneProblem). `first`, upright, is what Scene::max_change is measured against; it is
   /// also the placeholder, so no additional memory is held.
-  PreparedScene(const Scene& scene_to_run, const engine::Version& first)
+  /// `ring`: where the loop sends what a scene with sound is heard as, the same for all scenes of a loop; null: nowhere.
+  PreparedScene(const Scene& scene_to_run, const engine::Version& first,
+                std::shared_ptr<SoundRing> ring = nullptr)
       : scene(scene_to_run),
+        sounds(std::move(ring)),
         original(first),
         field(scene_to_run.invert ? first.inverted() : first, engine::Growth::kNever),
         tick(scene, field, scene_to_run.invert ? first.inverted() : first) {}
 
   Scene scene;
+  std::shared_ptr<SoundRing> sounds;
   engine::Version original;
   engine::LiveField field;
   Tick tick;

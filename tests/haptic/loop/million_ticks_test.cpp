@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic/sound/sound_stream.h"
 #include "tests/haptic/loop/allocation_guard.h"
 #include "tests/haptic/loop/hand_device.h"
 #include "tests/haptic/support/fields.h"
@@ -47,6 +48,9 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
   ASSERT_TRUE(bench.send(CommandKind::kArm));
   engine::Version undo_to = start;
   Scene scene_now = defaultScene();
+  const auto sounds = std::make_shared<SoundRing>(1024);
+  SoundStream stream(sounds, SoundParams{});
+  std::array<float, 48> samples{};
   std::uint64_t adopted = 0, restored = 0, scenes = 0;
   const std::uint64_t calls_before = fettle::tests::AllocationGuard::calls();
   for (std::uint64_t i = 0; i < kTicks; ++i) {
@@ -75,7 +79,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
       ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) {
         c.version = undo_to;
         // Under another form: with another original.
-        if (i % 14000 == 50) c.scene = std::make_unique<PreparedScene>(scene_now, start);
+        if (i % 14000 == 50) c.scene = std::make_unique<PreparedScene>(scene_now, start, sounds);
       }));
     }
     if (i % 20000 == 10) {
@@ -93,7 +97,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
           scene.effects.push_back(static_cast<EffectKind>(effect));
       scene.params.viscosity.medium = k % 2 == 0 ? ViscousMedium::kEverywhere : ViscousMedium::kContact;
       ASSERT_TRUE(bench.send(CommandKind::kScene, [&](LoopCommand& c) {
-        c.scene = std::make_unique<PreparedScene>(scene, start);
+        c.scene = std::make_unique<PreparedScene>(scene, start, sounds);
       }));
     }
     bench.device.input.tool = static_cast<Tool>(i / 300 % kTools);
@@ -101,12 +105,15 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
     if (i % 3001 == 0) bench.device.input.position_mm.z = std::nan("");
     const fettle::tests::AllocationGuard guard;
     bench.tick(i % 997 == 0 ? 4'000'000 : LoopBench::kPeriod_ns);
+    // Now and then nobody listens, and the ring is full.
+    if (i / 3000 % 5 != 0) stream.fill(samples);
   }
   EXPECT_EQ(fettle::tests::AllocationGuard::calls(), calls_before);
   EXPECT_EQ(bench.loop.state().refused_edits, 0U);
   EXPECT_GT(adopted, kTicks / 10000);
   EXPECT_GT(restored, kTicks / 10000);
   EXPECT_GE(scenes, kTicks / 20000);
+  EXPECT_GT(stream.counters().ticks, kTicks / 4) << "with sound, too";
   EXPECT_EQ(bench.loop.state().tick, kTicks);
 }
 
