@@ -33,6 +33,7 @@
 #include "haptic/journal/session_player.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/scene/scene.h"
+#include "haptic/sound/sound_file.h"
 #include "haptic/tick/replay.h"
 
 namespace fettle::app {
@@ -48,6 +49,7 @@ struct ReplayArguments {
   std::string marks;
   std::string marks_out;
   std::string forces;
+  std::string sound;
   std::string original;
   bool certify = false;
   bool estimate = false;
@@ -111,6 +113,28 @@ engine::Result<Foreseen> foreseeStrokes(const ReplayArguments& options, const en
   return foreseeReplay(options, field, original, {std::move(ticking)}, job);
 }
 
+// What a session is heard as, with the sound of each of its scenes.
+class SessionSound final : public haptic::TickListener {
+ public:
+  void sceneIs(const haptic::Scene& scene) override { file_.set(scene.params.sound); }
+  [[nodiscard]] engine::Status tickIs(const haptic::SoundTick& heard,
+                                      const haptic::StrokeSample& input) override {
+    return file_.add(heard, input.t);
+  }
+  [[nodiscard]] const haptic::SoundFile& file() const noexcept { return file_; }
+
+ private:
+  haptic::SoundFile file_{haptic::SoundParams{}};
+};
+
+engine::Status saveSound(const haptic::SoundFile& sound, const std::string& path, Report& report) {
+  if (path.empty()) return {};
+  report["sound_seconds"] = sound.seconds();
+  report["sound_peak"] = sound.peak();
+  report["sound_hash"] = fmt::format("{:016x}", sound.hash());
+  return sound.write(path);
+}
+
 // The journal of a session, from the scan on.
 engine::Result<Report> replayJournal(const ReplayArguments& options, engine::JobControl& job) {
   if (!options.scene.empty() || !options.marks.empty() || !options.forces.empty() || options.certify ||
@@ -118,7 +142,8 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
     return engine::inputError("a session has its own original, scenes and marks, and its journal no forces",
                               options.scan, "omit --original, --scene, --marks, --forces and --certify");
   if (auto status = checkOutputs({{options.out, OutputKind::kField, options.to},
-                                  {options.marks_out, OutputKind::kMarks, kMarksStream}},
+                                  {options.marks_out, OutputKind::kMarks, kMarksStream},
+                                  {options.sound, OutputKind::kText}},
                                  {options.scan}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
@@ -139,7 +164,8 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
-  const auto played = haptic::playSession(*session, job);
+  SessionSound sound;
+  const auto played = haptic::playSession(*session, job, options.sound.empty() ? nullptr : &sound);
   if (!played) return tl::unexpected(played.error());
   const double seconds = watch.seconds();
   const std::uint64_t made = engine::contentHash(played->field);
@@ -158,10 +184,13 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   if (!options.marks_out.empty())
     if (auto status = saveMarks(played->field, options.marks_out, job); !status)
       return tl::unexpected(status.error());
-  return Report{{"ticks", played->ticks},     {"steps", played->steps},
+  Report report{{"ticks", played->ticks},     {"steps", played->steps},
                 {"filters", played->filters}, {"loops", played->loops},
                 {"state", played->state},     {"entries", session->journal.size()},
                 {"seconds", seconds},         {"hash", fmt::format("{:016x}", made)}};
+  if (auto status = saveSound(sound.file(), options.sound, report); !status)
+    return tl::unexpected(status.error());
+  return report;
 }
 
 // Whether a file begins like a strokes file.
@@ -205,12 +234,13 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (auto status =
           checkOutputs({{options.out, OutputKind::kField, options.to},
                         {options.marks_out, OutputKind::kMarks, kMarksStream},
-                        {options.forces, OutputKind::kText}},
+                        {options.forces, OutputKind::kText},
+                        {options.sound, OutputKind::kText}},
                        {options.scan, options.strokes, options.scene, options.marks, options.original},
                        options.replacing, job);
       !status)
     return tl::unexpected(status.error());
-  const auto scene = haptic::loadSceneOrDefault(options.scene);
+  auto scene = haptic::loadSceneOrDefault(options.scene);
   if (!scene) return tl::unexpected(scene.error());
   if (auto status = checkOriginal(options.original, scene->max_change.has_value(), options.out); !status)
     return tl::unexpected(status.error());
@@ -226,6 +256,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (!marked) return tl::unexpected(marked.error());
   const engine::Version field = *std::move(marked);
 
+  haptic::SoundFile sound(scene->params.sound);
+  if (!options.sound.empty() && !scene->lists(haptic::EffectKind::kSound))
+    scene->effects.push_back(haptic::EffectKind::kSound);  // it changes no bit of the field
   haptic::ReplayOptions replay_options;
   if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
   if (options.certify) replay_options.measure = haptic::MeasureContact::kYes;
@@ -238,6 +271,10 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   auto foreseen = foreseeStrokes(options, field, *original, *strokes, *scene, replay_options, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
+  if (!options.sound.empty())
+    replay_options.listen = [&sound](const haptic::SoundTick* heard, const haptic::StrokeSample& input) {
+      return sound.add(*heard, input.t);
+    };
   const auto result = haptic::replay(field, *original, *strokes, *scene, replay_options, job);
   if (!result) return tl::unexpected(result.error());
 
@@ -263,6 +300,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
                 {"seconds", r.seconds},
                 {"ticks_per_second", r.ticks_per_second},
                 {"hash", hashOf(result->field)}};
+  if (auto status = saveSound(sound, options.sound, report); !status) return tl::unexpected(status.error());
   if (options.certify) {
     report["above_certified"] = r.above_certified;
     report["worst_excess_mm"] = r.worst_excess_mm;
@@ -311,6 +349,11 @@ void addReplay(Command root, Chosen& chosen) {
       {.name = "--forces",
        .to = &options->forces,
        .text = "Write proxy and force of every tick as CSV",
+       .kind = ValueKind::kNewFile},
+      {.name = "--sound",
+       .to = &options->sound,
+       .text = "Write what the strokes are heard as, WAV, with the [sound] of the scene; bit-identical as "
+               "the field is",
        .kind = ValueKind::kNewFile},
   });
   addOriginalOption(command, options->original);

@@ -33,8 +33,11 @@ constexpr int kMostRounds = 1000;
 
 class Player final : public haptic::AdoptionPort {
  public:
-  Player(const engine::Session& session, engine::JobControl& job)
-      : journal_(session.journal), original_(session.original.withForm(nullptr)), job_(job) {
+  Player(const engine::Session& session, engine::JobControl& job, TickListener* listener)
+      : journal_(session.journal),
+        original_(session.original.withForm(nullptr)),
+        job_(job),
+        listener_(listener) {
     states_[0] = session.original;
     const engine::History& stored = session.history;
     const std::int64_t start = std::min(journalStart(session), stored.last());
@@ -136,9 +139,10 @@ class Player final : public haptic::AdoptionPort {
     if (state == states_.end()) return mismatch("a loop begins on a state that does not exist");
     auto original = originalOf(state->second);
     if (!original) return tl::unexpected(original.error());
-    auto loop = haptic::LoopPlayer::create(state->second, *original, begin.scene);
+    scene_ = toBePlayed(begin.scene);
+    auto loop = haptic::LoopPlayer::create(state->second, *original, scene_);
     if (!loop) return tl::unexpected(loop.error());
-    scene_ = begin.scene;
+    if (listener_ != nullptr) listener_->sceneIs(scene_);
     live_original_ = *std::move(original);
     loop_ = std::move(*loop);
     inverted_ = begin.scene.invert;
@@ -175,8 +179,10 @@ class Player final : public haptic::AdoptionPort {
   engine::Status play(const journal::SceneSet& set, const std::string&) {
     LoopCommand command;
     command.kind = CommandKind::kScene;
-    command.scene = std::make_unique<haptic::PreparedScene>(set.scene, live_original_);
-    scene_ = set.scene;
+    scene_ = toBePlayed(set.scene);
+    command.scene = std::make_unique<haptic::PreparedScene>(scene_, live_original_);
+    if (auto done = advance(set.at.tick); !done) return done;
+    if (listener_ != nullptr) listener_->sceneIs(scene_);
     inverted_ = set.scene.invert;
     return give(std::move(command), set.at);
   }
@@ -305,9 +311,20 @@ class Player final : public haptic::AdoptionPort {
     while (loop_->ticks() < tick) {
       if ((loop_->ticks() & 4095U) == 0 && job_.cancelled()) return engine::cancelled();
       if (ticks_.empty()) return mismatch("ticks are missing");
-      if (auto done = loop_->run(takeTick()); !done) return done;
+      const haptic::StrokeSample input = takeTick();
+      if (auto done = loop_->run(input); !done) return done;
+      if (auto done = tell(input); !done) return done;
     }
     return {};
+  }
+
+  Scene toBePlayed(Scene scene) const {
+    if (listener_ != nullptr && !scene.lists(EffectKind::kSound)) scene.effects.push_back(EffectKind::kSound);
+    return scene;
+  }
+
+  engine::Status tell(const haptic::StrokeSample& input) {
+    return listener_ == nullptr ? engine::Status{} : listener_->tickIs(*loop_->heard(), input);
   }
 
   haptic::StrokeSample takeTick() {
@@ -321,8 +338,10 @@ class Player final : public haptic::AdoptionPort {
     if (auto done = advance(at.tick); !done) return done;
     if (loop_->ticks() != at.tick) return mismatch("a command comes too late");
     if (ticks_.empty()) return mismatch("ticks are missing");
-    auto answer = loop_->run(takeTick(), std::move(command));
+    const haptic::StrokeSample input = takeTick();
+    auto answer = loop_->run(input, std::move(command));
     if (!answer) return tl::unexpected(answer.error());
+    if (auto done = tell(input); !done) return done;
     answered_ = answer->version;
     answer_kind_ = answer->kind;
     answered_tick_ = at.tick;
@@ -345,6 +364,7 @@ class Player final : public haptic::AdoptionPort {
   Version live_original_;  // of the loop, under the form of its field
   Scene scene_;            // of the loop
   engine::JobControl& job_;
+  TickListener* listener_;
   engine::JobControl own_ = engine::JobControl::partOf(job_);  // its stages are not shown
   std::size_t next_ = 0;
   PlayedSession played_;
@@ -375,8 +395,9 @@ std::int64_t journalStart(const engine::Session& session) {
   return begin != nullptr ? begin->state : 0;
 }
 
-engine::Result<PlayedSession> playSession(const engine::Session& session, engine::JobControl& job) {
-  return Player(session, job).run();
+engine::Result<PlayedSession> playSession(const engine::Session& session, engine::JobControl& job,
+                                          TickListener* listener) {
+  return Player(session, job, listener).run();
 }
 
 }  // namespace fettle::haptic

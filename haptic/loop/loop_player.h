@@ -31,6 +31,8 @@ class LoopPlayer {
 
   /// Ticks so far.
   [[nodiscard]] std::uint64_t ticks() const noexcept;
+  /// What the last tick is heard as; null when the scene lists no sound.
+  [[nodiscard]] const SoundTick* heard() const noexcept { return loop_.scene().tick.heard(); }
   /// The field after them, as felt.
   [[nodiscard]] engine::Version field() const;
 

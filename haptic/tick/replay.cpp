@@ -94,6 +94,9 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
         max_force2 = std::max(max_force2, glm::dot(force.force_n, force.force_n));
         if (measured && force.contact) measure.add(before, tick.contact(), sample.tip_mm, report);
         if (options.record_forces == RecordForces::kYes) result.forces.push_back(force);
+        if (options.listen)
+          if (auto status = options.listen(tick.heard(), sample); !status)
+            return tl::unexpected(status.error());
       }
       job.advance(part.size());
     }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
+#include "haptic/base/sound_tick.h"
 #include "haptic/base/strokes.h"
 #include "haptic/base/tick_counters.h"
 #include "haptic/scene/scene.h"
@@ -21,6 +23,8 @@ enum class MeasureContact : std::uint8_t { kNo, kYes };
 struct ReplayOptions {
   RecordForces record_forces = RecordForces::kNo;  ///< 64 bytes per tick
   MeasureContact measure = MeasureContact::kNo;
+  /// Called after every tick with what it is heard as, null in a scene without sound. An error ends the replay.
+  std::function<engine::Status(const SoundTick* heard, const StrokeSample& input)> listen = {};
 };
 
 /// Figures of one replay. All but the two timings are the same for the same input on every machine.
