@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "app/sound/loop_sound.h"
+#include "app/terminal.h"
 #include "engine/base/stopwatch.h"
 #include "haptic/safety/last_resort.h"
 
@@ -254,7 +256,12 @@ engine::Result<LiveOutcome> runLive(const engine::Version& start, const engine::
                                     const haptic::Scene& scene, haptic::Device& device,
                                     const LiveSettings& settings, SessionLog& log,
                                     const engine::JobControl& job) {
-  auto loop = haptic::HapticLoop::create(start, original, scene, device, settings.loop);
+  LoopSound sound{Loudness{}};
+  if (const engine::Status status = sound.follow(scene); !status)
+    warn(fmt::format("{}: {}", status.error().what, status.error().remedy));
+  haptic::HapticLoop::Settings with_sound = settings.loop;
+  with_sound.sounds = sound.ring();
+  auto loop = haptic::HapticLoop::create(start, original, scene, device, with_sound);
   if (!loop) return tl::unexpected(loop.error());
   auto outcome = LiveSession(**loop, device, settings, log, job).run();
   if (outcome && scene.invert) outcome->field = outcome->field.inverted();

@@ -79,6 +79,8 @@ std::string Settings::text() const {
               {"side_width", side_width},
               {"panels", panels},
               {"edge_lines", draw_lines},
+              {"volume", loudness.volume},
+              {"muted", loudness.muted},
               {"ask_before_quitting", ask_before_quitting}}
       .dump(2);
 }
@@ -122,6 +124,8 @@ Settings Settings::load(const std::string& path) {
     for (const auto& [name, open] : it->items())
       if (open.is_boolean()) settings.panels[name] = open.get<bool>();
   take(file, "edge_lines", settings.draw_lines);
+  take(file, "volume", 0.0F, 1.0F, settings.loudness.volume);
+  take(file, "muted", settings.loudness.muted);
   take(file, "ask_before_quitting", settings.ask_before_quitting);
   return settings;
 }

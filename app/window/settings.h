@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "app/sound/loudness.h"
 #include "app/window/mouse_presets.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
@@ -56,6 +57,7 @@ struct Settings {
   float side_width = 0.0F;             ///< [pixels at scale 1]; 0: default
   std::map<std::string, bool> panels;  ///< which ones are open, by their names
   bool draw_lines = true;              ///< strokes of the mark tool become edge lines
+  Loudness loudness;                   ///< of scenes with sound
   bool ask_before_quitting = true;     ///< with work that is not saved; it is stored either way
 
   /// Reads a file written by save(). A value that is missing, of a wrong type or out of range keeps its

@@ -197,6 +197,12 @@ void addDevice(const Parts& p, Report& r) {
   for (const haptic::EffectKind effect : scene.effects)
     effects.push_back(std::string(haptic::effectName(effect)));
   r["effects"] = effects;
+  const SoundPlayer* const sound = client.soundPlayer();
+  r["sound"] = sound != nullptr ? sound->driver() : "";
+  // Full seconds: what is heard is no state of its own.
+  r["heard_s"] = sound != nullptr ? sound->counters().ticks / static_cast<std::uint64_t>(client.rate()) : 0;
+  r["volume"] = rounded(static_cast<double>(p.settings.loudness.volume));
+  r["muted"] = p.settings.loudness.muted;
   r["stiffness_n_per_mm"] = rounded(scene.stiffness_n_per_mm);
   r["rate_hz"] = client.rate();
   r["stroke"] = p.stylus.held() || p.marking.held();

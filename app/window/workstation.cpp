@@ -371,6 +371,7 @@ void Workstation::startDocument(Document document) {
   p.opening.noteRead(p.document.isOpen());
   p.closeDocument(SessionKeeper::Afterwards::kDiscard);
   const bool first = p.document.path().empty();
+  options_.client.loudness = p.settings.loudness;
   if (const auto opened = p.document.open(document, options_.scene, options_.client); !opened) {
     p.dropCoarse();
     if (first)

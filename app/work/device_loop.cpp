@@ -106,6 +106,7 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   haptic::Scene& scene = *start.scene;
   haptic::HapticLoop::Settings settings;
   settings.rate_hz = options_.rate_hz;
+  settings.sounds = start.sounds;
   settings.options.tool = start.tool;
   settings.options.limits = sessionLimits(profile);
   settings.options.edit_rule =

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/sound/loudness.h"
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/enumerate.h"
@@ -31,6 +32,7 @@ struct LoopClientOptions {
   /// Values of the first scene with which the device is not stable (haptic::stabilityProblem) are lowered to
   /// the largest stable ones, with a notice; otherwise such a scene is refused.
   bool lower_scene = false;
+  Loudness loudness;  ///< of scenes with sound
 };
 
 /// A device and its haptic loop: a new loop for each change of the rate. Arms devices without force
@@ -52,6 +54,7 @@ class DeviceLoop {
     haptic::Tool tool = haptic::Tool::kFeel;
     bool records = false;  ///< every tick's input (HapticLoop::pollRecord)
     double rate_hz = 1000.0;
+    std::shared_ptr<haptic::SoundRing> sounds;  ///< see haptic::PreparedScene
   };
   [[nodiscard]] engine::Status start(const Start& start, std::vector<Notice>& notices);
   /// Ends the loop with a last tick of zero force; its events and records can still be polled.

@@ -36,6 +36,7 @@ LoopClient::LoopClient(engine::History history, FormOriginals originals, const h
     : originals_(std::move(originals)),
       scene_(scene),
       steps_(std::move(history), sink),
+      sound_(options.loudness),
       loop_(options, originals_.scan().grid()) {}
 
 engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History history,
@@ -78,9 +79,16 @@ engine::Status LoopClient::startLoop(double rate_hz) {
   start.tool = tool_;
   start.records = steps_.journal().records();
   start.rate_hz = rate_hz;
+  hear();
+  start.sounds = sound_.ring();
   if (engine::Status status = loop_.start(start, notices_); !status) return status;
   steps_.begin(scene_);
   return {};
+}
+
+void LoopClient::hear() {
+  if (const engine::Status status = sound_.follow(scene_); !status)
+    notices_.push_back({status.error().what, status.error().remedy});
 }
 
 engine::Status LoopClient::setRate(double rate_hz) {
@@ -239,10 +247,11 @@ engine::Status LoopClient::setScene(const haptic::Scene& scene) {
     return engine::inputError(problem->what, "scene", problem->remedy);
   if (const auto problem = haptic::sceneProblem(scene)) return engine::inputError(*problem, "scene");
   scene_ = scene;
+  hear();
   LoopCommand command;
   command.kind = CommandKind::kScene;
   command.id = next_id_++;
-  command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(newest()));
+  command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(newest()), sound_.ring());
   steps_.journal().sceneSent(command.id, scene_);
   loop_.send(std::move(command));
   return {};
@@ -257,7 +266,7 @@ void LoopClient::restore(const engine::Version& version) {
   // computed under another.
   if (const engine::FieldForm& form = version.formOver(); form != sent_form_) {
     sent_form_ = form;
-    command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(version));
+    command.scene = std::make_unique<haptic::PreparedScene>(scene_, originals_.at(version), sound_.ring());
     command.lift_mm = loop_.liftTo(version, scene_);
     closePort();
   }

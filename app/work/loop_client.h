@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/sound/loop_sound.h"
 #include "app/work/adoption_mailbox.h"
 #include "app/work/device_loop.h"
 #include "app/work/edit_latency.h"
@@ -139,6 +140,10 @@ class LoopClient final {
   void disarm() { loop_.disarm(); }
   void calibrate() { loop_.calibrate(); }
   void setView(double azimuth_deg, double zoom) { loop_.setView(azimuth_deg, zoom); }
+  /// At once; a device is open only while the scene lists sound.
+  void setLoudness(Loudness loudness) noexcept { sound_.setLoudness(loudness); }
+  /// What plays; null while the scene lists no sound, and where no audio device answered.
+  [[nodiscard]] const SoundPlayer* soundPlayer() const noexcept { return sound_.player(); }
   [[nodiscard]] haptic::MouseStylus* mouse() noexcept { return loop_.mouse(); }
   [[nodiscard]] const haptic::Device& device() const noexcept { return loop_.device(); }
   /// The newest tick.
@@ -167,6 +172,8 @@ class LoopClient final {
   LoopClient(engine::History history, FormOriginals originals, const haptic::Scene& scene,
              const LoopClientOptions& options, haptic::SessionSink* sink);
   [[nodiscard]] engine::Status startLoop(double rate_hz);
+  // Where no audio device answers, a notice.
+  void hear();
   void takeTicks();
   void take(haptic::LoopEvent&& event);
   void restore(const engine::Version& upright_version);
@@ -186,6 +193,7 @@ class LoopClient final {
   haptic::Scene scene_;
   haptic::Tool tool_ = haptic::Tool::kFeel;
   StepKeeper steps_;
+  LoopSound sound_;
   DeviceLoop loop_;
   AdoptionMailbox mailbox_;
   EditLatency latency_;

@@ -140,10 +140,27 @@ void effectTicks(const PanelContext& context) {
   }
 }
 
+// Of a scene with sound alone.
+void soundControls(LoopClient& client, Loudness& loudness) {
+  if (!client.scene().lists(haptic::EffectKind::kSound)) return;
+  const SoundPlayer* const player = client.soundPlayer();
+  figure("plays on", player != nullptr ? player->driver() : "no audio device");
+  if (player == nullptr) return;
+  const Loudness before = loudness;
+  int percent = static_cast<int>(std::lround(100.0F * loudness.volume));
+  beginFields();
+  fieldName("volume");
+  if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
+    loudness.volume = 0.01F * static_cast<float>(percent);
+  endFields();
+  ImGui::Checkbox("mute", &loudness.muted);
+  if (loudness != before) client.setLoudness(loudness);
+}
+
 }  // namespace
 
 std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                   ChoiceCosts& costs) {
+                                   Loudness& loudness, ChoiceCosts& costs) {
   LoopClient& client = context.client;
   deviceFigures(context);
   loopFigures(client, stylus.forces());
@@ -157,6 +174,7 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
   if (const auto largest = client.largestStiffness())
     figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
+  soundControls(client, loudness);
   ImGui::PushTextWrapPos(0.0F);
   for (const std::string& missing : client.realTime().missing)
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());

@@ -49,7 +49,7 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times);
 /// The requested rate of the loop [Hz], if any.
 [[nodiscard]] std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                                 ChoiceCosts& costs);
+                                                 Loudness& loudness, ChoiceCosts& costs);
 
 /// Choice of accuracy, with the cost and the error of each choice on this scan.
 void contactChooser(const PanelContext& context, ChoiceCosts& costs);

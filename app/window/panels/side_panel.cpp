@@ -63,7 +63,8 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(settings, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
   if (section(settings, "Status", true)) statusPanel(context, parts.picture, parts.opening.times());
-  if (section(settings, "Haptics", false)) rate_hz = hapticsPanel(context, parts.stylus_overlay, parts.costs);
+  if (section(settings, "Haptics", false))
+    rate_hz = hapticsPanel(context, parts.stylus_overlay, settings.loudness, parts.costs);
   ImGui::End();
   return rate_hz;
 }

@@ -30,6 +30,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.side_panel = false;
   settings.side_width = 401.0F;
   settings.panels = {{"Tool", false}, {"Haptics", true}};
+  settings.loudness = {0.25F, true};
   settings.ask_before_quitting = false;
   settings.save(path);
   EXPECT_EQ(Settings::load(path), settings);
@@ -53,7 +54,8 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
        {"", "no json", "[1, 2]",
         "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
         "{\"change_range\": \"typed\", \"change_share\": 0, \"panels\": {\"Tool\": 5}, \"side_width\": "
-        "\"wide\", \"colours\": 4}"}) {
+        "\"wide\", \"colours\": 4}",
+        "{\"volume\": 1.5, \"muted\": \"no\"}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }

@@ -1,5 +1,7 @@
-// Nothing of what other makers' devices need is in the program while no such device is used: no library of theirs, no socket. Each look is
-// also made where the device is used, so that it would notice.
+// Nothing of what other makers' devices need is in the program while no such device is used, no library of theirs, no socket; and nothing
+// of an audio device while no scene has sound. Each look is also made where it is used, so that it would notice.
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include <filesystem>
@@ -59,11 +61,15 @@ class UnusedParts : public testing::Test {
     ASSERT_NO_FATAL_FAILURE(writePlate(folder_.file("flat.tif")));
   }
   // A session with this device, until it runs.
-  void start(const std::string& device) {
-    program_ = std::make_unique<LiveProgram>(
-        std::vector<std::string>{"record", folder_.file("flat.tif"), folder_.file("s.csv"),
-                                 folder_.file("o.tif"), "--device", device, "--keys"},
-        folder_.path().string(), service_.address());
+  void start(const std::string& device, const std::string& scene = "") {
+    std::vector<std::string> arguments{
+        "record", folder_.file("flat.tif"), folder_.file("s.csv"), folder_.file("o.tif"), "--device", device,
+        "--keys"};
+    if (!scene.empty()) {
+      std::ofstream(folder_.file("scene.toml")) << scene;
+      arguments.insert(arguments.end(), {"--scene", folder_.file("scene.toml")});
+    }
+    program_ = std::make_unique<LiveProgram>(arguments, folder_.path().string(), service_.address());
     ASSERT_TRUE(program_->says("device")) << program_->err();
   }
   void end() {
@@ -119,6 +125,59 @@ TEST_F(UnusedParts, TheServicesDeviceOpensOneSocketAndNoLibrary) {
   EXPECT_EQ(tcpSocketsOf(program_->pid()), 1);
   EXPECT_FALSE(maps("fake_hd") || maps("fake_dhd"));
   end();
+}
+
+// A hand that lands, strokes and lifts, for a minute.
+std::string strokingHand(const TempFolder& folder) {
+  std::vector<haptic::StrokeSample> strokes;
+  for (int i = 0; i <= 600; ++i) {
+    const double t = 0.1 * i;
+    strokes.push_back({t, {50.0 + 5.0 * std::sin(t), 50.0, std::cos(4.0 * t)}, haptic::Tool::kFeel});
+  }
+  EXPECT_TRUE(haptic::writeStrokes(folder.file("hand.csv"), strokes));
+  return "hand:" + folder.file("hand.csv");
+}
+
+constexpr const char* kSounding = "effects = [\"spring\", \"friction\", \"sound\"]\n";
+constexpr const char* kSilentScene = "effects = [\"spring\", \"friction\"]\n";
+
+TEST_F(UnusedParts, ASceneWithoutSoundLoadsNothingOfAnAudioDevice) {
+  setenv("SDL_AUDIODRIVER", "disk", 1);
+  setenv("SDL_DISKAUDIOFILE", folder_.file("heard.raw").c_str(), 1);
+  ASSERT_NO_FATAL_FAILURE(start(strokingHand(folder_), kSilentScene));
+  for (const char* other : {"libSDL", "libasound", "libpulse", "libpipewire"})
+    EXPECT_FALSE(maps(other)) << other;
+  end();
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("heard.raw")));
+}
+
+TEST_F(UnusedParts, ASceneWithSoundPlaysWhatTheHandTouches) {
+  setenv("SDL_AUDIODRIVER", "disk", 1);
+  setenv("SDL_DISKAUDIOFILE", folder_.file("heard.raw").c_str(), 1);
+  ASSERT_NO_FATAL_FAILURE(start(strokingHand(folder_), kSounding));
+  EXPECT_TRUE(maps("libSDL2-2.0")) << "the look would have noticed";
+  // As it was asked for: floats, one channel, 48 kHz. A hand that lands is heard.
+  const auto loudest = [&] {
+    std::ifstream file(folder_.file("heard.raw"), std::ios::binary);
+    float most = 0.0F;
+    for (float sample = 0.0F; file.read(reinterpret_cast<char*>(&sample), sizeof(sample));)
+      most = std::max(most, std::isfinite(sample) ? std::abs(sample) : 2.0F);
+    return most;
+  };
+  EXPECT_TRUE(eventually([&] { return loudest() > 0.005F; })) << program_->err();
+  end();
+  EXPECT_LE(loudest(), 1.0F);
+}
+
+TEST_F(UnusedParts, WithoutAnAudioDeviceThereIsOneLineAndTheSessionIsTheSame) {
+  setenv("SDL_AUDIODRIVER", "none_such", 1);
+  ASSERT_NO_FATAL_FAILURE(start(strokingHand(folder_), kSounding));
+  EXPECT_TRUE(program_->says("active")) << program_->err();
+  end();
+  const std::string err = program_->err();
+  const std::size_t first = err.find("no sound: no audio device answers");
+  ASSERT_NE(first, std::string::npos) << err;
+  EXPECT_EQ(err.find("no sound", first + 1), std::string::npos) << err;
 }
 
 }  // namespace
