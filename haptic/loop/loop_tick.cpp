@@ -212,7 +212,7 @@ void LoopTick::sound(std::int64_t since_ns) noexcept {
   if (heard == nullptr || scene_->sounds == nullptr) return;
   SoundTick tick = *heard;
   tick.seconds = static_cast<float>(1e-9 * static_cast<double>(since_ns));
-  static_cast<void>(scene_->sounds->push(std::move(tick)));
+  static_cast<void>(scene_->sounds->push(SoundTick(tick)));
 }
 
 // A tick may read samples around the tip, the previous tip and the proxy.
