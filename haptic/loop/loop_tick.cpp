@@ -82,6 +82,8 @@ void LoopTick::takeCommands() noexcept {
 void LoopTick::take(LoopCommand& command) noexcept {
   switch (command.kind) {
     case CommandKind::kTool:
+      // Each stroke, a step of undo, has one tool.
+      tool_replaced_ |= stroke_.running() && command.tool != tool_;
       tool_ = command.tool;
       break;
     case CommandKind::kWorkspace:
@@ -197,8 +199,8 @@ Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexce
       guard_.state() != SafetyState::kActive)
     return Tool::kFeel;
   if (input.tool) return *input.tool;
-  const bool on = options_.tool_switch == ToolSwitch::kAlways || (input.buttons & kPrimaryButton) != 0;
-  return on ? tool_ : Tool::kFeel;
+  const bool on = options_.tool_switch == ToolSwitch::kAlways || buttons_.stroke();
+  return on && !tool_replaced_ ? tool_ : Tool::kFeel;
 }
 
 void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept {
@@ -283,6 +285,7 @@ void LoopTick::publish() noexcept {
 
 void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   disturbance_ = Disturbance::kNone;
+  tool_replaced_ = false;
   takeCommands();
   if (LastResort::fired()) guard_.lastResort();
 
@@ -290,7 +293,9 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const double age_s = 1e-9 * static_cast<double>(std::max<std::int64_t>(now_ns - input.arrival_ns, 0));
   motion_.note(input);
   const bool in_field = device_.profile().space == DeviceSpace::kField;
-  const bool clutched = !in_field && (input.buttons & options_.clutch_buttons) != 0;
+  const std::uint32_t clutch_buttons = in_field ? 0U : options_.clutch_buttons;
+  buttons_.note(input, clutch_buttons, now_ns);
+  const bool clutched = (input.buttons & clutch_buttons) != 0;
   if (clutched != clutched_) disturbance_ = Disturbance::kSurfaceReplaced;
   clutched_ = clutched;
   workspace_.setClutch(clutched ? Workspace::Clutch::kHeld : Workspace::Clutch::kReleased, input.position_mm);
@@ -329,6 +334,9 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   state_.given_n = given;
   state_.contact = force.contact;
   state_.tool = tool;
+  state_.buttons = input.buttons;
+  state_.tool_choices = buttons_.tools();
+  state_.tip_choices = buttons_.tips();
   state_.link = input.link;
   state_.safety = guard_.state();
   state_.cause = guard_.cause();

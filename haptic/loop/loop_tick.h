@@ -12,6 +12,7 @@
 #include "haptic/loop/input_motion.h"
 #include "haptic/loop/messages.h"
 #include "haptic/loop/running_stroke.h"
+#include "haptic/loop/stylus_buttons.h"
 #include "haptic/loop/tile_prefetcher.h"
 #include "haptic/safety/safety.h"
 
@@ -171,8 +172,10 @@ class LoopTick {
   LoopOptions options_;
   ForceGuard guard_;
   Workspace workspace_;
+  StylusButtons buttons_;
   Tool tool_;
-  LoopCommand waiting_;  // popped, but its answer has no place yet
+  bool tool_replaced_ = false;  // in this tick, by another during a stroke: none acts, which ends the stroke
+  LoopCommand waiting_;         // popped, but its answer has no place yet
   bool has_waiting_ = false;
   std::uint64_t disarms_ = 0;  // of LoopChannels::disarms, done
   Disturbance disturbance_ = Disturbance::kNone;

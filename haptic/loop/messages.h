@@ -44,7 +44,7 @@ struct PreparedScene {
 };
 
 enum class CommandKind : std::uint8_t {
-  kTool,       ///< `tool` from now on
+  kTool,       ///< `tool` from now on; a stroke that runs ends, and goes on as another
   kScene,      ///< `scene` from now on: parameters, effects, inversion
   kWorkspace,  ///< `workspace` from now on: mapping of the device into the field
   kView,       ///< its `scale` and `turn_rad` from now on, without moving the tip
@@ -115,7 +115,10 @@ struct LoopState {
   glm::dvec3 force_n{0.0};      ///< the scene's, field frame
   glm::dvec3 given_n{0.0};      ///< what the guard let through, device frame
   bool contact = false;
-  Tool tool = Tool::kFeel;  ///< in effect
+  Tool tool = Tool::kFeel;         ///< in effect
+  std::uint32_t buttons = 0;       ///< of the device that are held: DeviceInput::buttons
+  std::uint64_t tool_choices = 0;  ///< times the next tool was chosen by a button of the device, so far
+  std::uint64_t tip_choices = 0;   ///< the next tip, likewise (StylusButtons)
   LinkState link = LinkState::kDisconnected;
   SafetyState safety = SafetyState::kDisconnected;
   FaultCause cause = FaultCause::kNone;

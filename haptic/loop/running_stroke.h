@@ -27,6 +27,7 @@ class RunningStroke {
   /// The stroke is part of a state that was replaced.
   void reset() noexcept { *this = {}; }
 
+  [[nodiscard]] bool running() const noexcept { return running_; }
   /// Whether a stroke has ended that takeEnded() has not returned yet.
   [[nodiscard]] bool hasEnded() const noexcept { return ended_; }
   /// The samples written since the last call [samples]: of the ended stroke, and of one that began since.

@@ -1,6 +1,8 @@
 #include "haptic/loop/loop_tick.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -356,13 +358,17 @@ TEST(LoopTick, DisarmOvertakesEveryCommandAndTheArmingsBeforeIt) {
   EXPECT_EQ(bench.loop.guard().state(), SafetyState::kRamping);
 }
 
+class DeskDevice : public tests::HandDevice {
+ public:
+  DeskDevice() {
+    profile_.space = DeviceSpace::kDesk;
+    input.buttons = 0;
+  }
+};
+
 TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
   const engine::Version start = bumpy();
   reserve(start);
-  class DeskDevice : public tests::HandDevice {
-   public:
-    DeskDevice() { profile_.space = DeviceSpace::kDesk; }
-  };
   DeskDevice device;
   LoopOptions options = testOptions(Tool::kFeel);
   options.workspace = Workspace(0.5, {100.0, 100.0, 0.0});
@@ -383,6 +389,178 @@ TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
   EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.0, 100.0, 2.0));
   tick({-29.0, 7.0, 1.0}, 0);
   EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.5, 100.0, 2.0));
+}
+
+// A hand in the surface that marks with the first button.
+class ButtonHand {
+ public:
+  ButtonHand() : start_(bumpy()) {
+    reserve(start_);
+    options_.tool_switch = ToolSwitch::kButton;
+    options_.workspace = Workspace(1.0, {100.0, 100.0, 0.0});
+    channels_ = std::make_unique<LoopChannels>(options_);
+    loop_ = std::make_unique<LoopTick>(std::make_unique<PreparedScene>(sceneWithBrush(0.0), start_), start_,
+                                       device_, *channels_, options_);
+  }
+  // So many milliseconds with these buttons, moving on.
+  void hold(std::uint32_t buttons, int ms) {
+    for (int i = 0; i < ms; ++i) {
+      device_.input.position_mm = {0.1 * moved_++, 0.0, -1.0};
+      device_.input.buttons = buttons;
+      device_.now_ns += 1'000'000;
+      loop_->run(device_.now_ns, 1'000'000);
+    }
+  }
+  void setLink(LinkState link) { device_.input.link = link; }
+  void choose(Tool tool) {
+    LoopCommand command;
+    command.kind = CommandKind::kTool;
+    command.tool = tool;
+    ASSERT_TRUE(channels_->commands.push(std::move(command)));
+  }
+  [[nodiscard]] const LoopState& state() const { return loop_->state(); }
+  // Since the last call: strokes begun when each ended.
+  [[nodiscard]] std::vector<std::uint64_t> endedStrokes() {
+    std::vector<std::uint64_t> ended;
+    for (LoopEvent event; channels_->events.pop(event);)
+      if (event.kind == EventKind::kStrokeEnded) ended.push_back(event.stroke);
+    return ended;
+  }
+
+ private:
+  engine::Version start_;
+  DeskDevice device_;
+  LoopOptions options_ = testOptions(Tool::kMark);
+  std::unique_ptr<LoopChannels> channels_;
+  std::unique_ptr<LoopTick> loop_;
+  int moved_ = 0;
+};
+constexpr std::uint32_t kClutched = kSecondaryButton | kPrimaryButton;
+
+TEST(LoopTick, TheFirstButtonUnderTheClutchChoosesToolsAndIsNoStrokeUntilItWasReleased) {
+  ButtonHand hand;
+  hand.hold(0, 5);
+  hand.hold(kSecondaryButton, 400);
+  for (std::uint64_t presses = 1; presses <= 3; ++presses) {
+    hand.hold(kClutched, 50);
+    EXPECT_EQ(hand.state().tool_choices, presses);
+    hand.hold(kSecondaryButton, 50);
+  }
+  hand.hold(kClutched, 50);
+  // The clutch is released first.
+  hand.hold(kPrimaryButton, 50);
+  EXPECT_EQ(hand.state().tool, Tool::kFeel);
+  EXPECT_EQ(hand.state().stroke, 0U);
+  hand.hold(0, 5);
+  hand.hold(kPrimaryButton, 50);
+  EXPECT_EQ(hand.state().tool, Tool::kMark);
+  EXPECT_EQ(hand.state().stroke, 1U);
+  EXPECT_EQ(hand.state().tool_choices, 4U);
+  EXPECT_EQ(hand.state().tip_choices, 0U);
+}
+
+TEST(LoopTick, ThirdAndFourthButtonChooseOncePerPressAndNotDuringAStroke) {
+  ButtonHand hand;
+  hand.hold(0, 5);
+  hand.hold(kThirdButton, 300);
+  hand.hold(kThirdButton | kFourthButton, 300);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  EXPECT_EQ(hand.state().tip_choices, 1U);
+  hand.hold(0, 5);
+  hand.hold(kPrimaryButton, 20);
+  hand.hold(kPrimaryButton | kThirdButton | kFourthButton, 20);
+  hand.hold(kPrimaryButton, 20);
+  EXPECT_EQ(hand.state().tool, Tool::kMark);
+  EXPECT_EQ(hand.state().stroke, 1U);
+  hand.hold(0, 5);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  EXPECT_EQ(hand.state().tip_choices, 1U);
+  hand.hold(kThirdButton, 5);
+  EXPECT_EQ(hand.state().tool_choices, 2U);
+}
+
+TEST(LoopTick, TheClutchPressedTwiceShortlyChoosesATip) {
+  ButtonHand hand;
+  const auto press = [&](int held_ms, int then_ms) {
+    hand.hold(kSecondaryButton, held_ms);
+    hand.hold(0, then_ms);
+  };
+  hand.hold(0, 5);
+  press(100, 200);
+  press(2000, 10);  // the second one may stay
+  EXPECT_EQ(hand.state().tip_choices, 1U);
+  press(100, 400);
+  EXPECT_EQ(hand.state().tip_choices, 1U);  // the third one is the first of another pair, which came too late
+  press(400, 100);
+  press(400, 400);  // a hand that is moved on and on
+  EXPECT_EQ(hand.state().tip_choices, 1U);
+  press(100, 100);
+  press(100, 100);
+  press(100, 100);
+  EXPECT_EQ(hand.state().tip_choices, 2U);  // three presses are one pair
+  hand.hold(0, 400);
+  // A tool that is chosen under it makes a press no first one.
+  hand.hold(kSecondaryButton, 20);
+  hand.hold(kClutched, 20);
+  hand.hold(0, 20);
+  press(20, 400);
+  EXPECT_EQ(hand.state().tip_choices, 2U);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  // During a stroke, neither.
+  hand.hold(kPrimaryButton, 20);
+  for (int i = 0; i < 2; ++i) {
+    hand.hold(kClutched, 50);
+    hand.hold(kPrimaryButton, 50);
+  }
+  EXPECT_EQ(hand.state().tip_choices, 2U);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  EXPECT_EQ(hand.state().tool, Tool::kMark);
+}
+
+TEST(LoopTick, AButtonThatIsHeldWhenTheDeviceConnectsWasNotPressed) {
+  ButtonHand hand;
+  hand.hold(kThirdButton, 5);
+  EXPECT_EQ(hand.state().tool_choices, 0U);
+  hand.hold(0, 5);
+  hand.hold(kThirdButton, 5);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  hand.setLink(LinkState::kDisconnected);
+  hand.hold(0, 5);
+  hand.setLink(LinkState::kConnected);
+  hand.hold(kThirdButton | kFourthButton, 5);
+  EXPECT_EQ(hand.state().tool_choices, 1U);
+  EXPECT_EQ(hand.state().tip_choices, 0U);
+}
+
+TEST(LoopTick, AToolThatComesAfterTheButtonActsAtOnceWhereNothingWasChanged) {
+  ButtonHand hand;
+  hand.choose(Tool::kFeel);
+  hand.hold(0, 5);
+  hand.hold(kPrimaryButton, 20);
+  EXPECT_EQ(hand.state().stroke, 0U);
+  hand.choose(Tool::kMark);
+  hand.hold(kPrimaryButton, 1);
+  EXPECT_EQ(hand.state().tool, Tool::kMark);
+  EXPECT_EQ(hand.state().stroke, 1U);
+}
+
+TEST(LoopTick, AToolThatComesDuringAStrokeEndsItAndBeginsAnother) {
+  ButtonHand hand;
+  hand.hold(0, 5);
+  hand.hold(kPrimaryButton, 20);
+  const std::vector<std::uint64_t> before = hand.endedStrokes();
+  hand.choose(Tool::kUnmark);
+  hand.hold(kPrimaryButton, 20);
+  EXPECT_EQ(before, std::vector<std::uint64_t>{});
+  EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{1U});  // before the other tool touched anything
+  EXPECT_EQ(hand.state().tool, Tool::kUnmark);
+  EXPECT_EQ(hand.state().stroke, 2U);
+  // The tool that is in effect already begins no other stroke.
+  hand.choose(Tool::kUnmark);
+  hand.hold(kPrimaryButton, 20);
+  EXPECT_EQ(hand.state().stroke, 2U);
+  hand.hold(0, 5);
+  EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{2U});
 }
 
 }  // namespace
