@@ -193,6 +193,7 @@ void addDevice(const Parts& p, Report& r) {
   r["device"] = client.device().profile().name;
   r["connected"] = now.link == haptic::LinkState::kConnected;
   r["safety"] = std::string(haptic::name(now.safety));
+  r["device_buttons"] = now.buttons;
   Report effects = Report::array();
   for (const haptic::EffectKind effect : scene.effects)
     effects.push_back(std::string(haptic::effectName(effect)));

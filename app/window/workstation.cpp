@@ -11,6 +11,7 @@
 #include <imgui.h>
 
 #include "app/terminal.h"
+#include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
 #include "app/window/scene_edits.h"
 #include "engine/base/stopwatch.h"
@@ -172,6 +173,7 @@ void Workstation::takeResults() {
   p.document.poll(p.view, p.feedback);
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
+  followButtons(p);
   followForm();
   if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
   bool changed = p.filters.poll(client, notices);

@@ -250,6 +250,8 @@ void DeviceLoop::watch(const LoopState& state, std::vector<Notice>& notices) {
   }
   if (state.refused_edits > seen_.refused_edits)
     notices.push_back({"memory for edits was not available in time", "part of a stroke was not done"});
+  choices_.tools += state.tool_choices - seen_.tool_choices;
+  choices_.tips += state.tip_choices - seen_.tip_choices;
   seen_ = state;
 }
 

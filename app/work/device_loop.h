@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/sound/loudness.h"
@@ -33,6 +34,12 @@ struct LoopClientOptions {
   /// the largest stable ones, with a notice; otherwise such a scene is refused.
   bool lower_scene = false;
   Loudness loudness;  ///< of scenes with sound
+};
+
+/// Choices that were made by buttons of the device (haptic::StylusButtons): how often the next one was chosen.
+struct DeviceChoices {
+  std::uint64_t tools = 0;
+  std::uint64_t tips = 0;
 };
 
 /// A device and its haptic loop: a new loop for each change of the rate. Arms devices without force
@@ -69,6 +76,9 @@ class DeviceLoop {
   /// Sends waiting commands, arms automatically, measures the rate, adds notices of faults. Cheap; to be
   /// called often.
   void poll(std::vector<Notice>& notices);
+
+  /// Those that poll() has seen since the last call.
+  [[nodiscard]] DeviceChoices takeChoices() noexcept { return std::exchange(choices_, {}); }
 
   /// Allows force, as soon as the device is ready and the commanded force small (ForceGuard::arm). A device
   /// without force, and a simulated hand, are armed automatically when they are connected and after a fault.
@@ -124,6 +134,7 @@ class DeviceLoop {
   std::vector<haptic::LoopCommand> unsent_;  // when the ring was full
   bool disarmed_ = false;                    // by the user, who did not arm since
   haptic::LoopState seen_;
+  DeviceChoices choices_;
   double scale_at_start_ = 1.0;  // the largest scale: see setView()
   double top_mm_ = 0.0;          // of the field, as felt, that the workspace was moved to
   double view_azimuth_deg_ = 0.0, view_zoom_ = 1.0;

@@ -139,6 +139,7 @@ class LoopClient final {
   void arm() { loop_.arm(); }
   void disarm() { loop_.disarm(); }
   void calibrate() { loop_.calibrate(); }
+  [[nodiscard]] DeviceChoices takeDeviceChoices() noexcept { return loop_.takeChoices(); }
   void setView(double azimuth_deg, double zoom) { loop_.setView(azimuth_deg, zoom); }
   /// At once; a device is open only while the scene lists sound.
   void setLoudness(Loudness loudness) noexcept { sound_.setLoudness(loudness); }

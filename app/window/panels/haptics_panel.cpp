@@ -57,6 +57,14 @@ std::string rateText(double hz) {
   return fmt::format("{:g} kHz", 1e-3 * hz);
 }
 
+// Their numbers, as the documentation of devices names them.
+std::string heldButtons(std::uint32_t buttons) {
+  std::string text;
+  for (int i = 0; i < 32; ++i)
+    if ((buttons >> i & 1U) != 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", i + 1);
+  return text.empty() ? "none" : text;
+}
+
 void deviceFigures(const PanelContext& context) {
   const haptic::LoopState state = context.client.state();
   const haptic::DeviceProfile& profile = context.client.device().profile();
@@ -68,6 +76,7 @@ void deviceFigures(const PanelContext& context) {
          : state.link == haptic::LinkState::kConnected    ? "connected"
          : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
                                                           : "not plugged in");
+  if (!mouse) figure("buttons held", heldButtons(state.buttons));
   figure("safety", mouse ? "no force to limit" : std::string(haptic::name(state.safety)));
   ImGui::BeginDisabled(mouse);
   actionButton("Arm", Action::kArm, context.act);

@@ -28,6 +28,7 @@ struct Library {
     control.stalled = page->stalled.load();
     control.garbage = page->garbage.load();
     control.units[0].position.set(0.0, 0.0, 0.001 * page->up_mm);
+    control.units[0].buttons = page->buttons.load();
   }
   ~Library() {
     for (const Unit& unit : control.units)

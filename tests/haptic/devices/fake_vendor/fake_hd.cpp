@@ -56,6 +56,7 @@ struct Library {
     control.stalled = page->stalled.load();
     control.garbage = page->garbage.load();
     control.position.set(0.0, page->up_mm, 0.0);
+    control.buttons = page->buttons.load();
   }
   ~Library() {
     control.rules.check(!servo.joinable(), "the scheduler is stopped before the program ends");

@@ -16,6 +16,7 @@ struct SharedPage {
 
   std::atomic<bool> plugged{true}, stalled{false}, garbage{false};
   std::atomic<double> up_mm{30.0};  ///< of the hand, above the middle of the workspace
+  std::atomic<int> buttons{0};      ///< that are held, the first is bit 0
   std::atomic<std::size_t> forces{0};
   std::atomic<float>
       force_n[kMost];  ///< strength of each force that was applied, about a millisecond after the one before
