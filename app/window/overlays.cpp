@@ -134,10 +134,14 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
 
 constexpr std::size_t kForces = 240;
 constexpr double kLargestForce_px = 60.0;  // the arrow of the largest force
+constexpr double kStylus_px = 90.0;
+constexpr double kTurn_px = 2.0;  // of the drawn stylus' end
 
 bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) const {
+  constexpr glm::dvec3 kNone{0.0};
+  const glm::dvec3 turned = state.stylus_axis.value_or(kNone) - state_.stylus_axis.value_or(kNone);
   return glm::length(state.endpoint_mm - state_.endpoint_mm) > mm_per_pixel ||
-         state.contact != state_.contact;
+         glm::length(turned) * kStylus_px > kTurn_px || state.contact != state_.contact;
 }
 
 void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
@@ -149,6 +153,7 @@ void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& st
   tip.proxy_mm = state.proxy_mm;
   tip.force_n = state.force_n;
   tip.contact = state.contact;
+  if (state.stylus_axis) tip.stylus_mm = kStylus_px * mm_per_pixel * *state.stylus_axis;
   if (scene.tip == haptic::TipShape::kSphere) tip.tip_radius_mm = scene.tip_radius_mm;
   render::appendStylus(tip, kLargestForce_px * mm_per_pixel / scene.force_limit_n, overlays.lines);
   render::Overlays::Ring ring;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/base/error.h"
@@ -24,6 +25,7 @@ enum class DeviceSpace : std::uint8_t {
 /// an unknown device: low enough for any known one.
 struct DeviceProfile {
   std::string name = "unknown device";
+  std::string serial;  ///< of this one among its kind; empty: it states none, or it was not there to be asked
   DeviceSpace space = DeviceSpace::kDesk;
   double workspace_radius_mm = 50.0;      ///< > 0; of the ball about the origin that is reached everywhere
   double max_force_n = 3.0;               ///< >= 0
@@ -61,6 +63,9 @@ struct DeviceInput {
   std::int64_t output_waits_ns = 0;
   /// The force written last has not reached the device, which still applies an older one.
   bool output_pending = false;
+  /// How the stylus is held, of length 1, in the frame of the profile: its z runs from the tip along the stylus to the hand.
+  /// Nothing where the device does not measure it.
+  std::optional<glm::dquat> orientation{};
   std::optional<Tool> tool{};  ///< set by devices that choose the tool themselves (a replayed stroke)
 
   friend bool operator==(const DeviceInput&, const DeviceInput&) = default;

@@ -44,6 +44,9 @@ class Workspace {
   [[nodiscard]] glm::dvec3 toField(const glm::dvec3& device_mm) const noexcept {
     return clutch_ == Clutch::kHeld ? held_ : shift_ + scale_ * turned(device_mm);
   }
+  [[nodiscard]] glm::dvec3 directionToField(const glm::dvec3& device) const noexcept {
+    return turned(device);
+  }
   /// Zero while the clutch is held: the tip does not follow the hand then, and a force that does not change
   /// with the hand's motion would only push it.
   [[nodiscard]] glm::dvec3 forceToDevice(const glm::dvec3& field_n) const noexcept {

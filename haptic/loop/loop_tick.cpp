@@ -203,6 +203,12 @@ Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexce
   return on && !tool_replaced_ ? tool_ : Tool::kFeel;
 }
 
+std::optional<glm::dvec3> LoopTick::stylusAxis(const DeviceInput& input) const noexcept {
+  if (!input.orientation || input.link != LinkState::kConnected) return std::nullopt;
+  const glm::dvec3 axis = *input.orientation * glm::dvec3(0.0, 0.0, 1.0);
+  return device_.profile().space == DeviceSpace::kField ? axis : workspace_.directionToField(axis);
+}
+
 void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept {
   if (options_.record_capacity == 0) return;
   if (!channels_.records.push({input, guard_.force(), since_ns, force.contact})) ++state_.lost_records;
@@ -333,6 +339,8 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   state_.force_n = force.force_n;
   state_.given_n = given;
   state_.contact = force.contact;
+  state_.device_mm = input.position_mm;
+  state_.stylus_axis = stylusAxis(input);
   state_.tool = tool;
   state_.buttons = input.buttons;
   state_.tool_choices = buttons_.tools();

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "haptic/base/latest_slot.h"
 #include "haptic/base/rings.h"
@@ -159,6 +160,7 @@ class LoopTick {
   void publish() noexcept;
 
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
+  [[nodiscard]] std::optional<glm::dvec3> stylusAxis(const DeviceInput& input) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void sound(std::int64_t since_ns) noexcept;
   [[nodiscard]] bool samplesArePrefetched(const glm::dvec3& tip_mm) noexcept;

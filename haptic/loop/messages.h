@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <glm/vec3.hpp>
@@ -115,6 +116,9 @@ struct LoopState {
   glm::dvec3 force_n{0.0};      ///< the scene's, field frame
   glm::dvec3 given_n{0.0};      ///< what the guard let through, device frame
   bool contact = false;
+  glm::dvec3 device_mm{0.0};  ///< DeviceInput::position_mm
+  /// From the tip along the stylus to the hand, of length 1, in the field; nothing where the device does not measure it.
+  std::optional<glm::dvec3> stylus_axis;
   Tool tool = Tool::kFeel;         ///< in effect
   std::uint32_t buttons = 0;       ///< of the device that are held: DeviceInput::buttons
   std::uint64_t tool_choices = 0;  ///< times the next tool was chosen by a button of the device, so far

@@ -66,6 +66,7 @@ struct StylusState {
   glm::dvec3 force_n{0.0};
   bool contact = false;
   double tip_radius_mm = 0.0;  ///< of a ball tip; 0 for a point
+  glm::dvec3 stylus_mm{0.0};  ///< from the tip to the other end of the stylus; 0: how it is held is not known
 };
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out);
 

@@ -202,12 +202,20 @@ std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLin
 // Linear light; distinguishable on viridis, grey and blue - red also by colour-blind users (Okabe and Ito
 // 2008).
 constexpr glm::vec3 kEndpoint{0.90F, 0.35F, 0.0F};
+constexpr glm::vec3 kStylus{0.30F, 0.32F, 0.36F};
 constexpr glm::vec3 kProxy{1.0F, 1.0F, 1.0F};
 constexpr glm::vec3 kTip{0.85F, 0.85F, 0.85F};
 constexpr glm::vec3 kForce{0.88F, 0.78F, 0.05F};
 
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out) {
   out.push_back({state.endpoint_mm, state.endpoint_mm, kEndpoint, 1.0F, 9.0F});
+  if (state.stylus_mm != glm::dvec3(0.0)) {
+    // Thin at the tip, so that the surface there is seen.
+    const glm::dvec3 tip = state.contact ? state.proxy_mm : state.endpoint_mm;
+    const glm::dvec3 grip = tip + 0.3 * state.stylus_mm;
+    out.push_back({tip, grip, kStylus, 1.0F, 2.5F});
+    out.push_back({grip, tip + state.stylus_mm, kStylus, 1.0F, 7.0F});
+  }
   if (!state.contact) return;
   out.push_back({state.endpoint_mm, state.proxy_mm, kTip, 0.8F, 1.5F});
   out.push_back({state.proxy_mm, state.proxy_mm, kProxy, 1.0F, 9.0F});

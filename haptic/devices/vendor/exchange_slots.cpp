@@ -116,13 +116,15 @@ void ExchangeSlots::notSent() noexcept {
   countOne(failed_outputs_);
 }
 
-void ExchangeSlots::takeInput(const glm::dvec3& position_mm, std::uint32_t buttons) noexcept {
+void ExchangeSlots::takeInput(const glm::dvec3& position_mm, std::uint32_t buttons,
+                              const std::optional<glm::dquat>& orientation) noexcept {
   if (!isFinite(position_mm) || glm::length(position_mm) > kFarthestMm) {
     badInput();
     return;
   }
   newest_.position_mm = position_mm;
   newest_.buttons = buttons;
+  newest_.orientation = orientation;
   newest_.sequence = inputs_.fetch_add(1, std::memory_order_relaxed) + 1;
   newest_.arrival_ns = engine::steadyNs();
   input_.publish(newest_);

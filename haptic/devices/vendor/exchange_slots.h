@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include <glm/vec3.hpp>
 
@@ -54,7 +55,8 @@ class ExchangeSlots {
   void deferred() noexcept { exchange_since_.store(0, std::memory_order_relaxed); }
   /// Link, wait-free: a pose arrived. One that is not finite, or farther than any arm reaches, is counted as
   /// bad and left out.
-  void takeInput(const glm::dvec3& position_mm, std::uint32_t buttons) noexcept;
+  void takeInput(const glm::dvec3& position_mm, std::uint32_t buttons,
+                 const std::optional<glm::dquat>& orientation = std::nullopt) noexcept;
   void badInput() noexcept;
   /// Link, wait-free: the device reported a fault of its own.
   void fault() noexcept;

@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "haptic/devices/known_devices.h"
 #include "haptic/devices/vendor/linked_device.h"
 #include "haptic/devices/vendor/made_devices.h"
+#include "haptic/devices/vendor/stylus_orientation.h"
 #include "haptic/devices/vendor/vendor_library.h"
 
 namespace fettle::haptic {
@@ -38,6 +40,10 @@ struct DhdCalls {
   int (*enable_force)(unsigned char, char) = nullptr;
   int (*set_force)(double, double, double, char) = nullptr;  // N; 1 = skipped, too soon after the last
   const char* (*error_get_last_str)() = nullptr;
+  // Null in a library that lacks them: then a device has no wrist, and states no number.
+  bool (*has_wrist)(char) = nullptr;
+  int (*get_orientation_frame)(double (*)[3], char) = nullptr;  // by rows
+  int (*get_serial_number)(unsigned short*, char) = nullptr;
 };
 
 struct ForceDimension {
@@ -59,6 +65,9 @@ std::shared_ptr<const ForceDimension> loadForceDimension() {
   l.find("dhdEnableForce", c.enable_force);
   l.find("dhdSetForce", c.set_force);
   l.find("dhdErrorGetLastStr", c.error_get_last_str);
+  l.findOptional("dhdHasWrist", c.has_wrist);
+  l.findOptional("dhdGetOrientationFrame", c.get_orientation_frame);
+  l.findOptional("dhdGetSerialNumber", c.get_serial_number);
   return loaded;
 }
 
@@ -76,6 +85,17 @@ glm::dvec3 fromSdk(const glm::dvec3& p) noexcept {
 }
 glm::dvec3 toSdk(const glm::dvec3& f) noexcept {
   return {-f.y, f.x, f.z};
+}
+
+// Of a frame by rows; its x runs along the stylus, away from the tip.
+std::optional<glm::dquat> stylusFromSdk(const double (&by_rows)[3][3]) noexcept {
+  glm::dmat3 desk;
+  // The stylus' axes x, y, z are the frame's y, z, x.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int column = (axis + 1) % 3;
+    desk[axis] = fromSdk({by_rows[0][column], by_rows[1][column], by_rows[2][column]});
+  }
+  return rotationOf(desk);
 }
 
 std::string sdkText(const char* words) {
@@ -120,6 +140,7 @@ class ForceDimensionCounterpart final : public Counterpart {
   enum class Outcome : std::uint8_t { kGood, kFailed };
   [[nodiscard]] Outcome sendForce(ExchangeSlots& slots) const noexcept;
   [[nodiscard]] Outcome readPose(ExchangeSlots& slots) const noexcept;
+  [[nodiscard]] std::optional<glm::dquat> readOrientation() const noexcept;
   void exchangeUntilGone(ExchangeSlots& slots) const noexcept;
   void sendLastZero() const noexcept;
 
@@ -127,6 +148,7 @@ class ForceDimensionCounterpart final : public Counterpart {
   const DhdCalls& calls_;
   const char id_;
   const double max_force_n_;
+  bool has_wrist_ = false;  // the open device
 };
 
 ForceDimensionCounterpart::Outcome ForceDimensionCounterpart::sendForce(ExchangeSlots& slots) const noexcept {
@@ -153,8 +175,14 @@ ForceDimensionCounterpart::Outcome ForceDimensionCounterpart::readPose(ExchangeS
   std::uint32_t buttons = 0;
   for (int k = 0; k < 4; ++k)
     if (calls_.get_button(k, id_) > 0) buttons |= 1U << static_cast<unsigned>(k);
-  slots.takeInput(1000.0 * fromSdk(position), buttons);
+  slots.takeInput(1000.0 * fromSdk(position), buttons, readOrientation());
   return Outcome::kGood;
+}
+
+std::optional<glm::dquat> ForceDimensionCounterpart::readOrientation() const noexcept {
+  double frame[3][3] = {};
+  if (!has_wrist_ || calls_.get_orientation_frame(frame, id_) < 0) return std::nullopt;
+  return stylusFromSdk(frame);
 }
 
 void ForceDimensionCounterpart::exchangeUntilGone(ExchangeSlots& slots) const noexcept {
@@ -193,6 +221,8 @@ void ForceDimensionCounterpart::serve(ExchangeSlots& slots) noexcept {
     return;
   }
   if (calls_.enable_force(1, id_) >= 0) {
+    has_wrist_ =
+        calls_.has_wrist != nullptr && calls_.get_orientation_frame != nullptr && calls_.has_wrist(id_);
     slots.opened(falcon ? LinkState::kUncalibrated : LinkState::kConnected, max_force_n_);
     exchangeUntilGone(slots);
     sendLastZero();
@@ -214,9 +244,13 @@ MadeDevice describeById(const DhdCalls& calls, int number) {
     return d;
   }
   const std::string name = sdkText(calls.get_system_name(id));
+  unsigned short serial = 0;
+  if (calls.get_serial_number != nullptr && calls.get_serial_number(&serial, id) >= 0)
+    d.serial = fmt::format("{}", serial);
   calls.close(id);
   if (!name.empty()) d.name = name;
   d.profile = sdkProfile(name);
+  d.profile.serial = d.serial;
   if (isFalcon(name)) d.remedy = "move it through its whole range by hand, then press c in a session";
   return d;
 }

@@ -69,7 +69,7 @@ class Inverse3Counterpart final : public Counterpart {
   [[nodiscard]] Step awaitState(ExchangeSlots& slots);
   [[nodiscard]] Step dropUnasked(ExchangeSlots& slots);
   [[nodiscard]] Inverse3Asks asksFor(const ExchangeSlots& slots);
-  void take(ExchangeSlots& slots, const Inverse3State& state, std::uint32_t buttons);
+  static void take(ExchangeSlots& slots, const Inverse3Message& message, const Inverse3State& state);
   void sendLastZero();
 
   const std::string which_;
@@ -82,10 +82,11 @@ class Inverse3Counterpart final : public Counterpart {
   std::int64_t full_state_asked_ns_ = 0;
 };
 
-void Inverse3Counterpart::take(ExchangeSlots& slots, const Inverse3State& state, std::uint32_t buttons) {
+void Inverse3Counterpart::take(ExchangeSlots& slots, const Inverse3Message& message,
+                               const Inverse3State& state) {
   if (state.calibrated) slots.setState(*state.calibrated ? LinkState::kConnected : LinkState::kUncalibrated);
   if (state.position_m)
-    slots.takeInput(1000.0 * (*state.position_m - kCentreM), buttons);
+    slots.takeInput(1000.0 * (*state.position_m - kCentreM), message.buttons, message.orientation);
   else
     slots.badInput();
 }
@@ -110,7 +111,7 @@ Inverse3Counterpart::Step Inverse3Counterpart::awaitState(ExchangeSlots& slots) 
   const Inverse3State* const state = deviceNamed(*message, id_);
   if (state == nullptr) return Step::kDeviceGone;
   slots.sent();
-  take(slots, *state, message->buttons);
+  take(slots, *message, *state);
   return Step::kGood;
 }
 
@@ -203,6 +204,7 @@ MadeDevices listInverse3() {
     d.name = "Haply Inverse3";
     d.serial = state.device_id;
     d.profile = inverse3Profile();
+    d.profile.serial = d.serial;
     if (!state.calibrated.value_or(true)) d.remedy = "calibrate it with the maker's program";
     made.devices.push_back(std::move(d));
   }
@@ -210,7 +212,9 @@ MadeDevices listInverse3() {
 }
 
 engine::Result<std::unique_ptr<Device>> openInverse3(const std::string& which) {
-  return std::make_unique<LinkedDevice>(inverse3Profile(), std::make_unique<Inverse3Counterpart>(which));
+  DeviceProfile profile = inverse3Profile();
+  profile.serial = which;
+  return std::make_unique<LinkedDevice>(std::move(profile), std::make_unique<Inverse3Counterpart>(which));
 }
 
 }  // namespace fettle::haptic

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "haptic/devices/vendor/stylus_orientation.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -63,6 +65,19 @@ std::uint32_t buttonsOf(const Json& grip) {
   return mask;
 }
 
+// In the service's frame, which is the desk's; a grip that is not turned points away from the person.
+std::optional<glm::dquat> orientationOf(const Json& grip) {
+  const Json* const state = member(grip, "state");
+  const Json* const said = state == nullptr ? nullptr : member(*state, "orientation");
+  if (said == nullptr) return std::nullopt;
+  const std::optional<glm::dvec3> xyz = vectorOf(said);
+  const Json* const w = member(*said, "w");
+  if (!xyz || w == nullptr || !w->is_number()) return std::nullopt;
+  const auto turn = rotationOf(glm::dquat(w->get<double>(), xyz->x, xyz->y, xyz->z));
+  if (!turn) return std::nullopt;
+  return *turn * kLaidDown;
+}
+
 }  // namespace
 
 std::optional<Inverse3Message> decodeInverse3(std::string_view text) {
@@ -82,6 +97,7 @@ std::optional<Inverse3Message> decodeInverse3(std::string_view text) {
     const Json* const grips = member(root, kind);
     if (grips == nullptr || !grips->is_array() || grips->empty()) continue;
     message.buttons = buttonsOf(grips->front());
+    message.orientation = orientationOf(grips->front());
     break;
   }
   return message;

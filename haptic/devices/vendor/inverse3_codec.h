@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 namespace fettle::haptic {
@@ -25,7 +26,9 @@ struct Inverse3Message {
   /// By `session_id`, which a service that documents `vector` states in the first message of a connection.
   Inverse3Form form = Inverse3Form::kValues;
   std::vector<Inverse3State> devices;
-  std::uint32_t buttons = 0;  ///< of the first grip that states some: bit 0 = a, bit 1 = b, bit 2 = c
+  // Of the first grip.
+  std::uint32_t buttons = 0;              ///< bit 0 = a, bit 1 = b, bit 2 = c
+  std::optional<glm::dquat> orientation;  ///< as DeviceInput::orientation
 };
 
 /// Nothing when it is not one: no JSON object, or entries of another form. Allocates; throws std::bad_alloc only.

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "haptic/devices/vendor/linked_device.h"
 #include "haptic/devices/vendor/made_devices.h"
 #include "haptic/devices/vendor/open_haptics_calls.h"
+#include "haptic/devices/vendor/stylus_orientation.h"
 
 namespace fettle::haptic {
 
@@ -29,6 +31,13 @@ glm::dvec3 fromHd(const glm::dvec3& p) noexcept {
 }
 glm::dvec3 toHd(const glm::dvec3& f) noexcept {
   return {f.x, f.z, -f.y};
+}
+// Of the current transform; its z runs along the stylus, away from the tip.
+std::optional<glm::dquat> stylusFromHd(const double (&by_columns)[16]) noexcept {
+  const double* const m = by_columns;
+  const auto turn = rotationOf(glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]));
+  if (!turn) return std::nullopt;
+  return kLaidDown * *turn;
 }
 
 struct HdWorkspace {
@@ -138,9 +147,11 @@ unsigned int OpenHapticsCounterpart::tick() noexcept {
   if (gone_.load(std::memory_order_relaxed)) return hd::kDone;
   updateCalibration();
   glm::dvec3 position{NAN};
+  double transform[16] = {};  // a device without a measured wrist leaves it so
   int buttons = 0;
   calls_.begin_frame(device_);
   calls_.get_doublev(hd::kPosition, &position.x);
+  calls_.get_doublev(hd::kTransform, transform);
   calls_.get_integerv(hd::kButtons, &buttons);
   const bool stopping = slots_->stopping();
   const glm::dvec3 force = toHd(slots_->forceToSend());
@@ -158,7 +169,7 @@ unsigned int OpenHapticsCounterpart::tick() noexcept {
     return hd::kContinue;
   }
   slots_->sent();
-  slots_->takeInput(fromHd(position - centre_), static_cast<std::uint32_t>(buttons));
+  slots_->takeInput(fromHd(position - centre_), static_cast<std::uint32_t>(buttons), stylusFromHd(transform));
   if (stopping) zero_at_stop_.store(true, std::memory_order_relaxed);
   return hd::kContinue;
 }
@@ -257,6 +268,7 @@ MadeDevice describeByName(const OpenHapticsCalls& calls, const std::string& name
   d.name = maker.empty() ? model : fmt::format("{} {}", maker, model);
   d.serial = stringOf(calls, hd::kSerial);
   d.profile = modelProfile(model, statedMaxForce(calls), usableWorkspace(calls));
+  d.profile.serial = d.serial;
   calls.disable_device(device);
   static_cast<void>(newestError(calls));
   return d;

@@ -25,7 +25,8 @@ inline constexpr unsigned short kHighestPriority = 65535;
 
 // Parameters.
 inline constexpr unsigned int kButtons = 0x2000;
-inline constexpr unsigned int kPosition = 0x2050;  // mm
+inline constexpr unsigned int kPosition = 0x2050;   // mm
+inline constexpr unsigned int kTransform = 0x2052;  // 16, by columns; mm
 inline constexpr unsigned int kModel = 0x2501;
 inline constexpr unsigned int kVendor = 0x2503;
 inline constexpr unsigned int kSerial = 0x2504;

@@ -1,5 +1,6 @@
 // The driver of the Inverse3, threads and all, on a replacement of its service that was written apart from it and checks each message.
 // Nothing here asserts a time: things are waited for, with a deadline far beyond any machine's load.
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -88,6 +89,28 @@ TEST_P(Inverse3Test, TurnsPosesAndForcesIntoTheFrameOfTheDesk) {
   EXPECT_TRUE(eventually([&] { return loop_->input().buttons == kSecondaryButton; }));
   service_.change([](auto& w) { w.units[0].a = true; });
   EXPECT_TRUE(eventually([&] { return loop_->input().buttons == (kPrimaryButton | kSecondaryButton); }));
+  end();
+}
+
+TEST_P(Inverse3Test, SaysHowTheGripIsHeld) {
+  run({0.0, 0.0, 0.0});
+  const auto points = [&](const glm::dvec3& from_tip_to_hand) {
+    return eventually([&] {
+      const auto& how = loop_->input().orientation;
+      return how && glm::length(*how * glm::dvec3(0.0, 0.0, 1.0) - from_tip_to_hand) < 1e-9;
+    });
+  };
+  EXPECT_TRUE(points({0.0, -1.0, 0.0}));  // lying, its tip away from the person
+  const double half = std::sqrt(0.5);
+  service_.change([&](auto& w) { w.units[0].orientation_wxyz = {half, 0.0, 0.0, half}; });  // about z
+  EXPECT_TRUE(points({1.0, 0.0, 0.0}));
+  service_.change([&](auto& w) { w.units[0].orientation_wxyz = {half, -half, 0.0, 0.0}; });  // about x
+  EXPECT_TRUE(points({0.0, 0.0, 1.0}));
+  service_.change([](auto& w) { w.units[0].orientation_wxyz = {0.0, 0.0, 0.0, 0.0}; });
+  EXPECT_TRUE(eventually([&] { return !loop_->input().orientation; }));
+  service_.change([](auto& w) { w.units[0].has_grip = false; });
+  EXPECT_TRUE(goesOn());
+  EXPECT_FALSE(loop_->input().orientation);
   end();
 }
 

@@ -45,6 +45,8 @@ class MakerLibraryTest : public testing::Test {
     touch.plugged = true;
     touch.stalled = touch.garbage = touch.warm = false;
     touch.buttons = 0;
+    touch.turned.set({{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+    touch.has_gimbal = true;
     touch.nominal_n = 3.3;
     touch.low[1] = -60.0;
     for (fake::Triple* t : {&touch.position, &touch.other_position, &touch.force}) t->set(0.0, 0.0, 0.0);
@@ -56,7 +58,9 @@ class MakerLibraryTest : public testing::Test {
       unit.position.set(0.0, 0.0, 0.0);
       unit.force.set(0.0, 0.0, 0.0);
       unit.buttons = 0;
+      unit.turned.set({{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
     }
+    omega.wrist = false;
     omega.rules.forget();
   }
 };
@@ -106,6 +110,76 @@ TEST_F(TouchLibraryTest, TurnsPosesAndForcesIntoTheFrameOfTheDesk) {
   EXPECT_FALSE(hd().scheduler_runs);
   EXPECT_EQ(hd().open_devices, 0);
   EXPECT_EQ(allRules(hd().rules), "");
+}
+
+// The stylus' z in the frame of the desk: x right, y away, z up.
+bool points(const Loop& loop, const glm::dvec3& from_tip_to_hand) {
+  return eventually([&] {
+    const auto& how = loop.input().orientation;
+    return how && glm::length(*how * glm::dvec3(0.0, 0.0, 1.0) - from_tip_to_hand) < 1e-9;
+  });
+}
+
+TEST_F(TouchLibraryTest, SaysHowTheStylusIsHeld) {
+  const auto device = opened("touch");
+  ASSERT_TRUE(device->start());
+  {
+    Loop loop(*device);
+    ASSERT_TRUE(connected(loop));
+    EXPECT_TRUE(points(loop, {0.0, -1.0, 0.0}));  // lying, its tip away from the person
+    // A quarter about the library's x, which is right: upright, tip down.
+    hd().turned.set({{1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}});
+    EXPECT_TRUE(points(loop, {0.0, 0.0, 1.0}));
+    // About its y, up, anticlockwise from above: the hand to the right.
+    hd().turned.set({{0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}});
+    EXPECT_TRUE(points(loop, {1.0, 0.0, 0.0}));
+    // What is no rotation is no orientation; its pose is one all the same.
+    const std::uint64_t bad = device->counters().bad_inputs;
+    for (const double wrong : {2.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+      hd().turned.set({{wrong, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+      EXPECT_TRUE(eventually([&] { return !loop.input().orientation; })) << wrong;
+    }
+    hd().turned.set({{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+    EXPECT_TRUE(points(loop, {0.0, -1.0, 0.0}));
+    hd().has_gimbal = false;
+    EXPECT_TRUE(eventually([&] { return !loop.input().orientation; }));
+    EXPECT_EQ(device->counters().bad_inputs, bad);
+    EXPECT_EQ(loop.input().link, LinkState::kConnected);
+  }
+  device->stop();
+  EXPECT_EQ(allRules(hd().rules), "");  // of which one is that no torque is set
+}
+
+TEST_F(ForceDimensionLibraryTest, SaysHowTheStylusIsHeldWhereItHasAWrist) {
+  dhdFake().wrist = true;
+  const auto device = opened("forcedimension");
+  EXPECT_EQ(device->profile().serial, "10406");
+  ASSERT_TRUE(device->start());
+  {
+    Loop loop(*device);
+    ASSERT_TRUE(connected(loop));
+    EXPECT_TRUE(points(loop, {0.0, -1.0, 0.0}));
+    // About the library's y, which is right: upright, tip down.
+    dhdFake().units[0].turned.set({{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}});
+    EXPECT_TRUE(points(loop, {0.0, 0.0, 1.0}));
+    // About its z, up, anticlockwise from above.
+    dhdFake().units[0].turned.set({{0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}});
+    EXPECT_TRUE(points(loop, {1.0, 0.0, 0.0}));
+  }
+  device->stop();
+  EXPECT_EQ(allRules(dhdFake().rules), "");
+}
+
+TEST_F(ForceDimensionLibraryTest, WithoutAWristItIsNotAskedHowItIsHeld) {
+  const auto device = opened("forcedimension");
+  ASSERT_TRUE(device->start());
+  {
+    Loop loop(*device);
+    ASSERT_TRUE(connected(loop));
+    EXPECT_FALSE(loop.input().orientation);
+  }
+  device->stop();
+  EXPECT_EQ(allRules(dhdFake().rules), "");
 }
 
 TEST_F(TouchLibraryTest, ItsLimitsAreTheTablesAndNeverMoreThanItStates) {

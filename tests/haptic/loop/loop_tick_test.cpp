@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -389,6 +390,33 @@ TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
   EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.0, 100.0, 2.0));
   tick({-29.0, 7.0, 1.0}, 0);
   EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.5, 100.0, 2.0));
+}
+
+TEST(LoopTick, TheStylusIsTurnedWithTheWorkspace) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  DeskDevice device;
+  device.input.position_mm = {1.0, 2.0, 30.0};
+  LoopOptions options = testOptions(Tool::kFeel);
+  options.workspace = Workspace(0.5, {100.0, 100.0, 0.0}, 0.5 * std::numbers::pi);  // away is left
+  LoopChannels channels(options);
+  LoopTick loop(std::make_unique<PreparedScene>(sceneWithBrush(0.0), start), start, device, channels,
+                options);
+  const auto tick = [&] {
+    device.now_ns += 1'000'000;
+    loop.run(device.now_ns, 1'000'000);
+  };
+  tick();
+  EXPECT_FALSE(loop.state().stylus_axis);
+  EXPECT_EQ(loop.state().device_mm, glm::dvec3(1.0, 2.0, 30.0));
+  device.input.orientation =
+      glm::angleAxis(0.5 * std::numbers::pi, glm::dvec3(-1.0, 0.0, 0.0));  // its z away
+  tick();
+  ASSERT_TRUE(loop.state().stylus_axis);
+  EXPECT_LT(glm::length(*loop.state().stylus_axis - glm::dvec3(-1.0, 0.0, 0.0)), 1e-12);
+  device.input.link = LinkState::kDisconnected;
+  tick();
+  EXPECT_FALSE(loop.state().stylus_axis);
 }
 
 // A hand in the surface that marks with the first button.

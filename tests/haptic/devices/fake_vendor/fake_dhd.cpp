@@ -27,8 +27,11 @@ struct Library {
     control.count = page->plugged ? 1 : 0;
     control.stalled = page->stalled.load();
     control.garbage = page->garbage.load();
-    control.units[0].position.set(0.0, 0.0, 0.001 * page->up_mm);
+    control.units[0].position.set(-0.001 * page->away_mm, 0.001 * page->right_mm, 0.001 * page->up_mm);
     control.units[0].buttons = page->buttons.load();
+    const double c = std::cos(page->turn_rad), s = std::sin(page->turn_rad);
+    control.units[0].turned.set({{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}});
+    control.wrist = page->wrist.load();
   }
   ~Library() {
     for (const Unit& unit : control.units)
@@ -108,6 +111,29 @@ int dhdGetPosition(double* x, double* y, double* z, char id) {
   *y = unit->position.y;
   *z = unit->position.z;
   if (l.control.garbage) *y = n % 2 == 0 ? std::numeric_limits<double>::quiet_NaN() : 1e30;
+  return 0;
+}
+
+bool dhdHasWrist(char id) {
+  Library& l = library();
+  return l.unit(id) != nullptr && l.control.wrist;
+}
+
+int dhdGetOrientationFrame(double (*by_rows)[3], char id) {
+  Library& l = library();
+  const Call call(l);
+  const Unit* const unit = l.unit(id);
+  if (unit == nullptr) return -1;
+  l.control.rules.check(l.control.wrist, "a device without a wrist is not asked how it is held");
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) by_rows[r][c] = unit->turned.row[r][c];
+  return 0;
+}
+
+int dhdGetSerialNumber(unsigned short* number, char id) {
+  Library& l = library();
+  if (l.unit(id) == nullptr) return -1;
+  *number = static_cast<unsigned short>(10406 + id);
   return 0;
 }
 

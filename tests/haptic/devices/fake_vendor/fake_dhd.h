@@ -12,6 +12,7 @@ struct FakeDhd {
   struct Unit {
     Triple position;  ///< [m]
     std::atomic<int> buttons{0};
+    Frame turned;  ///< of the stylus: x runs away from its tip
     Triple force;
     std::atomic<double> strongest_n{0.0};
     std::atomic<bool> open{false};
@@ -20,6 +21,7 @@ struct FakeDhd {
   std::atomic<bool> stalled{false};    ///< calls block until it ends
   std::atomic<bool> garbage{false};    ///< positions are NaN and 1e30 in turn
   std::atomic<bool> too_early{false};  ///< forces are skipped: the last one was too short ago
+  std::atomic<bool> wrist{false};      ///< its joints are measured: an omega.6
   const char* name = "omega.3";
   double limit_n = 12.0;
   Unit units[2];

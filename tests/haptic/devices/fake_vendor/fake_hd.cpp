@@ -55,8 +55,10 @@ struct Library {
     control.plugged = page->plugged.load();
     control.stalled = page->stalled.load();
     control.garbage = page->garbage.load();
-    control.position.set(0.0, page->up_mm, 0.0);
+    control.position.set(page->right_mm, page->up_mm, -page->away_mm);
     control.buttons = page->buttons.load();
+    const double c = std::cos(page->turn_rad), s = std::sin(page->turn_rad);
+    control.turned.set({{c, 0.0, s}, {0.0, 1.0, 0.0}, {-s, 0.0, c}});
   }
   ~Library() {
     control.rules.check(!servo.joinable(), "the scheduler is stopped before the program ends");
@@ -250,6 +252,18 @@ void hdGetDoublev(unsigned parameter, double* values) {
       if (l.control.garbage)
         values[l.control.frames % 3] =
             l.control.frames % 2 == 0 ? std::numeric_limits<double>::quiet_NaN() : 1e30;
+      return;
+    case 0x2052:
+      l.control.rules.check(l.in_frame && l.onServo(), "a transform is read within a frame");
+      if (!l.control.has_gimbal) return l.fail(kInvalidEnum);
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) values[4 * c + r] = l.control.turned.row[r][c];
+        values[4 * r + 3] = 0.0;
+      }
+      values[12] = p.x;
+      values[13] = p.y;
+      values[14] = p.z;
+      values[15] = 1.0;
       return;
     case 0x2551:
       for (int i = 0; i < 3; ++i) {

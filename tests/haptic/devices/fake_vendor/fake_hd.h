@@ -14,8 +14,10 @@ struct FakeHd {
   std::atomic<bool> garbage{false};  ///< positions are NaN and 1e30 in turn
   std::atomic<bool> warm{false};     ///< each frame with a force reports motors too warm
   std::atomic<int> buttons{0};
-  Triple position;        ///< of the default device [mm]
-  Triple other_position;  ///< of the device "right"
+  Triple position;                     ///< of the default device [mm]
+  Triple other_position;               ///< of the device "right"
+  Frame turned;                        ///< of the stylus: z runs away from its tip
+  std::atomic<bool> has_gimbal{true};  ///< else it knows no transform
   double nominal_n = 3.3;
   double low[3] = {-80.0, -60.0, -35.0}, high[3] = {80.0, 60.0, 35.0};
 

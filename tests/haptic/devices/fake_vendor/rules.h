@@ -44,6 +44,15 @@ struct Triple {
   [[nodiscard]] double length() const { return std::hypot(x.load(), y.load(), z.load()); }
 };
 
+/// A turned frame, by rows; as it is until it is set. A test sets it while the device does not move.
+struct Frame {
+  std::atomic<double> row[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  void set(const double (&to)[3][3]) {
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) row[r][c] = to[r][c];
+  }
+};
+
 /// At the program's end: the rules that were broken, a line each, in the file that FAKE_VENDOR_LOG names.
 inline void writeLog(const Rules& rules) {
   const char* const path = std::getenv("FAKE_VENDOR_LOG");

@@ -15,8 +15,12 @@ struct SharedPage {
   static constexpr std::size_t kMost = 200'000;  // forces
 
   std::atomic<bool> plugged{true}, stalled{false}, garbage{false};
-  std::atomic<double> up_mm{30.0};  ///< of the hand, above the middle of the workspace
-  std::atomic<int> buttons{0};      ///< that are held, the first is bit 0
+  std::atomic<double> up_mm{30.0};                  ///< of the hand, above the middle of the workspace
+  std::atomic<double> right_mm{0.0}, away_mm{0.0};  ///< of it, likewise
+  std::atomic<double> turn_rad{
+      0.0};  ///< of the stylus, from one that lies and points away, about the vertical, seen from above
+  std::atomic<bool> wrist{false};  ///< libdhd.so: the device measures how it is held
+  std::atomic<int> buttons{0};     ///< that are held, the first is bit 0
   std::atomic<std::size_t> forces{0};
   std::atomic<float>
       force_n[kMost];  ///< strength of each force that was applied, about a millisecond after the one before
