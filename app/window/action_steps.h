@@ -519,6 +519,13 @@ inline void arm(Parts& p) {
 inline void disarm(Parts& p) {
   clientOf(p).disarm();
 }
+// Without force: it is moved by hand.
+inline void setUpDevice(Parts& p) {
+  if (clientOf(p).device().profile().gives_force) clientOf(p).disarm();
+  p.device_check.forget();
+  p.device_setup = clientOf(p).deviceSetup();
+  p.feedback.questions.ask({.kind = Question::Kind::kDevice});
+}
 inline void calibrate(Parts& p) {
   clientOf(p).calibrate();
 }

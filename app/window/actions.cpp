@@ -260,6 +260,8 @@ constexpr ActionRow kRows[] = {
               kFirst, kField, disarm},
     ActionRow{Action::kCalibrate, "Device", "Calibrate in the home pose", letter('A'), kControlShift, kNoKey,
               kFirst, kField, calibrate},
+    ActionRow{Action::kSetUpDevice, "Device", "Set up: reach, rest, directions, motion", letter('D'),
+              kControlShift, kNoKey, kSecond, kField, setUpDevice},
     ActionRow{Action::kShortcuts, "Help", "This list", functionKey(1), kPlain, kNoKey, kFirst, kNothing,
               listShortcuts},
 };

@@ -122,6 +122,7 @@ enum class Action : std::uint8_t {
   kArm,
   kDisarm,
   kCalibrate,
+  kSetUpDevice,
   kShortcuts,
   kCount
 };

@@ -25,6 +25,7 @@
 #include "app/window/window_picture.h"
 #include "app/work/choice_costs.h"
 #include "app/work/compare_tool.h"
+#include "app/work/device_check.h"
 #include "app/work/filter_preview.h"
 #include "app/work/form_tool.h"
 #include "app/work/height_tool.h"
@@ -83,6 +84,8 @@ struct Parts {
   ChangeFigures change;
   ColourRange colours;
   ChoiceCosts costs;
+  DeviceCheck device_check;  ///< of the page of the device
+  DeviceSetup device_setup;  ///< as chosen there so far
   render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 

@@ -34,6 +34,8 @@ constexpr std::array kKinds{
              ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kRecover, "recover", "Unsaved work", "S", true, false, ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kDevice, "device", "Set up the device", "RMT123C+-", true, true,
+             ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kShortcuts, "shortcuts", "Shortcuts", "", false, false, ImGuiWindowFlags_None},
     KindInfo{Kind::kMessage, "message", "Fettle", "", true, false, ImGuiWindowFlags_AlwaysAutoResize},
 };

@@ -33,6 +33,7 @@ struct Question {
     kUnsaved,
     kReplace,
     kRecover,
+    kDevice,
     kShortcuts,
     kMessage
   };

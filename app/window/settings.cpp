@@ -9,11 +9,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/work/device_check.h"
+
 namespace fettle::app {
 namespace {
 
 using nlohmann::json;
 
+constexpr double kFarthest_mm = 2000.0;  // of a stylus: no arm reaches farther
 constexpr std::array kMaps{"automatic", "viridis", "cividis", "grey", "diverging"};
 constexpr std::array kRangeRules{"automatic", "share", "all"};
 constexpr auto kHabits = [] {
@@ -39,6 +42,45 @@ void take(const json& from, const char* name, const std::array<Word, N>& words, 
   if (it == from.end() || !it->is_string()) return;
   for (std::size_t i = 0; i < N; ++i)
     if (it->get<std::string>() == words[i]) value = static_cast<Enum>(i);
+}
+
+json numbers(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+json jsonOf(const DeviceSetups& devices) {
+  json all = json::object();
+  for (const auto& [key, setup] : devices) {
+    json one{{"motion", setup.motion}, {"clutch_buttons", setup.clutch_buttons}};
+    if (setup.reach) {
+      one["low_mm"] = numbers(setup.reach->low_mm);
+      one["high_mm"] = numbers(setup.reach->high_mm);
+    }
+    all[key] = std::move(one);
+  }
+  return all;
+}
+
+bool take(const json& from, const char* name, glm::dvec3& value) {
+  const auto it = from.find(name);
+  if (it == from.end() || !it->is_array() || it->size() != 3) return false;
+  for (int i = 0; i < 3; ++i) {
+    const json& number = (*it)[static_cast<std::size_t>(i)];
+    if (!number.is_number() || !(std::abs(number.get<double>()) <= kFarthest_mm)) return false;
+    value[i] = number.get<double>();
+  }
+  return true;
+}
+
+DeviceSetup setupOf(const json& from) {
+  DeviceSetup setup;
+  take(from, "motion", DeviceSetup::kLeastMotion, 1.0, setup.motion);
+  take(from, "clutch_buttons", std::uint32_t{0}, std::uint32_t{0xFFFF}, setup.clutch_buttons);
+  DeviceReach reach;
+  if (take(from, "low_mm", reach.low_mm) && take(from, "high_mm", reach.high_mm) &&
+      2.0 * reach.radius() >= DeviceCheck::kLeastReach_mm)
+    setup.reach = reach;
+  return setup;
 }
 
 // Ends that were typed are of one scan.
@@ -81,6 +123,7 @@ std::string Settings::text() const {
               {"edge_lines", draw_lines},
               {"volume", loudness.volume},
               {"muted", loudness.muted},
+              {"devices", jsonOf(devices)},
               {"ask_before_quitting", ask_before_quitting}}
       .dump(2);
 }
@@ -127,6 +170,9 @@ Settings Settings::load(const std::string& path) {
   take(file, "volume", 0.0F, 1.0F, settings.loudness.volume);
   take(file, "muted", settings.loudness.muted);
   take(file, "ask_before_quitting", settings.ask_before_quitting);
+  if (const auto it = file.find("devices"); it != file.end() && it->is_object())
+    for (const auto& [key, setup] : it->items())
+      if (setup.is_object()) settings.devices[key] = setupOf(setup);
   return settings;
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/sound/loudness.h"
 #include "app/window/mouse_presets.h"
+#include "app/work/device_setup.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
 
@@ -58,6 +59,7 @@ struct Settings {
   std::map<std::string, bool> panels;  ///< which ones are open, by their names
   bool draw_lines = true;              ///< strokes of the mark tool become edge lines
   Loudness loudness;                   ///< of scenes with sound
+  DeviceSetups devices;                ///< that were set up on the page of the device
   bool ask_before_quitting = true;     ///< with work that is not saved; it is stored either way
 
   /// Reads a file written by save(). A value that is missing, of a wrong type or out of range keeps its

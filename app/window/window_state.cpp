@@ -185,6 +185,27 @@ void addFilters(const Parts& p, Report& r) {
   r["filters_applied"] = filters.applied();
 }
 
+Report triple(const glm::dvec3& v) {
+  return {rounded(v.x), rounded(v.y), rounded(v.z)};
+}
+
+// Of the page of the device.
+Report deviceCheck(const Parts& p) {
+  const DeviceCheck& check = p.device_check;
+  const DeviceSetup& setup = p.document.client()->deviceSetup();
+  Report r{{"running", check.running() != DeviceCheck::Running::kNothing},
+           {"motion", setup.motion},
+           {"clutch_buttons", setup.clutch_buttons},
+           {"reach_used", setup.reach.has_value()}};
+  if (check.reach()) r["reach_mm"] = {triple(check.reach()->low_mm), triple(check.reach()->high_mm)};
+  if (const auto& rest = check.rest())
+    r["rest"] = {rest->force_n, rounded(rest->moved_mm), rest->device_faults};
+  for (int i = 0; i < kPushedWays; ++i)
+    if (const auto& came = check.direction(static_cast<PushedWay>(i)))
+      r[name(static_cast<PushedWay>(i))] = axisText(*came);
+  return r;
+}
+
 void addDevice(const Parts& p, Report& r) {
   LoopClient& client = *p.document.client();
   const haptic::LoopState now = client.state();
@@ -194,6 +215,9 @@ void addDevice(const Parts& p, Report& r) {
   r["connected"] = now.link == haptic::LinkState::kConnected;
   r["safety"] = std::string(haptic::name(now.safety));
   r["device_buttons"] = now.buttons;
+  r["device_mm"] = triple(now.device_mm);
+  if (now.stylus_axis) r["stylus_axis"] = triple(*now.stylus_axis);
+  r["device_check"] = deviceCheck(p);
   Report effects = Report::array();
   for (const haptic::EffectKind effect : scene.effects)
     effects.push_back(std::string(haptic::effectName(effect)));

@@ -254,6 +254,10 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
 // Writes changed settings, at most once in some seconds.
 void Workstation::saveSettings() {
   if (parts_.quit == Quit::kNo && frames_ % kSaveSettingsEvery != 0) return;
+  saveSettingsNow();
+}
+
+void Workstation::saveSettingsNow() {
   if (parts_.settings == saved_settings_) return;
   parts_.settings.save(settingsPath("/window.json"));
   saved_settings_ = parts_.settings;
@@ -313,6 +317,9 @@ void Workstation::carryOut(Answer answer) {
       break;
     case Kind::kRecover:
       load(question.path, confirmed ? Recovery::kTake : Recovery::kLeave, question.reading);
+      break;
+    case Kind::kDevice:
+      if (confirmed) setUpDevice(p.device_setup);
       break;
     case Kind::kShortcuts:
     case Kind::kMessage:
@@ -374,6 +381,7 @@ void Workstation::startDocument(Document document) {
   p.closeDocument(SessionKeeper::Afterwards::kDiscard);
   const bool first = p.document.path().empty();
   options_.client.loudness = p.settings.loudness;
+  options_.client.setups = p.settings.devices;
   if (const auto opened = p.document.open(document, options_.scene, options_.client); !opened) {
     p.dropCoarse();
     if (first)
@@ -459,6 +467,23 @@ void Workstation::followForm() {
   p.measure.clear();
   noteHeights();
   p.picture.requestRedraw();
+}
+
+// For this device from now on, and when it is opened again.
+void Workstation::setUpDevice(const DeviceSetup& setup) {
+  LoopClient& client = *parts_.document.client();
+  parts_.filters.cancel(client);  // as in setRate()
+  const engine::Status set = client.setDeviceSetup(setup);
+  if (client.finished()) {
+    end_ = set;
+  } else if (!set) {
+    parts_.feedback.message(set.error().line(), "the device is used as before");
+  } else {
+    parts_.settings.devices[setupKey(client.device().profile())] = setup;
+    saveSettingsNow();  // nobody measures twice because the program was ended
+    parts_.feedback.status = "the device is set up, and will be when it is opened again";
+  }
+  parts_.picture.requestRedraw();
 }
 
 void Workstation::setRate(double hz) {

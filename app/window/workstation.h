@@ -73,10 +73,12 @@ class Workstation {
   void carryOut(PanelRequests requests);
   void carryOut(Answer answer);
   void setRate(double hz);
+  void setUpDevice(const DeviceSetup& setup);
   void releaseHandsWhenAsked();
   void losePicture(const engine::Error& why);
   void renewPicture();
   void saveSettings();
+  void saveSettingsNow();
   [[nodiscard]] RunFigures figures() const { return {frames_, renewal_.losses()}; }
 
   ViewOptions options_;

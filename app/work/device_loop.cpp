@@ -71,6 +71,8 @@ engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   auto device = haptic::openDevice(options_.device, options_.rate_hz);
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
+  if (const auto known = options_.setups.find(setupKey(device_->profile())); known != options_.setups.end())
+    setup_ = known->second;
   return {};
 }
 
@@ -121,8 +123,10 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     top_mm_ = topMm(start.field, scene);
     const glm::dvec3 middle{0.5 * (grid.width - 1) * grid.spacingXMm(),
                             0.5 * (grid.height - 1) * grid.spacingYMm(), top_mm_};
-    scale_at_start_ = fittedScale(profile, grid, scene, options_.rate_hz);
-    settings.options.workspace = haptic::Workspace(scale_at_start_, middle);
+    scale_at_start_ = setup_.motion * fittedScale(setup_.in(profile), grid, scene, options_.rate_hz);
+    const glm::dvec3 hand = setup_.reach ? setup_.reach->middle() : glm::dvec3(0.0);
+    settings.options.workspace = haptic::Workspace(scale_at_start_, middle - scale_at_start_ * hand);
+    settings.options.clutch_buttons = setup_.clutch_buttons;
   }
   if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
     haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);

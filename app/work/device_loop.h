@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/sound/loudness.h"
+#include "app/work/device_setup.h"
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/enumerate.h"
@@ -34,6 +35,7 @@ struct LoopClientOptions {
   /// the largest stable ones, with a notice; otherwise such a scene is refused.
   bool lower_scene = false;
   Loudness loudness;  ///< of scenes with sound
+  DeviceSetups setups = {};  ///< of the devices that are known
 };
 
 /// Choices that were made by buttons of the device (haptic::StylusButtons): how often the next one was chosen.
@@ -94,6 +96,9 @@ class DeviceLoop {
   /// Whether a disarmed force has faded and everything sent has been taken.
   [[nodiscard]] bool atRest();
   void calibrate() { device_->calibrate(); }
+  /// How the device is used; another one from the next start() on.
+  [[nodiscard]] const DeviceSetup& setup() const noexcept { return setup_; }
+  void setSetup(const DeviceSetup& setup) { setup_ = setup; }
   /// The view turned or zoomed: "away" on the desk stays "into the picture". No effect for devices in field
   /// coordinates.
   void setView(double azimuth_deg, double zoom);
@@ -128,6 +133,7 @@ class DeviceLoop {
   const haptic::KnownDriver* driver_;  // null for a path
   engine::Grid grid_;
   std::unique_ptr<haptic::Device> device_;
+  DeviceSetup setup_;
   haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
   std::unique_ptr<haptic::HapticLoop> loop_;
   bool running_ = false;

@@ -98,19 +98,43 @@ engine::Status LoopClient::setRate(double rate_hz) {
   if (const auto problem = loop_.stabilityProblem(scene_, rate_hz))
     return engine::inputError(problem->what, "rate", "first take " + problem->remedy);
   const bool disarmed = loop_.disarmed();
+  const double before_hz = rate();
+  endForAnother();
+  engine::Status status = startLoop(rate_hz);
+  if (!status) static_cast<void>(startLoop(before_hz));
+  loop_.setDisarmed(disarmed);
+  if (status) noteDisarmed(fmt::format("the loop runs at {:g} Hz now", rate_hz));
+  return status;
+}
+
+engine::Status LoopClient::setDeviceSetup(const DeviceSetup& setup) {
+  if (finished() || setup == loop_.setup()) return {};
+  const bool disarmed = loop_.disarmed();
+  const DeviceSetup before = loop_.setup();
+  const double same_hz = rate();
+  endForAnother();
+  loop_.setSetup(setup);
+  engine::Status status = startLoop(same_hz);
+  if (!status) {
+    loop_.setSetup(before);
+    static_cast<void>(startLoop(same_hz));
+  }
+  loop_.setDisarmed(disarmed);
+  if (status) noteDisarmed("the device is used as you said");
+  return status;
+}
+
+void LoopClient::endForAnother() {
   if (haptic::MouseStylus* mouse = loop_.mouse()) {
     mouse->release();
     mouse->leave();
   }
-  const double before_hz = rate();
   finish();
-  engine::Status status = startLoop(rate_hz);
-  if (!status) static_cast<void>(startLoop(before_hz));
-  loop_.setDisarmed(disarmed);
-  if (status && device().profile().gives_force && !loop_.armsItself())
-    notices_.push_back(
-        {fmt::format("the loop runs at {:g} Hz now, without force", rate_hz), "press A to arm again"});
-  return status;
+}
+
+void LoopClient::noteDisarmed(const std::string& what) {
+  if (device().profile().gives_force && !loop_.armsItself())
+    notices_.push_back({what + ", without force", "press A to arm again"});
 }
 
 void LoopClient::finish() {

@@ -139,6 +139,10 @@ class LoopClient final {
   void arm() { loop_.arm(); }
   void disarm() { loop_.disarm(); }
   void calibrate() { loop_.calibrate(); }
+  [[nodiscard]] const DeviceSetup& deviceSetup() const noexcept { return loop_.setup(); }
+  /// Uses the device so from now on: ends the loop and starts another, as setRate() does. Errors: those of start(), after which the
+  /// device is used as before, or the loop is finished(); a scene that is not stable so, likewise.
+  [[nodiscard]] engine::Status setDeviceSetup(const DeviceSetup& setup);
   [[nodiscard]] DeviceChoices takeDeviceChoices() noexcept { return loop_.takeChoices(); }
   void setView(double azimuth_deg, double zoom) { loop_.setView(azimuth_deg, zoom); }
   /// At once; a device is open only while the scene lists sound.
@@ -175,6 +179,9 @@ class LoopClient final {
   [[nodiscard]] engine::Status startLoop(double rate_hz);
   // Where no audio device answers, a notice.
   void hear();
+  void endForAnother();
+  // That a device which gave force has to be armed again.
+  void noteDisarmed(const std::string& what);
   void takeTicks();
   void take(haptic::LoopEvent&& event);
   void restore(const engine::Version& upright_version);

@@ -114,6 +114,8 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
       return replaceDialog(question, questions, scale);
     case Kind::kRecover:
       return recoverDialog(question, questions);
+    case Kind::kDevice:
+      return devicePage(parts);
     case Kind::kShortcuts:
       return shortcutsDialog(questions, scale);
     case Kind::kMessage:

@@ -84,6 +84,8 @@ void deviceFigures(const PanelContext& context) {
   actionButton("Disarm", Action::kDisarm, context.act);
   sameLineIfFits("Calibrate");
   actionButton("Calibrate", Action::kCalibrate, context.act);
+  sameLineIfFits("Set up...");
+  actionButton("Set up...", Action::kSetUpDevice, context.act);
   ImGui::EndDisabled();
 }
 

@@ -80,6 +80,8 @@ struct Answer {
 /// The dialogs of a path and of a file's reading; kOther: another reading of the file.
 [[nodiscard]] std::optional<Answer::Choice> fileDialog(Question& question, Parts& parts);
 [[nodiscard]] std::optional<Answer::Choice> importPage(Question& question, Parts& parts);
+/// What the device does, measured by hand, and how it is used; kConfirm: Parts::device_setup from now on.
+[[nodiscard]] std::optional<Answer::Choice> devicePage(Parts& parts);
 /// Lays out the current dialog, if any; returns the answer given in this frame.
 [[nodiscard]] std::optional<Answer> dialog(Parts& parts);
 

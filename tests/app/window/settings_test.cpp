@@ -32,9 +32,12 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.panels = {{"Tool", false}, {"Haptics", true}};
   settings.loudness = {0.25F, true};
   settings.ask_before_quitting = false;
+  settings.devices["omega.3, 10406"] = {DeviceReach{{-60.5, -70.0, -50.0}, {61.0, 72.0, 53.0}}, 0.4, 0};
+  settings.devices["Touch"] = {};
   settings.save(path);
   EXPECT_EQ(Settings::load(path), settings);
   EXPECT_FALSE(Settings() == settings);
+  EXPECT_EQ(Settings::load(path).devices, settings.devices);
 }
 
 TEST(Settings, ends_of_colours_that_were_typed_belong_to_the_scan) {
@@ -59,6 +62,11 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }
+  // A box in which no hand fits, numbers that are none, a motion out of range.
+  std::ofstream(path)
+      << R"({"devices": {"A": {"low_mm": [0, 0, 0], "high_mm": [100, 100, 5], "motion": 7, "clutch_buttons": -1},
+                         "B": {"low_mm": [0, 0], "high_mm": [1e9, 1, 1]}, "C": 5}})";
+  EXPECT_EQ(Settings::load(path).devices, (DeviceSetups{{"A", {}}, {"B", {}}}));
   std::ofstream(path) << "{\"mouse\": \"meshlab\", \"split_at\": 7e9}";
   EXPECT_EQ(Settings::load(path).habits, Habits::kMeshLab);
 }
