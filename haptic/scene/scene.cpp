@@ -62,6 +62,10 @@ bool radiusInRange(double value) noexcept {
   return value >= 0.0 && value <= kMaxBrushRadius;
 }
 
+bool spacingInRange(double spacing) noexcept {
+  return spacing >= 0.0 && spacing <= kMaxBrushSpacing;
+}
+
 // Reads the tables of one scene file; the first problem stops it.
 class SceneReader {
  public:
@@ -217,6 +221,11 @@ class SceneReader {
       } else if (key == "mark_radius_samples") {
         number(value, key, scene_.mark_radius_samples);
         require(value, radiusInRange(scene_.mark_radius_samples), "mark_radius_samples must be 0 to 64");
+      } else if (key == "falloff") {
+        if (const auto i = word(value, key, kFalloffWords)) scene_.brush_falloff = static_cast<Falloff>(*i);
+      } else if (key == "spacing") {
+        number(value, key, scene_.brush_spacing);
+        require(value, spacingInRange(scene_.brush_spacing), "spacing must be 0 to 2");
       } else if (key == "max_change") {
         double limit = -1.0;
         number(value, key, limit);
@@ -283,6 +292,8 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
     return fmt::format("the force limit must be above 0 and at most {} N", kMaxForce);
   if (!radiusInRange(scene.brush_radius_samples) || !radiusInRange(scene.mark_radius_samples))
     return fmt::format("a brush radius must be 0 to {} samples", kMaxBrushRadius);
+  if (!spacingInRange(scene.brush_spacing))
+    return fmt::format("the brush's spacing must be 0 to {}", kMaxBrushSpacing);
   if (scene.max_change && !(*scene.max_change >= 0.0 && std::isfinite(*scene.max_change)))
     return "the largest change must be 0 or more";
   EffectParams params = scene.params;
@@ -347,6 +358,10 @@ std::string sceneText(const Scene& scene) {
       kMinimaNames[static_cast<std::size_t>(scene.ball_minima)],
       kStepsNames[static_cast<std::size_t>(scene.ball_steps)], scene.stiffness_n_per_mm, scene.force_limit_n,
       scene.brush_radius_samples, scene.mark_radius_samples);
+  // Left out where they are as before there were these keys: older programs read such a scene.
+  if (scene.brush_falloff != Falloff::kFlat)
+    text += fmt::format("falloff = \"{}\"\n", rowOf(scene.brush_falloff).word);
+  if (scene.brush_spacing != 0.0) text += fmt::format("spacing = {}\n", scene.brush_spacing);
   if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
   EffectParams params = scene.params;
   std::string_view table;

@@ -11,6 +11,7 @@
 #include "haptic/base/search_limits.h"
 #include "haptic/base/tools.h"
 #include "haptic/scene/effects.h"
+#include "haptic/scene/falloff.h"
 
 namespace fettle::haptic {
 
@@ -34,6 +35,8 @@ enum class ContactLevel : std::uint8_t {
 
 /// Largest Scene::brush_radius_samples and mark_radius_samples.
 inline constexpr double kMaxBrushRadius = 64.0;
+/// Largest Scene::brush_spacing.
+inline constexpr double kMaxBrushSpacing = 2.0;
 
 /// How a field is felt and edited: all that a tick depends on apart from the field and the input. Values, no
 /// behaviour; a scene is composed into a tick once, when it is loaded.
@@ -69,6 +72,13 @@ struct Scene {
   /// Smoothing replaces all samples within this distance of the brush's centre, which is the lower-left
   /// sample of the proxy's cell. [samples], 0 .. 64; 0 is the paper's one sample.
   double brush_radius_samples = 0.0;
+  /// How that fades: a sample takes this share of what smoothing would change. The way runs from the centre to one
+  /// sample beyond the radius, so that the outermost samples of the brush still take some. Without use below a radius
+  /// of 1, which has one sample.
+  Falloff brush_falloff = Falloff::kFlat;
+  /// Smoothing acts again in a contact when the tip has moved by this share of the radius (of half a sample, where
+  /// the radius is less), 0 .. 2. 0: in every tick, at rest too.
+  double brush_spacing = 0.0;
   /// Marking and unmarking, likewise. [samples], 0 .. 64.
   double mark_radius_samples = 0.0;
   /// Smoothing keeps every sample within this of the ORIGINAL field, over all strokes and filters together.

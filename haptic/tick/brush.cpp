@@ -5,6 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "engine/filter/limit_change.h"
 #include "haptic/effects/effect.h"
@@ -98,9 +102,16 @@ bool isDenormal(float height) noexcept {
 
 }  // namespace
 
-Brush::Brush(double radius, std::optional<double> max_change, const engine::Version& original)
+Brush::Brush(double radius, std::optional<double> max_change, const engine::Version& original,
+             Falloff falloff)
     : disc_(radius), max_change_(max_change) {
   if (max_change_) original_ = original;
+  if (falloff != Falloff::kFlat && disc_.reach > 0)
+    for (std::int32_t dr = -disc_.reach; dr <= disc_.reach; ++dr)
+      for (std::int32_t dc = -disc_.reach; dc <= disc_.reach; ++dc) {
+        const double way = std::sqrt(static_cast<double>(dr * dr + dc * dc)) / (radius + 1.0);
+        weights_.push_back(way < 1.0 ? rowOf(falloff).weight(way) : 0.0);  // beyond: the square's corners
+      }
   const auto side = static_cast<std::size_t>(2 * disc_.reach + 1);
   before_.resize((side + 2) * (side + 2));
   after_.resize(side * side);
@@ -157,15 +168,13 @@ bool Brush::applyToOne(engine::LiveField& field, std::int32_t column, std::int32
   return field.setHeight(column, row, limited(blend(centre, stride, strength, mask), old, column, row));
 }
 
-bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t row, double strength) noexcept {
-  if (disc_.reach == 0 && field.grid().contains(column, row)) return applyToOne(field, column, row, strength);
-  const engine::FieldReader reader = field.reader();
+template <bool kFades>
+void Brush::smoothRows(const engine::LineCuts* cuts, std::int32_t column, std::int32_t row,
+                       double strength) noexcept {
   const std::int32_t reach = disc_.reach;
   const std::int32_t side = 2 * reach + 1;
   const std::int32_t stride = side + 2;
-  reader.readHeights(column - reach - 1, row - reach - 1, stride, stride, before_.data(), stride);
-  reader.readMarks(column - reach, row - reach, side, side, marked_.data(), side);
-  const bool cut = findCuts(field.lineCuts(), column - reach - 1, row - reach - 1, stride);
+  const bool cut = findCuts(cuts, column - reach - 1, row - reach - 1, stride);
   for (std::int32_t dr = 0; dr < side; ++dr) {
     const std::uint8_t* links = cut_.data() + (dr + 1) * stride + 1;
     const float* before = before_.data() + (dr + 1) * stride + 1;
@@ -175,10 +184,28 @@ bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t ro
     for (std::int32_t dc = reach - half; dc <= reach + half; ++dc) {
       if (std::isnan(before[dc]) || marked_[static_cast<std::size_t>(dr * side + dc)] != 0) continue;
       const WindowMask mask = cut ? connected(links + dc, stride) : kWholeWindow;
-      after[dc] = limited(blend(before + dc, stride, strength, mask), before[dc], column - reach + dc,
-                          row - reach + dr);
+      double height = blend(before + dc, stride, strength, mask);
+      if constexpr (kFades) {
+        const auto old = static_cast<double>(before[dc]);
+        height = old + weights_[static_cast<std::size_t>(dr * side + dc)] * (height - old);
+      }
+      after[dc] = limited(height, before[dc], column - reach + dc, row - reach + dr);
     }
   }
+}
+
+bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t row, double strength) noexcept {
+  if (disc_.reach == 0 && field.grid().contains(column, row)) return applyToOne(field, column, row, strength);
+  const engine::FieldReader reader = field.reader();
+  const std::int32_t reach = disc_.reach;
+  const std::int32_t side = 2 * reach + 1;
+  const std::int32_t stride = side + 2;
+  reader.readHeights(column - reach - 1, row - reach - 1, stride, stride, before_.data(), stride);
+  reader.readMarks(column - reach, row - reach, side, side, marked_.data(), side);
+  if (weights_.empty())
+    smoothRows<false>(field.lineCuts(), column, row, strength);
+  else
+    smoothRows<true>(field.lineCuts(), column, row, strength);
   // Only samples of the field can be written.
   const std::int32_t c0 = std::max(column - reach, 0);
   const std::int32_t r0 = std::max(row - reach, 0);
@@ -197,13 +224,48 @@ void runSmoothing(void* data, TickState& state) noexcept {
   state.surface.refresh(state.field.reader());
 }
 
+// A brush that acts again only when the tip has moved on.
+struct SpacedBrush {
+  Brush brush;
+  double spacing_mm;  // > 0, along the field
+  glm::dvec2 acted_mm{0.0};
+  bool acted = false;  // in this contact
+};
+
+void runSpaced(void* data, TickState& state) noexcept {
+  SpacedBrush& spaced = *static_cast<SpacedBrush*>(data);
+  const glm::dvec2 here_mm(state.contact.proxy.position_mm);
+  const glm::dvec2 moved_mm = here_mm - spaced.acted_mm;
+  if (spaced.acted && glm::dot(moved_mm, moved_mm) < spaced.spacing_mm * spaced.spacing_mm) return;
+  spaced.acted = true;
+  spaced.acted_mm = here_mm;
+  runSmoothing(&spaced.brush, state);
+}
+
+void resetSpaced(void* data, ResetCause /*why*/) noexcept {
+  static_cast<SpacedBrush*>(data)->acted = false;
+}
+
 }  // namespace
 
 void addSmoothing(EffectList& list, const EffectSource& from) {
-  auto made = std::make_shared<Brush>(from.scene.brush_radius_samples, from.scene.max_change, from.original);
-  const std::size_t held = made->bytesHeld();
-  Brush& brush = addData(list, EffectKind::kSmoothing, std::move(made), held);
-  list.tools[static_cast<std::size_t>(Tool::kSmooth)] = {&runSmoothing, &brush};
+  const Scene& scene = from.scene;
+  const auto tool = static_cast<std::size_t>(Tool::kSmooth);
+  Brush brush(scene.brush_radius_samples, scene.max_change, from.original, scene.brush_falloff);
+  const std::size_t held = brush.bytesHeld();
+  if (scene.brush_spacing == 0.0) {
+    Brush& made = addData(list, EffectKind::kSmoothing, std::make_shared<Brush>(std::move(brush)), held);
+    list.tools[tool] = {&runSmoothing, &made};
+    return;
+  }
+  const engine::Grid& grid = from.now.grid();
+  const double radius_mm =
+      std::max(scene.brush_radius_samples, 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
+  SpacedBrush spaced{.brush = std::move(brush), .spacing_mm = scene.brush_spacing * radius_mm};
+  SpacedBrush& made =
+      addData(list, EffectKind::kSmoothing, std::make_shared<SpacedBrush>(std::move(spaced)), held);
+  list.tools[tool] = {&runSpaced, &made};
+  list.resets.push_back({&resetSpaced, &made});
 }
 
 }  // namespace fettle::haptic

@@ -94,6 +94,8 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);
   scene.mark_radius_samples = static_cast<double>(random() % 64);
+  scene.brush_falloff = static_cast<haptic::Falloff>(random() % static_cast<int>(haptic::Falloff::kCount));
+  if (random() % 2 == 0) scene.brush_spacing = tests::uniform(random, 0, 2);
   if (random() % 2 == 0) scene.max_change = tests::uniform(random, 0, 1e9);
   scene.invert = random() % 2 == 0;
   scene.params.friction = {0.9, tests::uniform(random, 0, 0.9), tests::uniform(random, 1e-9, 1000)};

@@ -77,6 +77,8 @@ TEST(NeverAllocate, ATickDoesNotWithAnyToolLevelOrEffect) {
       scene.brush_radius_samples = 2.0;
       scene.mark_radius_samples = 1.0;
       scene.max_change = 0.5;
+      scene.brush_falloff = static_cast<Falloff>(listed % static_cast<int>(Falloff::kCount));
+      scene.brush_spacing = listed % 3 == 0 ? 0.25 : 0.0;
       scene.params.viscosity.medium = ViscousMedium::kEverywhere;
       for (int k = 0; k < kEffectKinds; ++k) {
         const auto kind = static_cast<EffectKind>(k);
