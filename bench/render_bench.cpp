@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -106,6 +107,9 @@ enum class Brush { kRests, kWorks };
 // kRests: turns when the picture has come to rest; the frame that follows is not counted.
 enum class Camera { kOrbits, kFixed, kRests };
 
+// A stylus that moves: as lines, as a pen, with its shadow, with the trail of a second.
+enum class Stylus { kNone, kLines, kPen, kPenAndShadow, kTrail };
+
 // One row of the report: what is shown, and what changes.
 struct Scene {
   std::string name;
@@ -113,9 +117,27 @@ struct Scene {
   render::FrameInput input;
   Camera camera = Camera::kOrbits;
   Brush brush = Brush::kRests;
-  bool stylus = false;                        // moves
+  Stylus stylus = Stylus::kNone;
   std::optional<engine::Version> other = {};  // shown in turn with the field
 };
+
+// The stylus of a frame, `way` 0 .. 1 of its way.
+void putStylus(Stylus stylus, double way, render::Overlays& overlays) {
+  constexpr int kTrailPieces = 60;
+  overlays = {};
+  const auto x = [](double at) { return 16.0 + 32.0 * at; };
+  if (stylus == Stylus::kLines)
+    render::appendStylus({{x(way), 20.0, 8.0}, {x(way), 20.0, 6.0}, {0.0, 0.0, 1.0}, true, 0.0}, 4.0,
+                         overlays.lines);
+  if (stylus == Stylus::kPen || stylus == Stylus::kPenAndShadow)
+    overlays.stylus =
+        render::StylusBody{.tip_mm = {x(way), 20.0, 6.0}, .shadow = stylus == Stylus::kPenAndShadow};
+  for (int i = 0; stylus == Stylus::kTrail && i < kTrailPieces; ++i) {
+    const auto at = [&](int k) { return glm::dvec3(x(way - 0.002 * k), 20.0 + std::sin(0.1 * k), 6.0); };
+    overlays.lines.push_back(
+        {.from_mm = at(i), .to_mm = at(i + 1), .depth = render::OverlayLine::Depth::kInScene});
+  }
+}
 
 engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& scene,
                                    const RenderBenchOptions& options, engine::JobControl& job) {
@@ -146,12 +168,8 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
       input.view.azimuth_deg += 360.0 * render::kRestBands / options.frames;
       if (const auto turned = picture.drawAndWait(input); !turned) return tl::unexpected(turned.error());
     }
-    if (scene.stylus) {
-      input.overlays.lines.clear();
-      const double x = 16.0 + 32.0 * i / options.frames;
-      render::appendStylus({{x, 20.0, 8.0}, {x, 20.0, 6.0}, {0.0, 0.0, 1.0}, true, 0.0}, 4.0,
-                           input.overlays.lines);
-    }
+    if (scene.stylus != Stylus::kNone)
+      putStylus(scene.stylus, static_cast<double>(i) / options.frames, input.overlays);
     double cpu_before = cpuMs();
     engine::Stopwatch watch;
     double update_ms = 0.0;
@@ -302,7 +320,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (10 * options.sides.size() + 7));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (10 * options.sides.size() + 15));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
@@ -327,7 +345,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     scenes[4].input.redraw = render::FrameInput::Redraw::kAll;
     for (const std::size_t k : {2, 3, 4}) scenes[k].brush = Brush::kWorks;
     scenes[5].name = "stylus, still";
-    scenes[5].stylus = true;
+    scenes[5].stylus = Stylus::kLines;
     // As the window draws a picture at rest.
     scenes[6].name = "fine";
     scenes[7].name = "fine, brush";
@@ -365,6 +383,13 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       scenes[first + 8].name = "sphere in, out";
       scenes[first + 8].shown.versions = {*seen->seenOf()};
       scenes[first + 8].other = *seen;
+      for (const auto& [name, stylus] : {std::pair{"pen, still", Stylus::kPen},
+                                         {"pen, shadow, still", Stylus::kPenAndShadow},
+                                         {"trail, still", Stylus::kTrail}}) {
+        scenes.push_back(scenes[5]);
+        scenes.back().name = name;
+        scenes.back().stylus = stylus;
+      }
     }
     if (options.in_motion == render::Sharpness::kHalf) {
       Scene moving = all_round;
@@ -375,6 +400,9 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
         scenes.push_back(moving);
         scenes.back().name = "two, moving";
         scenes.back().input.stereo.mode = render::StereoMode::kAnaglyph;
+        scenes.push_back(moving);
+        scenes.back().name = "pen, moving";
+        scenes.back().stylus = Stylus::kPenAndShadow;
       }
       scenes.insert(scenes.begin() + 1, std::move(moving));
     }

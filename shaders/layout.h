@@ -49,6 +49,7 @@ FETTLE_CONST kBindLines = 6;    // buffer of Line
 FETTLE_CONST kBindPages = 7;    // utextureBuffer, entries of the page table: which pages are on the device
 FETTLE_CONST kBindDepth = 8;    // texture2D, depth of the surface, in the pixels of the picture
 FETTLE_CONST kBindNearest = 9;  // sampler that returns the nearest texel
+FETTLE_CONST kBindStylus = 10;  // buffer of one Stylus
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindGlyphs = 1;  // texture2D, coverage
@@ -82,7 +83,8 @@ FETTLE_CONST kSpecFootprint = 10;
 // Light that is hidden by what stands around; brighter ridges and darker hollows (surroundings.glsl).
 FETTLE_CONST kSpecOcclusion = 11;
 FETTLE_CONST kSpecCavity = 12;
-FETTLE_CONST kSpecCount = 13;
+FETTLE_CONST kSpecFaint = 13;  // of the stylus: what the surface hides
+FETTLE_CONST kSpecCount = 14;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -167,6 +169,20 @@ struct Line {
   vec4 colour;  // linear red, green, blue; opacity
 };
 
+// A pen, with a ball at its point or without, and its shadow (render/plan/stylus_body.h). Lengths in scene mm.
+struct Stylus {
+  vec4 point;   // -
+  vec4 tail;    // its other end; its radius
+  vec4 ball;    // centre; radius along z
+  vec4 colour;  // of its point and its ball: linear red, green, blue; 1: the ball is nearer to the viewer
+  vec4
+      shadow;  // how dark, 0: none; distance at which it ends; a pixel; the ball's radius along x and y, 0: none
+};
+// Its parts are drawn as bands of rings from one end to the other.
+FETTLE_CONST kStylusBands = 16;
+FETTLE_CONST kStylusSides = 32;
+FETTLE_CONST kStylusVertices = 6 * kStylusBands * kStylusSides;
+
 // A filled rectangle of the finished picture.
 struct Quad {
   vec4 pixels;  // left, top, right, bottom
@@ -191,6 +207,7 @@ static_assert(offsetof(PanelUniforms, colours) == 560);
 static_assert(sizeof(Patch) == 16);
 static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);
+static_assert(sizeof(Stylus) == 80);
 static_assert(sizeof(Quad) == 64);
 }  // namespace fettle::render::gpu
 #endif

@@ -81,6 +81,10 @@ const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
   return redraw == LiveFrame::Redraw::kAll ? p.visible : p.redraw;
 }
 
+bool hasStylus(std::span<const LivePanel> panels) {
+  return std::ranges::any_of(panels, [](const LivePanel& p) { return p.stylus && !empty(p.visible); });
+}
+
 // Clears a part of the attachment of the current rendering.
 void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect, const vk::ClearValue& value,
            const Rectangle& part) {
@@ -96,10 +100,10 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
       view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
       pipelines_(context, colour, views) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
-  constexpr std::uint32_t kSets = kSlots * (5 * kMostPanels + 1);
+  constexpr std::uint32_t kSets = kSlots * (6 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 5 * kSets},
-                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 2 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 3 * kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eSampler, kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, kSets}};
   vk::DescriptorPoolCreateInfo info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets};
@@ -113,7 +117,7 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
                                         {{}, *no_pages_.handle(), vk::Format::eR32Uint, 0, VK_WHOLE_SIZE});
   for (Slot& slot : slots_) {
     for (PanelSets& p : slot.panels)
-      for (vk::raii::DescriptorSet* set : {&p.surface, &p.seams, &p.walls, &p.in_scene, &p.on_top})
+      for (vk::raii::DescriptorSet* set : {&p.surface, &p.seams, &p.walls, &p.in_scene, &p.on_top, &p.stylus})
         *set = setOf(pipelines_.sceneSet());
     slot.picture = setOf(pipelines_.pictureSet());
   }
@@ -214,14 +218,20 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
                      const Layers& layers) {
   Packing packing;
   struct Blocks {
-    Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages;
+    Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages, stylus;
   };
   std::vector<Blocks> blocks;
   for (const LivePanel& p : panels)
     blocks.push_back({packing.add<gpu::PanelUniforms>(std::span(&p.uniforms, 1)),
-                      packing.add<gpu::Patch>(p.choice->patches), packing.add<gpu::Patch>(p.choice->seams),
-                      packing.add<gpu::Patch>(p.choice->walls), packing.add<gpu::Line>(p.in_scene),
-                      packing.add<gpu::Line>(p.on_top), packing.add<std::uint32_t>(p.pages)});
+                      packing.add<gpu::Patch>(p.choice->patches),
+                      packing.add<gpu::Patch>(p.choice->seams),
+                      packing.add<gpu::Patch>(p.choice->walls),
+                      packing.add<gpu::Line>(p.in_scene),
+                      packing.add<gpu::Line>(p.on_top),
+                      packing.add<std::uint32_t>(p.pages),
+                      {}});
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    if (panels[i].stylus) blocks[i].stylus = packing.add<gpu::Stylus>(std::span(&*panels[i].stylus, 1));
   const auto quads = packing.add<gpu::Quad>(decorations);
   if (slot.arena.bytes() < packing.bytes())
     slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), kArenaBytes),
@@ -251,6 +261,11 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
       writes.texels(set, gpu::kBindPages, p.variant.on_demand ? *sets.pages : *no_pages_view_);
     }
     writes.image(*sets.surface, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
+    if (p.stylus) {
+      writes.buffer(*sets.stylus, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
+      writes.buffer(*sets.stylus, gpu::kBindStylus, kStorage, slot.arena, blocks[i].stylus);
+      writes.image(*sets.stylus, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
+    }
     for (const auto& [set, list] :
          {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
       writes.buffer(set, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
@@ -372,6 +387,47 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   if (lines == HiddenLines::kInBase)
     recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
   commands.endRendering();
+  if (lines == HiddenLines::kInBase && hasStylus(panels))
+    recordStylus(commands, slot, panels, layers.depth, layers.base.view(), layers.base.image(), layers.scale);
+}
+
+void LiveFrame::recordStylus(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                             std::span<const LivePanel> panels, const GpuImage& depth, vk::ImageView colour,
+                             vk::Image colour_image, float scale) {
+  const Barriers::Access tested{ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess};
+  const Barriers::Access read{ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
+                              Access::eDepthStencilAttachmentRead | Access::eShaderRead};
+  Barriers before;
+  before.add(depth.image(), kDepth, tested, read);
+  before.add(colour_image, kColour, kColourWritten, kColourUsed);
+  before.record(commands);
+  const vk::RenderingAttachmentInfo over =
+      attachment(colour, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  const vk::RenderingAttachmentInfo against =
+      attachment(depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, depth.extent()})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(over)
+      .setPDepthAttachment(&against);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    if (empty(p.visible) || !p.stylus) continue;
+    beginPanel(commands, p, p.visible, scale);
+    const vk::DescriptorSet set = *slot.panels[i].stylus;
+    if (p.stylus->shadow.x > 0.0F)
+      instances(commands, pipelines_.stylus(Pipelines::Stylus::kShadow), set, 4, 0, 1);
+    const std::size_t bodies = p.stylus->shadow.w > 0.0F ? 2 : 1;
+    for (const auto pass : {Pipelines::Stylus::kHidden, Pipelines::Stylus::kSeen})
+      instances(commands, pipelines_.stylus(pass), set, gpu::kStylusVertices, 0, bodies);
+  }
+  commands.endRendering();
+  Barriers after;
+  after.add(depth.image(), kDepth, read, tested);
+  after.add(colour_image, kColour, kColourWritten, kColourUsed);
+  after.record(commands);
 }
 
 void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -449,7 +505,8 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
   const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
   const auto reads = copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{};
-  if (!lines && !target.over) {
+  const bool stylus = in_scene && hasStylus(panels);
+  if (!lines && !stylus && !target.over) {
     change(commands, target.image, ImageLayout::eTransferDstOptimal, target.leaves_as, Stage::eCopy,
            Access::eTransferWrite, next, reads);
     return;
@@ -467,18 +524,23 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setColorAttachments(colour);
-  if (lines) {
+  if (lines || stylus) {
     if (!in_scene)
       change(commands, whole_.depth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
              kDepthStages, kDepthAccess, kDepthStages, kDepthAccess);
     rendering.setPDepthAttachment(&depth);
     commands.beginRendering(rendering);
     if (in_scene) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, 1.0F);
+    if (stylus) {
+      commands.endRendering();
+      recordStylus(commands, slot, panels, whole_.depth, target.view, target.image, 1.0F);
+      commands.beginRendering(rendering);
+    }
     recordLines(commands, slot, panels, Pipelines::Lines::kOnTop, 1.0F);
     commands.endRendering();
   }
   if (target.over) {
-    if (lines)
+    if (lines || stylus)
       change(commands, target.image, ImageLayout::eColorAttachmentOptimal,
              ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
              Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput, kColourAccess);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/config.h"
@@ -32,6 +33,7 @@ struct LivePanel {
   SurfaceVariant variant;
   std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless on demand
   std::vector<gpu::Line> in_scene, on_top;
+  std::optional<gpu::Stylus> stylus{};
 };
 
 /// Records a frame in three layers, each of which is reused while nothing in it changes:
@@ -39,7 +41,8 @@ struct LivePanel {
 ///   depth   of the surface, its seams, rim walls and plate: geometry, drawn without a colour
 ///   base    the surface shaded from that depth, once per pixel (shaders/shade.frag); then what is shaded
 ///           triangle by triangle, plate and walls; then the decorations
-///   target  a copy of base; then overlay lines; then what LiveTarget::over draws
+///   target  a copy of base; then overlay lines, the stylus between those that the surface hides and those on
+///           top; then what LiveTarget::over draws
 ///
 /// At Sharpness::kHalf and kFine, depth, shading and the lines hidden by the surface use layers of half or
 /// twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.
@@ -92,7 +95,7 @@ class LiveFrame {
  private:
   struct PanelSets {
     vk::raii::DescriptorSet surface = nullptr, seams = nullptr, walls = nullptr, in_scene = nullptr,
-                            on_top = nullptr;
+                            on_top = nullptr, stylus = nullptr;
     vk::raii::BufferView pages = nullptr;  // of the arena
   };
   struct Slot {
@@ -132,6 +135,10 @@ class LiveFrame {
                      Redraw redraw, const Before& before);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
+  /// After everything that writes `depth`, outside of a rendering; `colour` is of the depth's size.
+  void recordStylus(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                    std::span<const LivePanel> panels, const GpuImage& depth, vk::ImageView colour,
+                    vk::Image colour_image, float scale);
   void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                          std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
                          const GpuImage& base, Redraw redraw);

@@ -16,6 +16,7 @@
 #include "render/plan/framing.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
+#include "render/plan/stylus_body.h"
 #include "render/residency/upload_statistics.h"
 
 namespace fettle::render {
@@ -56,17 +57,21 @@ struct Overlays {
     float width_px = 2.0F;
   };
   std::vector<Ring> rings;
+  /// Drawn over lines that the surface hides, under those on top. Costs nothing where there is none.
+  std::optional<StylusBody> stylus{};
 };
 
-/// State of a haptic device as overlay lines: endpoint (disc), proxy (disc), the line between them (tip),
-/// force (arrow from the proxy, `mm_per_newton` long per newton).
+/// State of a haptic device as overlay lines: the line between endpoint and proxy (tip); where nothing else
+/// shows the stylus (Overlays::stylus) a disc at both and a ball's outline; force (arrow from the proxy,
+/// `mm_per_newton` long per newton).
 struct StylusState {
   glm::dvec3 endpoint_mm{0.0};
   glm::dvec3 proxy_mm{0.0};
   glm::dvec3 force_n{0.0};
   bool contact = false;
   double tip_radius_mm = 0.0;  ///< of a ball tip; 0 for a point
-  glm::dvec3 stylus_mm{0.0};  ///< from the tip to the other end of the stylus; 0: how it is held is not known
+  bool discs = true;           ///< and the ball's outline
+  bool arrow = true;
 };
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out);
 

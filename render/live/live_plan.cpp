@@ -50,10 +50,6 @@ Ray inField(const PanelPlan& p, const Ray& ray) {
   const glm::dvec3 from = field(ray.from);
   return {from, field(ray.from + ray.along) - from};
 }
-glm::dvec3 inScene(const PanelPlan& p, const glm::dvec3& field_mm) {
-  const double unit = p.field.grid().height_unit.mm;
-  return {p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit};
-}
 
 namespace {
 
@@ -208,18 +204,11 @@ constexpr glm::vec3 kTip{0.85F, 0.85F, 0.85F};
 constexpr glm::vec3 kForce{0.88F, 0.78F, 0.05F};
 
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out) {
-  out.push_back({state.endpoint_mm, state.endpoint_mm, kEndpoint, 1.0F, 9.0F});
-  if (state.stylus_mm != glm::dvec3(0.0)) {
-    // Thin at the tip, so that the surface there is seen.
-    const glm::dvec3 tip = state.contact ? state.proxy_mm : state.endpoint_mm;
-    const glm::dvec3 grip = tip + 0.3 * state.stylus_mm;
-    out.push_back({tip, grip, kStylus, 1.0F, 2.5F});
-    out.push_back({grip, tip + state.stylus_mm, kStylus, 1.0F, 7.0F});
-  }
+  if (state.discs) out.push_back({state.endpoint_mm, state.endpoint_mm, kEndpoint, 1.0F, 9.0F});
   if (!state.contact) return;
   out.push_back({state.endpoint_mm, state.proxy_mm, kTip, 0.8F, 1.5F});
-  out.push_back({state.proxy_mm, state.proxy_mm, kProxy, 1.0F, 9.0F});
-  if (state.tip_radius_mm > 0.0) {
+  if (state.discs) out.push_back({state.proxy_mm, state.proxy_mm, kProxy, 1.0F, 9.0F});
+  if (state.discs && state.tip_radius_mm > 0.0) {
     // The ball's outline as three circles, one about each axis.
     constexpr int kPieces = 48;
     for (int axis = 0; axis < 3; ++axis)
@@ -235,7 +224,7 @@ void appendStylus(const StylusState& state, double mm_per_newton, std::vector<Ov
       }
   }
   const double newton = glm::length(state.force_n);
-  if (!(newton > 0.0) || !std::isfinite(newton)) return;
+  if (!state.arrow || !(newton > 0.0) || !std::isfinite(newton)) return;
   const glm::dvec3 tip = state.proxy_mm + mm_per_newton * state.force_n;
   out.push_back({state.proxy_mm, tip, kForce, 1.0F, 3.0F});
   // Head: four strokes back from the tip, a fifth of the arrow long.

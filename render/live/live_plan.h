@@ -19,8 +19,6 @@ namespace fettle::render {
 
 /// A ray in field coordinates; its direction is not of unit length.
 [[nodiscard]] Ray inField(const PanelPlan& panel, const Ray& ray);
-/// A point of the field in scene coordinates.
-[[nodiscard]] glm::dvec3 inScene(const PanelPlan& panel, const glm::dvec3& field_mm);
 /// What a hand takes hold of along a ray in the scene (LivePicture::grip), without its pixel.
 [[nodiscard]] Grip gripOf(const PanelPlan& panel, const Ray& ray);
 /// Position of the window in which the surface in the middle of the plot lies (Stereo::screen_distance).

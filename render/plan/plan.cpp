@@ -111,6 +111,11 @@ PictureSpans spansOf(std::span<const engine::Version> fields,
   return spans;
 }
 
+glm::dvec3 inScene(const PanelPlan& p, const glm::dvec3& field_mm) {
+  const double unit = p.field.grid().height_unit.mm;
+  return {p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit};
+}
+
 PictureSpans negated(const PictureSpans& spans) noexcept {
   return {negated(spans.heights), negated(spans.colours)};
 }

@@ -31,6 +31,9 @@ struct PanelPlan {
   gpu::PanelUniforms uniforms;  ///< all but `paging`, which follows the field's texture
 };
 
+/// A point of the field [field mm] in the scene of a panel.
+[[nodiscard]] glm::dvec3 inScene(const PanelPlan& panel, const glm::dvec3& field_mm);
+
 /// A picture planned on the CPU: the position and colour of everything, before any device is used.
 struct PicturePlan {
   std::vector<PanelPlan> panels;

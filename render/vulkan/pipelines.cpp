@@ -20,6 +20,13 @@
 #include "shade.vert.eyes.h"
 #include "shade.vert.h"
 #include "shaders/layout.h"
+#include "stylus.frag.h"
+#include "stylus.vert.eyes.h"
+#include "stylus.vert.h"
+#include "stylus_shadow.frag.eyes.h"
+#include "stylus_shadow.frag.h"
+#include "stylus_shadow.vert.eyes.h"
+#include "stylus_shadow.vert.h"
 #include "surface.vert.eyes.h"
 #include "surface.vert.h"
 #include "wall.frag.h"
@@ -65,6 +72,7 @@ Pipelines::Pipelines(const Context& context, vk::Format colour, Views views)
       binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer),
       binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer),
       binding(gpu::kBindDepth, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindStylus, vk::DescriptorType::eStorageBuffer),
       binding(gpu::kBindNearest, vk::DescriptorType::eSampler).setImmutableSamplers(*nearest_)};
   const std::array picture{binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindQuads, vk::DescriptorType::eStorageBuffer),
@@ -158,6 +166,23 @@ vk::Pipeline Pipelines::lines(Lines depth) {
                       .depth = depth == Lines::kInScene ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
                       .blend = Recipe::Blend::kPremultiplied};
   return *lines_.emplace(depth, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::stylus(Stylus pass) {
+  const auto found = styli_.find(pass);
+  if (found != styli_.end()) return *found->second;
+  const bool shadow = pass == Stylus::kShadow;
+  Recipe recipe{
+      .vertex = shadow ? one(stylus_shadow_vert_spirv, stylus_shadow_vert_eyes_spirv)
+                       : one(stylus_vert_spirv, stylus_vert_eyes_spirv),
+      .fragment =
+          shadow ? one(stylus_shadow_frag_spirv, stylus_shadow_frag_eyes_spirv) : Words(stylus_frag_spirv),
+      .layout = *scene_layout_,
+      .topology = shadow ? vk::PrimitiveTopology::eTriangleStrip : vk::PrimitiveTopology::eTriangleList,
+      .depth = pass == Stylus::kSeen ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
+      .blend = Recipe::Blend::kPremultiplied};
+  recipe.constants[gpu::kSpecFaint] = pass == Stylus::kHidden;
+  return *styli_.emplace(pass, make(recipe)).first->second;
 }
 
 vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {

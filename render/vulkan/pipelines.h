@@ -57,6 +57,9 @@ class Pipelines {
   [[nodiscard]] vk::Pipeline floor();
   enum class Lines { kOnTop, kInScene };
   [[nodiscard]] vk::Pipeline lines(Lines depth);
+  /// Its shadow; what the surface hides of it, faintly; what it does not. They do not write depth.
+  enum class Stylus { kShadow, kHidden, kSeen };
+  [[nodiscard]] vk::Pipeline stylus(Stylus pass);
   [[nodiscard]] vk::Pipeline quads();
 
   /// Layouts of the surface's and the picture's set 0 and pipelines (shaders/layout.h names the bindings).
@@ -83,6 +86,7 @@ class Pipelines {
   std::map<Geometry, vk::raii::Pipeline> depths_;
   std::map<std::pair<Paged, Holes>, vk::raii::Pipeline> walls_;
   std::map<Lines, vk::raii::Pipeline> lines_;
+  std::map<Stylus, vk::raii::Pipeline> styli_;
   vk::raii::Pipeline floor_ = nullptr, quads_ = nullptr;
   std::size_t made_ = 0;
 };

@@ -234,17 +234,16 @@ void Window::Impl::leaveDevice() noexcept {
 void Window::Impl::listen() {
   glfwSetWindowUserPointer(glfw.window, this);
   glfwSetKeyCallback(glfw.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
-    if (action == GLFW_RELEASE) return;
     if (action == GLFW_PRESS) of(w).ui->notePress(key, mods);
     InputEvent event;
-    event.kind = InputKind::kKeyDown;
+    event.kind = action == GLFW_RELEASE ? InputKind::kKeyUp : InputKind::kKeyDown;
     event.key = keyOf(key, scancode);
     event.modifiers = modifiersOf(mods);
     event.repeat = action == GLFW_REPEAT;
     if (event.key == Key::kNone) return;
     of(w).note(event);
     // Before the frame in which ImGui gets it.
-    if (event.key == Key::kEscape) of(w).ui->leavePanels();
+    if (event.kind == InputKind::kKeyDown && event.key == Key::kEscape) of(w).ui->leavePanels();
   });
   glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
     InputEvent event;

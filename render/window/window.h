@@ -59,7 +59,7 @@ struct Modifiers {
   friend bool operator==(const Modifiers&, const Modifiers&) = default;
 };
 
-enum class InputKind : std::uint8_t { kKeyDown, kButtonDown, kButtonUp, kMove, kWheel, kLeave };
+enum class InputKind : std::uint8_t { kKeyDown, kKeyUp, kButtonDown, kButtonUp, kMove, kWheel, kLeave };
 enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle, kOther };
 
 /// One input event, in order: a press and a release between two frames are both reported.

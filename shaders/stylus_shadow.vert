@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// The part of the plot in which the shadow of the stylus may be: around the pen and what lies behind it in the light.
+#include "field.glsl"
+
+layout(set = 0, binding = kBindStylus, std430) readonly buffer StylusBlock { Stylus stylus; };
+layout(push_constant) uniform Push { vec4 plot_px; } push;
+
+layout(location = 0) noperspective out vec4 at_no_depth;  // as in shade.vert
+
+void main() {
+  const vec3 reach = stylus.shadow.y * panel.light.xyz;
+  const float wide = max(stylus.tail.w, stylus.shadow.w) + 0.2 * stylus.shadow.y;
+  const vec3 ends[5] = vec3[](stylus.ball.xyz, stylus.tail.xyz, stylus.ball.xyz - reach, stylus.tail.xyz - reach,
+                              stylus.ball.xyz - vec3(0.0, 0.0, stylus.shadow.y));
+  vec2 low = vec2(1.0), high = vec2(-1.0);
+  for (int i = 0; i < 5; ++i) {
+    const float margin = i < 2 ? 2.0 * max(stylus.tail.w, stylus.shadow.w) : wide;
+    for (int k = 0; k < 8; ++k) {
+      const vec3 corner = ends[i] + margin * (2.0 * vec3(k & 1, k >> 1 & 1, k >> 2) - 1.0);
+      const vec4 clip = viewUniforms().clip_from_scene * vec4(corner, 1.0);
+      // Beside or behind the viewer: anywhere.
+      const bool before = clip.w > 0.0 && clip.z > 0.0;
+      low = min(low, before ? clip.xy / clip.w : vec2(-1.0));
+      high = max(high, before ? clip.xy / clip.w : vec2(1.0));
+    }
+  }
+  low = clamp(low, -1.0, 1.0);
+  high = clamp(high, -1.0, 1.0);
+  const vec2 t = 0.5 * mix(low, high, vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1)) + 0.5;
+  gl_Position = vec4(2.0 * t - 1.0, 0.0, 1.0);
+  at_no_depth = viewUniforms().field_from_pixel * vec4(push.plot_px.zw + t * push.plot_px.xy, 0.0, 1.0);
+}
