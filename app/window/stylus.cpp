@@ -42,6 +42,17 @@ void Stylus::release(LoopClient* client) {
   turnBack(*client);
 }
 
+void Stylus::follow(bool shift, bool touches, LoopClient& client) {
+  // A tool that changed under the pressing hand would be no stroke of its own.
+  if (client.mouse() != nullptr || touches) return;
+  if (shift && on_ && !turned_ && client.tool() != Tool::kSmooth) {
+    turned_ = client.tool();
+    client.setTool(Tool::kSmooth);
+  } else if (!shift) {
+    turnBack(client);
+  }
+}
+
 void Stylus::handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture,
                     Hands hands) {
   if (client.mouse() == nullptr) return;
@@ -80,7 +91,9 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& client, const W
 void Stylus::press(const render::InputEvent& event, LoopClient& client) {
   held_ = true;
   const Tool chosen = turned_.value_or(client.tool());
-  const Tool tool = event.modifiers.control ? haptic::rowOf(chosen).opposite : chosen;
+  const Tool tool = event.modifiers.control ? haptic::rowOf(chosen).opposite
+                    : event.modifiers.shift ? Tool::kSmooth
+                                            : chosen;
   if (tool != client.tool()) {
     turned_ = client.tool();
     client.setTool(tool);

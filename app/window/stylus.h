@@ -23,7 +23,10 @@ class Stylus {
   enum class Hands : std::uint8_t { kFree, kOther, kNone };
   /// Handles input that cannot wait for the next frame.
   void handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture, Hands hands);
-  /// Lifts the stylus off the surface and undoes a change of tool by Ctrl. `client`: null where none is open.
+  /// With another device than the mouse: a stroke that begins while Shift is held smooths, whatever the tool. `touches`:
+  /// the stylus is in contact.
+  void follow(bool shift, bool touches, LoopClient& client);
+  /// Lifts the stylus off the surface and undoes a change of tool by Ctrl or Shift. `client`: null where none is open.
   void release(LoopClient* client);
 
   /// Whether it presses.
@@ -39,7 +42,8 @@ class Stylus {
   bool on_ = false;
   bool held_ = false;
   std::optional<render::Picked> under_cursor_;
-  std::optional<haptic::Tool> turned_;  // the chosen tool, while Ctrl replaces it by its opposite
+  std::optional<haptic::Tool>
+      turned_;  // the chosen tool, while Ctrl replaces it by its opposite, or Shift by smoothing
 };
 
 }  // namespace fettle::app

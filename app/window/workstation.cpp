@@ -127,6 +127,10 @@ void Workstation::whileWaiting() {
 
 void Workstation::handleInput() {
   input_.followSurface(parts_);
+  if (LoopClient* const client = parts_.document.client()) {
+    const ImGuiIO& io = ImGui::GetIO();
+    parts_.stylus.follow(io.KeyShift && !io.WantTextInput, client->state().contact, *client);
+  }
   while (const auto event = input_.next(parts_)) {
     const Input::Request request = Input::handle(*event, parts_);
     if (request.action) app::carryOut(*request.action, parts_);

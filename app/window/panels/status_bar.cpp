@@ -20,11 +20,17 @@ bool cancelledBar(const WorkProgress& progress, float width, const char* what) {
   return ImGui::SmallButton("Cancel");
 }
 
+// What is typed or moved beyond the ends stays at them, and says so.
+const char* endOfRadius(double samples) {
+  return samples >= haptic::kMaxBrushRadius ? " (the largest)" : samples < 1.0 ? " (one sample)" : "";
+}
+
 std::string brushText(const BrushAdjustment& brush, LoopClient& client, const render::FieldUnits& units) {
   const double height_mm = client.field().grid().height_unit.mm;
   const std::string now =
       brush.of() == BrushAdjustment::Of::kRadius
-          ? fmt::format("brush radius {:.3g} samples", brushRadius(client))
+          ? fmt::format("brush radius {:.3g} samples{}", brushRadius(client),
+                        endOfRadius(brushRadius(client)))
           : fmt::format("press depth {}",
                         lengthText(client.mouse()->pressMm(), ofMillimetres(units.height, height_mm)));
   return fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
@@ -29,6 +31,89 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
   button("Box", Action::kBox, draws(Lasso::Shape::kBox));
 }
 
+// The profile of a brush, from rim to rim.
+void drawFalloff(haptic::Falloff falloff, const ImVec2& corner, const ImVec2& size) {
+  constexpr int kSteps = 48;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto& weight = haptic::rowOf(falloff).weight;
+  const float foot = corner.y + size.y;
+  const auto at = [&](int i) {
+    const double way = std::abs(2.0 * i / kSteps - 1.0);
+    return ImVec2(corner.x + size.x * static_cast<float>(i) / kSteps,
+                  foot - (size.y - 1.0F) * static_cast<float>(weight(way)));
+  };
+  const ImU32 filled = ImGui::GetColorU32(ImGuiCol_FrameBgHovered),
+              line = ImGui::GetColorU32(ImGuiCol_PlotHistogram);
+  for (int i = 0; i < kSteps; ++i) {
+    const ImVec2 a = at(i), b = at(i + 1);
+    list.AddQuadFilled(ImVec2(a.x, foot), a, b, ImVec2(b.x, foot), filled);
+    list.AddLine(a, b, line, 1.5F);
+  }
+}
+
+// How smoothing falls towards the rim: a list of names, each with its profile.
+void falloffField(const PanelContext& context) {
+  haptic::Scene scene = context.client.scene();
+  const haptic::FalloffRow& now = haptic::rowOf(scene.brush_falloff);
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 curve(3.0F * line, line);
+  fieldName("falloff");
+  const bool opened = ImGui::BeginCombo("##falloff", std::string(now.word).c_str());
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  if (!opened) {
+    const float arrow = ImGui::GetFrameHeight();
+    drawFalloff(scene.brush_falloff,
+                ImVec2(high.x - arrow - curve.x - 6.0F, low.y + 0.5F * (high.y - low.y - curve.y)), curve);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("How smoothing falls from the middle of the brush to its rim: %s.",
+                        std::string(now.hint).c_str());
+    return;
+  }
+  for (const haptic::FalloffRow& row : haptic::kFalloffRows) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float room = ImGui::GetContentRegionAvail().x;
+    if (ImGui::Selectable(std::string(row.word).c_str(), row.falloff == scene.brush_falloff)) {
+      scene.brush_falloff = row.falloff;
+      applyScene(context.client, scene, context.notices);
+    }
+    drawFalloff(row.falloff, ImVec2(corner.x + room - curve.x, corner.y), curve);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.hint).c_str());
+  }
+  ImGui::EndCombo();
+}
+
+void spacingField(const PanelContext& context) {
+  haptic::Scene scene = context.client.scene();
+  auto spacing = static_cast<float>(scene.brush_spacing);
+  const bool changed = field("spacing", [&] {
+    return ImGui::SliderFloat("##spacing", &spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
+                              spacing > 0.0F ? "%.2f radii" : "all the time", ImGuiSliderFlags_AlwaysClamp);
+  });
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
+        "moved by "
+        "so many radii of the brush.");
+  if (!changed) return;
+  scene.brush_spacing = std::round(100.0 * static_cast<double>(spacing)) / 100.0;
+  applyScene(context.client, scene, context.notices);
+}
+
+// What pressing so deep does, in words.
+void strengthText(LoopClient& client) {
+  const haptic::Scene& scene = client.scene();
+  const double pressed_n = client.mouse()->pressMm() * scene.stiffness_n_per_mm;
+  const double strength = std::clamp(pressed_n / scene.force_limit_n, 0.0, 1.0);
+  const char* const words = strength < 1.0 / 3.0   ? "lightly: near samples count most"
+                            : strength < 2.0 / 3.0 ? "firmly"
+                                                   : "hard: all samples around count alike";
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextDisabled("%s", fmt::format("pressed so deep it smooths {} ({:.0f} % of the force limit)", words,
+                                        100.0 * strength)
+                                .c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void brushFields(const PanelContext& context) {
   LoopClient& client = context.client;
   const engine::Grid& grid = client.field().grid();
@@ -47,6 +132,11 @@ void brushFields(const PanelContext& context) {
                           ofMillimetres(context.units.length, grid.lateral_unit.mm));
       }))
     setBrushRadius(client, radius_mm / cell, context.notices);
+  const bool smooths = !haptic::isMarkTool(client.tool());
+  if (smooths) {
+    falloffField(context);
+    spacingField(context);
+  }
   if (client.mouse() != nullptr) {
     auto depth = static_cast<float>(client.mouse()->pressMm() / cell);
     if (field("depth", [&] {
@@ -54,6 +144,9 @@ void brushFields(const PanelContext& context) {
                                     ImGuiSliderFlags_AlwaysClamp);
         }))
       setPressDepth(client, static_cast<double>(depth) * cell);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip(
+          "How far below the surface the mouse presses the tip; the wheel changes it while it presses.");
   }
   haptic::Scene scene = client.scene();
   (void)field("keep within", [&] {
@@ -66,6 +159,7 @@ void brushFields(const PanelContext& context) {
     return false;
   });
   endFields();
+  if (smooths && client.mouse() != nullptr) strengthText(client);
 }
 
 }  // namespace
