@@ -152,6 +152,18 @@ inline void navigate(Parts& p) {
     p.chooseTool(std::nullopt);
 }
 
+inline void openRadialMenu(Parts& p) {
+  p.radial.open(p.cursor, p.window.pictureArea(), p.window.scale(), RadialMenu::By::kKey);
+}
+template <haptic::TipShape tip>
+bool hasTip(const Parts& p) {
+  return hasField(p) && p.document.client()->scene().tip == tip;
+}
+template <haptic::TipShape tip>
+void chooseTip(Parts& p) {
+  setTip(clientOf(p), tip, p.feedback.notices);
+}
+
 template <BrushAdjustment::Of of>
 void adjustBrush(Parts& p) {
   p.brush.begin(of, clientOf(p), p.cursor.x);
@@ -386,6 +398,10 @@ inline void compareWithScan(Parts& p) {
 }
 inline void compareAgain(Parts& p) {
   p.compare.again(clientOf(p));
+}
+// Until the key is released (Input).
+inline void showBefore(Parts& p) {
+  p.shows_before = true;
 }
 inline void deviation(Parts& p) {
   toggle<&Display::deviation>(p);

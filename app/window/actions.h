@@ -27,6 +27,9 @@ enum class Action : std::uint8_t {
   kNavigate,
   kFirstTool,  ///< one for each tool, in their order: see actionOf(tool)
   kLastTool = kFirstTool + haptic::kTools - 1,
+  kRadialMenu,
+  kPointTip,
+  kBallTip,
   kBrushRadius,
   kBrushStrength,
   kBrushSmaller,
@@ -78,6 +81,7 @@ enum class Action : std::uint8_t {
   kSectionNext,
   kCompare,
   kCompareAgain,
+  kShowBefore,
   kDeviation,
   kContours,
   kNextMap,

@@ -73,17 +73,20 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   const auto likeField = [sign](const engine::Version& v) {
     return v.reader().sign() == sign ? v : v.inverted();
   };
-  if (const CoarseForm* coarse = meansShown(parts)) {
+  if (parts.shows_before) {
+    shown.versions.push_back(likeField(client.original()));
+  } else if (const CoarseForm* coarse = meansShown(parts)) {
     shown.versions.push_back(likeField(coarse->means));
     shown.original = likeField(coarse->surface);
     shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
     return shown;
+  } else {
+    shown.versions.push_back(parts.marking.edges.over(client.field()));
   }
-  shown.versions.push_back(parts.marking.edges.over(client.field()));
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
   if (const auto original = comparedWith(parts)) shown.original = likeField(*original);
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
-  if (parts.marking.edges.suggestion() != nullptr) shown.accepted = client.field();
+  if (parts.marking.edges.suggestion() != nullptr && !parts.shows_before) shown.accepted = client.field();
   return shown;
 }
 
@@ -120,16 +123,23 @@ void drawField(Parts& parts, const DrawOptions& options) {
   addTitles(parts, previews, input);
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
-    StylusOverlay::append(client, state, picture.mmPerPixel(), input.overlays);
+    parts.stylus_overlay.append(client, state, picture.mmPerPixel(), parts.settings.display.stylus,
+                                input.overlays);
+  else
+    parts.stylus_overlay.hide();
   parts.section_overlay.append(client.field(), parts.section, picture.mmPerPixel(), input.overlays);
   parts.place_overlay.append(client.field(), parts.marking.places, picture.mmPerPixel(), input.overlays);
   if (parts.settings.display.marks)
     parts.line_overlay.append(client.field(), parts.marking.lines.chosen(client), picture.mmPerPixel(),
                               input.overlays);
   parts.line_drag.append(client.field(), input.overlays);
+  const engine::History& history = client.history();
+  if (const auto step = parts.pointed_step; step && *step > history.first() && *step <= history.last())
+    appendStepArea(client.field(), history.info(*step).rect, input.overlays);
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();
+  if (parts.stylus_overlay.fades()) picture.requestRedraw();
   client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }
 

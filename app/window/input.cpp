@@ -1,6 +1,7 @@
 #include "app/window/input.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <imgui.h>
 
@@ -27,8 +28,8 @@ void toStylus(const InputEvent& event, Parts& parts) {
   LoopClient* const client = parts.document.client();
   if (client == nullptr || parts.marking.lasso().active()) return;
   const Stylus::Hands hands = parts.feedback.questions.pending() ? Stylus::Hands::kNone
-                              : parts.drag.active() || pressesAxis(event, parts) || parts.brush.active() ||
-                                      parts.line_drag.active() ||
+                              : parts.radial.active() || parts.drag.active() || pressesAxis(event, parts) ||
+                                      parts.brush.active() || parts.line_drag.active() ||
                                       (LineDrag::begins(event) && linesAreShown(parts))
                                   ? Stylus::Hands::kOther
                                   : Stylus::Hands::kFree;
@@ -56,6 +57,15 @@ bool pressesDeeper(const InputEvent& event, const Parts& parts) {
   LoopClient* const client = parts.document.client();
   return event.kind == InputKind::kWheel && client != nullptr && client->mouse() != nullptr &&
          parts.stylus.on() && (parts.stylus.held() || event.modifiers.control);
+}
+
+// The second button of the mouse as stylus, where the user's habits leave it free.
+bool opensRadialMenu(const InputEvent& event, const Parts& parts) {
+  LoopClient* const client = parts.document.client();
+  return event.kind == InputKind::kButtonDown && event.button == render::MouseButton::kRight &&
+         !event.panels_mouse && client != nullptr && client->mouse() != nullptr && parts.stylus.on() &&
+         !parts.stylus.held() && parts.picture.inside(event.x, event.y) &&
+         dragOf(event.button, event.modifiers, parts.settings.habits, true) == Drag::kNone;
 }
 
 }  // namespace
@@ -99,14 +109,25 @@ std::optional<InputEvent> Input::next(Parts& parts) {
   counts_.buttons += event.kind == InputKind::kButtonDown || event.kind == InputKind::kButtonUp;
   counts_.wheels += event.kind == InputKind::kWheel;
   if (!pending.stylus_has_it) toStylus(event, parts);
-  if (event.kind != InputKind::kMove || !event.panels_mouse || ImGui::IsAnyMouseDown())
-    parts.picture.requestRedraw();
+  const bool shows = event.kind == InputKind::kKeyUp  ? parts.radial.active()
+                     : event.kind == InputKind::kMove ? !event.panels_mouse || ImGui::IsAnyMouseDown()
+                                                      : true;
+  if (shows) parts.picture.requestRedraw();
   return event;
 }
 
 Input::Request Input::handle(const InputEvent& event, Parts& parts) {
   LoopClient* const client = parts.document.client();
   const bool dialog = parts.feedback.questions.pending();
+  if (parts.radial.active()) {
+    const RadialMenu::Outcome outcome = parts.radial.handle(event);
+    if (outcome.used) return {outcome.chosen, std::nullopt};
+  }
+  if (event.kind == InputKind::kKeyUp) {
+    if (event.key == rowOf(Action::kShowBefore).key && std::exchange(parts.shows_before, false))
+      parts.picture.requestRedraw();
+    return {};
+  }
   if (client != nullptr && parts.brush.active() && parts.brush.handle(event, *client, parts.feedback.notices))
     return {};
   if (client != nullptr && parts.marking.lasso().active() && !dialog &&
@@ -127,6 +148,11 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
   if (parts.seenGrid() == nullptr || dialog) return {};
   if (pressesDeeper(event, parts)) {
     if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) client->mouse()->wheel(event.wheel);
+    return {};
+  }
+  if (opensRadialMenu(event, parts)) {
+    parts.radial.open({event.x, event.y}, parts.window.pictureArea(), parts.window.scale(),
+                      RadialMenu::By::kButton);
     return {};
   }
   const render::View before = parts.view;

@@ -1,6 +1,7 @@
 #include "app/window/overlays.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include <glm/common.hpp>
@@ -90,6 +91,30 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
 }
 
+void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
+                    render::Overlays& overlays) {
+  constexpr int kPieces = 48;  // of each side
+  const engine::FieldReader reader = field.reader();
+  const glm::dvec2 last(reader.width() - 1, reader.height() - 1);
+  const glm::dvec2 low = glm::clamp(glm::dvec2(changed.column, changed.row), glm::dvec2(0.0), last);
+  const glm::dvec2 high =
+      glm::clamp(glm::dvec2(changed.column + changed.columns - 1, changed.row + changed.rows - 1), low, last);
+  const std::array corners{low, glm::dvec2(high.x, low.y), high, glm::dvec2(low.x, high.y)};
+  render::OverlayLine piece;
+  piece.depth = render::OverlayLine::Depth::kInScene;
+  piece.colour = {1.0F, 0.85F, 0.1F};
+  piece.width_px = 2.5F;
+  for (std::size_t side = 0; side < corners.size(); ++side)
+    for (int i = 0; i < kPieces; ++i) {
+      const auto at = [&](int k) {
+        return aboveSurface(reader, glm::mix(corners[side], corners[(side + 1) % 4], k / double(kPieces)));
+      };
+      piece.from_mm = at(i);
+      piece.to_mm = at(i + 1);
+      overlays.lines.push_back(piece);
+    }
+}
+
 void SectionOverlay::append(const engine::Version& field, const SectionTool& section, double mm_per_pixel,
                             render::Overlays& overlays) {
   if (!(of_ == field) || revision_ != section.revision() || mm_per_pixel_ != mm_per_pixel) {
@@ -145,7 +170,7 @@ bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) c
 }
 
 void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                           render::Overlays& overlays) {
+                           const StylusLook& look, render::Overlays& overlays) {
   const haptic::Scene& scene = client.scene();
   const engine::Grid& grid = client.field().grid();
   render::StylusState tip;
@@ -153,8 +178,9 @@ void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& st
   tip.proxy_mm = state.proxy_mm;
   tip.force_n = state.force_n;
   tip.contact = state.contact;
-  if (state.stylus_axis) tip.stylus_mm = kStylus_px * mm_per_pixel * *state.stylus_axis;
   if (scene.tip == haptic::TipShape::kSphere) tip.tip_radius_mm = scene.tip_radius_mm;
+  tip.discs = !look.pen;
+  tip.arrow = look.force;
   render::appendStylus(tip, kLargestForce_px * mm_per_pixel / scene.force_limit_n, overlays.lines);
   render::Overlays::Ring ring;
   ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
@@ -163,6 +189,18 @@ void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& st
   ring.colour =
       haptic::isMarkTool(client.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
   overlays.rings.push_back(ring);
+  // In contact the endpoint is under the surface.
+  const glm::dvec3& seen_mm = state.contact ? state.proxy_mm : state.endpoint_mm;
+  if (look.pen)
+    overlays.stylus = render::StylusBody{.tip_mm = seen_mm,
+                                         .ball_radius_mm = tip.tip_radius_mm,
+                                         .to_tail = state.stylus_axis,
+                                         .colour = ring.colour,
+                                         .shadow = look.shadow};
+  if (look.trail)
+    trail_.append(seen_mm, mm_per_pixel, StylusTrail::Clock::now(), overlays);
+  else
+    trail_.clear();
 }
 
 void StylusOverlay::drawn() {

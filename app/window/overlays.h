@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "app/window/settings.h"
+#include "app/window/stylus_trail.h"
 #include "app/work/loop_client.h"
 #include "app/work/place_tool.h"
 #include "app/work/section_tool.h"
@@ -30,6 +33,10 @@ class PlaceOverlay {
   std::vector<render::OverlayLine> pieces_;
 };
 
+/// The outline of what a step changed, on the surface.
+void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
+                    render::Overlays& overlays);
+
 /// The lines of the sections in the picture, the chosen one with discs at its ends. Threading: main.
 class SectionOverlay {
  public:
@@ -47,15 +54,20 @@ class SectionOverlay {
   std::vector<render::OverlayLine> pieces_;
 };
 
-/// The stylus in the picture: tip, force, and the ring of the brush; and the force of the last frames.
-/// Threading: main.
+/// The stylus in the picture: a pen, its shadow, force and trail, and the ring of the brush; and the force of the last
+/// frames. Threading: main.
 class StylusOverlay {
  public:
   /// Whether the drawn position differs from the actual one by more than a pixel.
   [[nodiscard]] bool moved(const haptic::LoopState& state, double mm_per_pixel) const;
-  /// Adds it to the overlays of the next frame.
-  static void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                     render::Overlays& overlays);
+  /// Adds it to the overlays of the next frame. A device that does not say how its stylus is held has a pen as a hand before
+  /// the picture would hold it.
+  void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+              const StylusLook& look, render::Overlays& overlays);
+  /// The next frame shows no stylus.
+  void hide() noexcept { trail_.clear(); }
+  /// Whether the picture changes with time alone.
+  [[nodiscard]] bool fades() const noexcept { return !trail_.empty(); }
   /// The next frame shows this state, and `drawn`: it was drawn.
   void begin(const haptic::LoopState& state) { state_ = state; }
   void drawn();
@@ -67,6 +79,7 @@ class StylusOverlay {
  private:
   haptic::LoopState state_;
   std::vector<float> forces_;
+  StylusTrail trail_;
 };
 
 }  // namespace fettle::app

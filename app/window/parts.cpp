@@ -59,6 +59,8 @@ void Parts::chooseTool(std::optional<haptic::Tool> tool) {
 void Parts::releaseHands() {
   drag.stop();
   line_drag.stop();
+  radial.close();
+  shows_before = false;
   marking.release();
   LoopClient* const client = document.client();
   if (client != nullptr) brush.leave(*client, feedback.notices);

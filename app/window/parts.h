@@ -18,6 +18,7 @@
 #include "app/window/opening.h"
 #include "app/window/overlays.h"
 #include "app/window/questions.h"
+#include "app/window/radial_menu.h"
 #include "app/window/saving.h"
 #include "app/window/settings.h"
 #include "app/window/stylus.h"
@@ -69,6 +70,7 @@ struct Parts {
 
   glm::dvec2 cursor{0.0};  ///< pixels of the window's frame
   Stylus stylus;
+  RadialMenu radial;
   BrushAdjustment brush;
   ViewDrag drag;
 
@@ -89,8 +91,10 @@ struct Parts {
   render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 
-  bool full_screen = false;   ///< the picture and the status line alone, on all of the screen
-  bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
+  std::optional<std::int64_t> pointed_step;  ///< in the list of steps: where it changed something is shown
+  bool shows_before = false;                 ///< the scan as it was, while a key is held
+  bool full_screen = false;                  ///< the picture and the status line alone, on all of the screen
+  bool enter_panels = false;                 ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
   /// How a file is to be read: as the command line says, else as was said of this file before.

@@ -18,6 +18,21 @@ void noteWithoutForce(const LoopClient& client, std::vector<Notice>& notices) {
     notices.push_back({withoutForceText(*problem), ""});
 }
 
+void setTip(LoopClient& client, haptic::TipShape tip, std::vector<Notice>& notices) {
+  constexpr double kUsualBall = 2.0;  // [samples]
+  constexpr int kAllRounds = 2048;
+  haptic::Scene scene = client.scene();
+  if (scene.tip == tip) return;
+  scene.tip = tip;
+  const engine::Grid& grid = client.field().grid();
+  if (tip == haptic::TipShape::kSphere && haptic::sphereProblem(scene.tip_radius_mm, grid))
+    scene.tip_radius_mm = kUsualBall * std::max(grid.spacingXMm(), grid.spacingYMm());
+  // A ball may have fewer; at this level a point may not.
+  if (tip == haptic::TipShape::kPoint && scene.level == haptic::ContactLevel::kPaper)
+    scene.search_rounds = kAllRounds;
+  applyScene(client, scene, notices);
+}
+
 double brushRadius(const LoopClient& client) {
   return client.scene().*haptic::brushRadiusOf(client.tool());
 }

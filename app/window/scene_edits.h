@@ -13,6 +13,9 @@ void applyScene(LoopClient& client, const haptic::Scene& scene, std::vector<Noti
 /// A notice when no known device would hold the scene; a connected device refuses for itself.
 void noteWithoutForce(const LoopClient& client, std::vector<Notice>& notices);
 
+/// The shape of the tip. A ball whose radius does not fit this field gets one of two samples.
+void setTip(LoopClient& client, haptic::TipShape tip, std::vector<Notice>& notices);
+
 /// Of the active tool [samples].
 [[nodiscard]] double brushRadius(const LoopClient& client);
 void setBrushRadius(LoopClient& client, double samples, std::vector<Notice>& notices);

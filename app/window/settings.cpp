@@ -115,6 +115,10 @@ std::string Settings::text() const {
               {"filtered_normals", d.form.filtered_normals},
               {"occlusion", d.form.occlusion},
               {"cavity", d.form.cavity},
+              {"stylus_pen", d.stylus.pen},
+              {"stylus_shadow", d.stylus.shadow},
+              {"stylus_force", d.stylus.force},
+              {"stylus_trail", d.stylus.trail},
               {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
               {"side_panel", side_panel},
@@ -159,6 +163,10 @@ Settings Settings::load(const std::string& path) {
   take(file, "filtered_normals", d.form.filtered_normals);
   take(file, "occlusion", 0.0, 1.0, d.form.occlusion);
   take(file, "cavity", 0.0, 1.0, d.form.cavity);
+  take(file, "stylus_pen", d.stylus.pen);
+  take(file, "stylus_shadow", d.stylus.shadow);
+  take(file, "stylus_force", d.stylus.force);
+  take(file, "stylus_trail", d.stylus.trail);
   take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
   take(file, "mouse", kHabits, settings.habits);
   take(file, "side_panel", settings.side_panel);

@@ -24,6 +24,14 @@ struct RangeRule {
   double share = 0.95;  ///< 0.01 .. 1
 };
 
+/// How the stylus is drawn.
+struct StylusLook {
+  bool pen = true;     ///< a shaded pen (render::StylusBody); else a disc and a line
+  bool shadow = true;  ///< of the pen
+  bool force = true;   ///< an arrow
+  bool trail = false;  ///< StylusTrail
+};
+
 /// Display settings, stored for the next start.
 struct Display {
   bool marks = true;
@@ -44,6 +52,7 @@ struct Display {
   std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
   render::FormShading form = render::kShownForm;
   bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
+  StylusLook stylus{};
   bool smooth_at_rest = true;  ///< four rays per pixel at rest (PictureAtRest)
   // Not stored: the next user may have no glasses.
   render::StereoMode stereo = render::StereoMode::kOff;

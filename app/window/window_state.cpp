@@ -95,6 +95,14 @@ void addBrushAndView(const Parts& p, Report& r) {
   const render::ValueRange& range = p.picture.figures().range;
   r["inverted"] = scene.invert;
   r["brush"] = rounded(scene.brush_radius_samples);
+  r["falloff"] = std::string(haptic::rowOf(scene.brush_falloff).word);
+  r["spacing"] = rounded(scene.brush_spacing);
+  r["radial"] = !p.radial.active()   ? Report()
+                : p.radial.pointed() ? Report(std::string(RadialMenu::kItems[*p.radial.pointed()].name))
+                                     : Report("");
+  r["pointed_step"] = p.pointed_step ? Report(*p.pointed_step) : Report();
+  r["shows_before"] = p.shows_before;
+  r["stylus_pen"] = display.stylus.pen;
   r["mark_brush"] = rounded(scene.mark_radius_samples);
   r["press_mm"] = mouse != nullptr ? rounded(mouse->pressMm()) : 0.0;
   r["adjusting"] = p.brush.of() == BrushAdjustment::Of::kRadius  ? "radius"

@@ -198,7 +198,6 @@ std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLin
 // Linear light; distinguishable on viridis, grey and blue - red also by colour-blind users (Okabe and Ito
 // 2008).
 constexpr glm::vec3 kEndpoint{0.90F, 0.35F, 0.0F};
-constexpr glm::vec3 kStylus{0.30F, 0.32F, 0.36F};
 constexpr glm::vec3 kProxy{1.0F, 1.0F, 1.0F};
 constexpr glm::vec3 kTip{0.85F, 0.85F, 0.85F};
 constexpr glm::vec3 kForce{0.88F, 0.78F, 0.05F};

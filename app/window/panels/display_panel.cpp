@@ -17,6 +17,22 @@ void shareSlider(const char* label, const char* id, double& share, const char* t
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
 }
 
+void stylusTicks(StylusLook& look) {
+  const auto tick = [](const char* label, bool& on, const char* tip) {
+    ImGui::Checkbox(label, &on);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+  };
+  tick("stylus as a pen", look.pen, "A pen whose point is where the tip is. Without it the tip is a disc.");
+  sameLineIfFits("its shadow", ItemKind::kTick);
+  ImGui::BeginDisabled(!look.pen);
+  tick("its shadow", look.shadow,
+       "On the surface: it meets the pen's point where that touches, and moves away as the pen rises.");
+  ImGui::EndDisabled();
+  tick("force arrow", look.force, "The force that the hand feels; the longest arrow is the force limit.");
+  sameLineIfFits("trail", ItemKind::kTick);
+  tick("trail", look.trail, "Where the tip was during the last second.");
+}
+
 }  // namespace
 
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
@@ -46,6 +62,7 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
         "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and "
         "not "
         "on the noise of single samples.");
+  stylusTicks(display.stylus);
   ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(

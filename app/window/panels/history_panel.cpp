@@ -7,7 +7,7 @@
 
 namespace fettle::app {
 
-void historyPanel(const PanelContext& context, MarkEdit& edit) {
+void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std::int64_t>& pointed) {
   const engine::History& history = context.client.history();
   if (ImGui::Button("Undo")) context.act(Action::kUndo);
   ImGui::SameLine();
@@ -27,6 +27,7 @@ void historyPanel(const PanelContext& context, MarkEdit& edit) {
       if (i > history.number())
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
       if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
+      if (ImGui::IsItemHovered()) pointed = i;
       if (i > history.number()) ImGui::PopStyleColor();
     }
     if (chosen >= 0) {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <imgui.h>
 
@@ -35,6 +37,7 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
 
 PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
+  const std::optional<std::int64_t> pointed_before = std::exchange(parts.pointed_step, std::nullopt);
   const Act act = [&parts](Action action) { carryOut(action, parts); };
   if (parts.feedback.questions.pending()) parts.leavePanels();
   const bool alone = parts.full_screen;
@@ -46,7 +49,9 @@ PanelRequests layOutPanels(Parts& parts) {
   parts.window.setPictureArea({0, static_cast<int>(top), static_cast<int>(width),
                                static_cast<int>(ImGui::GetIO().DisplaySize.y - bar - top)});
   placeholder(parts, width, act, requests);
+  if (parts.pointed_step != pointed_before) parts.picture.requestRedraw();
   pictureOverlay(parts);
+  radialOverlay(parts);
   requests.answer = dialog(parts);
   return requests;
 }

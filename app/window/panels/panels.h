@@ -40,7 +40,8 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
 void sectionPanel(const PanelContext& context, SectionTool& section);
 /// Another scan brought onto the field, and the deviation from it.
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture);
-void historyPanel(const PanelContext& context, MarkEdit& edit);
+/// `pointed` is set to the step under the cursor, if any.
+void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std::int64_t>& pointed);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
 /// The range of the colours over a histogram, tolerance, steps and contour lines.
 void colourPanel(const PanelContext& context, Display& display, ColourRange& colours, WindowPicture& picture);
@@ -64,6 +65,9 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
 void statusBar(Parts& parts);
 /// Over the picture: the axes, the handle of the split line, the lasso.
 void pictureOverlay(const Parts& parts);
+
+/// The tools around the cursor, over everything.
+void radialOverlay(const Parts& parts);
 
 void axesOverlay(const AxesGizmo& gizmo, const glm::dvec2& cursor, float scale);
 

@@ -49,7 +49,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
   if (section(settings, "Form", false)) formPanel(context, parts.form);
-  if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit);
+  if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(settings, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
   if (section(settings, "Section", false)) sectionPanel(context, parts.section);

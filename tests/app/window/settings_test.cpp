@@ -23,6 +23,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.light_azimuth_deg = 20.0F;
   settings.display.half_in_motion = false;
   settings.display.smooth_at_rest = false;
+  settings.display.stylus = {.pen = false, .shadow = false, .force = false, .trail = true};
   settings.display.vertices = 131072;
   settings.display.axes = false;
   settings.display.flights = false;

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <glm/vec2.hpp>
+
+#include "app/window/actions.h"
+#include "render/plan/camera.h"
+#include "render/window/window.h"
+
+namespace fettle::app {
+
+/// Tools and tips around the cursor. A direction chooses: it is learnt by the hand, and the eye stays on the work. The
+/// key or the button that opened it is held, and chooses when it is released; in the middle that is nothing. A tap,
+/// without a direction, leaves it open: then a click or Enter chooses. Escape ends it. Arrow keys give a direction,
+/// too. Threading: main.
+class RadialMenu {
+ public:
+  struct Item {
+    std::string_view name;
+    Action action;
+  };
+  /// Clockwise from the top.
+  static constexpr std::array<Item, 8> kItems{{{"Smooth", actionOf(haptic::Tool::kSmooth)},
+                                               {"Mark", actionOf(haptic::Tool::kMark)},
+                                               {"Unmark", actionOf(haptic::Tool::kUnmark)},
+                                               {"Lasso", Action::kLasso},
+                                               {"View", Action::kNavigate},
+                                               {"Ball tip", Action::kBallTip},
+                                               {"Point tip", Action::kPointTip},
+                                               {"Feel", actionOf(haptic::Tool::kFeel)}}};
+  static constexpr render::Key kKey = render::Key::kSpace;
+  /// At scale 1 [pixels]: within which nothing is chosen; of the names.
+  static constexpr double kMiddle_px = 24.0, kNames_px = 92.0;
+
+  enum class By : std::uint8_t { kKey, kButton };
+  /// Opens at the cursor, brought into the picture.
+  void open(const glm::dvec2& cursor, const render::Rectangle& picture, double scale, By by);
+  void close() noexcept { active_ = false; }
+
+  struct Outcome {
+    bool used = false;  ///< by the menu: for nobody else
+    std::optional<Action> chosen{};
+  };
+  [[nodiscard]] Outcome handle(const render::InputEvent& event);
+
+  [[nodiscard]] bool active() const noexcept { return active_; }
+  /// The item in whose direction the cursor is, or that an arrow key chose.
+  [[nodiscard]] std::optional<std::size_t> pointed() const noexcept { return pointed_; }
+  /// Where it is drawn: whole in the picture. Directions count from where the cursor was.
+  [[nodiscard]] const glm::dvec2& drawnAt() const noexcept { return drawn_at_; }
+
+ private:
+  void point(const glm::dvec2& cursor) noexcept;
+  void turnTo(std::size_t item) noexcept;
+  [[nodiscard]] Outcome press(const render::InputEvent& event);
+  [[nodiscard]] Outcome choose() noexcept;
+  [[nodiscard]] Outcome release() noexcept;
+
+  bool active_ = false;
+  std::optional<By> held_;    // what opened it, until it is released
+  bool was_pointed_ = false;  // at an item, since it was opened
+  std::optional<std::size_t> pointed_;
+  glm::dvec2 middle_{0.0}, drawn_at_{0.0};
+  double scale_ = 1.0;
+};
+
+}  // namespace fettle::app
