@@ -291,7 +291,8 @@ Report waitedFor(const Parts& p, const Input& input) {
   }
   // The picture shows the field as requested by the scene.
   const render::Shown& shown = p.picture.shown();
-  waits("the field in the picture", shown.accepted.value_or(shown.versions.front()) != client.field());
+  waits("the field in the picture",
+        !p.shows_before && shown.accepted.value_or(shown.versions.front()) != client.field());
   waits("the loop's step", client.history().current() != client.upright());
   waits("inversion", (client.field().reader().sign() < 0.0F) != client.scene().invert);
   return names;

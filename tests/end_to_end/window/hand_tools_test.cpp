@@ -1,0 +1,281 @@
+// What the hand holds: the stylus as a pen with its shadow, the brush's falloff and spacing, Shift that smooths, the
+// tools around the cursor.
+#include <csignal>
+#include <fstream>
+#include <string>
+
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+using Place = User::Place;
+
+constexpr Place kOnPart{330, 400};
+
+class HandTools : public WindowTest {
+ protected:
+  // Only these panels are open.
+  void openOnly(const std::vector<std::string>& names, const State& others = State::object()) const {
+    State panels;
+    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+      panels[closed] = false;
+    for (const std::string& name : names) panels[name] = true;
+    State settings{{"edge_lines", false}, {"panels", panels}};
+    settings.update(others);
+    std::ofstream(folder.path() / "fettle" / "window.json") << settings;
+  }
+  void hold(const std::string& key) const { display.hands({"keydown", key}); }
+  void letGo(const std::string& key) const { display.hands({"keyup", key}); }
+  // The end, whether something was changed or not.
+  static void end(ViewProgram& program) {
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    expectSilence(program);
+  }
+  static State waitRadial(ViewProgram& program, const State& is) {
+    return program.until("the menu at " + is.dump(), [&](const State& s) { return s["radial"] == is; });
+  }
+  static State waitTool(ViewProgram& program, const std::string& tool) {
+    return program.until(tool, [&](const State& s) { return s["tool"] == tool && s["radial"].is_null(); });
+  }
+};
+
+TEST_F(HandTools, the_stylus_is_a_pen_whose_shadow_and_arrow_can_be_switched_off) {
+  openOnly({"Display"});
+  const auto program = start({scan});
+  User user(display, *program, "pen");
+  (void)opened(*program);
+  EXPECT_EQ(user.key("s")["stylus_pen"], true);
+  user.at(kOnPart);
+  (void)user.rest();
+  const Screen pen = user.look("a pen over the part");
+  // It stands up from the tip, to the right.
+  const Part above{kOnPart.x + 10, kOnPart.y - 70, 60, 60}, below{kOnPart.x - 70, kOnPart.y + 40, 60, 60};
+  user.at({20, 790});
+  const Screen none =
+      user.until("no pen", [&](const Screen& now) { return differing(pen, now, above) > 100; });
+  EXPECT_EQ(differing(pen, none, below), 0);
+
+  // Pressed: the arrow of the force.
+  user.at(kOnPart);
+  user.down(1);
+  (void)program->until("contact", [](const State& s) { return s["touching"] == true; });
+  const Screen pressed = user.look("pressed");
+  user.up(1);
+  EXPECT_GT(differing(pen, pressed, {kOnPart.x - 30, kOnPart.y - 80, 60, 80}), 60);
+
+  // From above the pen leaves the place of work free, and a ball at its point is seen.
+  (void)user.key("7");
+  (void)user.key("shift+t");
+  user.at(kOnPart);
+  (void)user.rest();
+  (void)user.look("a ball from above");
+  (void)user.key("alt+t");
+
+  user.at(kOnPart);
+  (void)user.rest();
+  const Screen with = user.look("before it is switched off");
+  (void)user.click("its shadow");
+  user.at(kOnPart);
+  (void)user.rest();
+  const Screen without = user.look("no shadow");
+  EXPECT_GT(differing(with, without, user.surface()), 30);
+  EXPECT_EQ(user.click("stylus as a pen")["stylus_pen"], false);
+  user.at(kOnPart);
+  (void)user.rest();
+  const Screen disc = user.look("a disc");
+  EXPECT_GT(differing(without, disc, user.surface()), 100);
+  end(*program);
+}
+
+TEST_F(HandTools, the_trail_follows_the_tip_and_is_gone_a_second_later) {
+  openOnly({"Display"}, {{"stylus_trail", true}});
+  const auto program = start({scan});
+  User user(display, *program, "trail");
+  (void)opened(*program);
+  (void)user.key("7");
+  (void)user.key("s");
+  user.at({200, 332});
+  const Screen before = user.look("before");
+  for (int x = 210; x <= 420; x += 10) user.at({x, 332 + (x / 10) % 3 * 8});
+  // Left of where the tip comes to rest, and far from where it was before.
+  const Part way{350, 310, 50, 50};
+  (void)user.until("a trail", [&](const Screen& now) { return differing(before, now, way) > 20; });
+  (void)user.until("no trail", [&](const Screen& now) { return differing(before, now, way) == 0; });
+  // Nothing moves any more: no frames for a trail that has ended.
+  (void)user.rest();
+  end(*program);
+}
+
+TEST_F(HandTools, falloff_spacing_and_shift_are_kept_to_the_bit) {
+  openOnly({"Tool"});
+  const std::string work = folder.file("work.fettle"), saved = folder.file("saved.tif"),
+                    replayed = folder.file("replayed.tif");
+  const auto program = start({scan});
+  User user(display, *program, "brush");
+  (void)opened(*program);
+  (void)user.key("7");
+  EXPECT_EQ(user.key("s")["falloff"], "flat");
+  EXPECT_EQ(program->now()["spacing"], 0.0);
+  (void)user.press("f");
+  user.type("99");
+  EXPECT_TRUE(user.reads(
+      "brush radius 64 samples (the largest) [99]: move or type, Enter or left button keeps it, Esc "
+      "or right button leaves it"));
+  (void)user.look("clamped");
+  (void)user.key("Escape");
+  (void)user.press("f");
+  user.type("9");
+  (void)user.key("Return");
+  user.tap("flat");
+  program->until("the list",
+                 [](const State& s) { return s["texts"].dump().find("\"sphere\"") != std::string::npos; });
+  (void)user.look("falloffs");
+  (void)user.click("smooth");
+  program->until("a falloff", [](const State& s) { return s["falloff"] == "smooth"; });
+  const State spaced = user.click("all the time");  // the middle of the slider
+  EXPECT_GT(spaced["spacing"], 0.5);
+  (void)user.look("the brush's panel");
+  EXPECT_EQ(user.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
+
+  // The mark tool with Shift smooths: heights change, and nothing is marked.
+  EXPECT_EQ(user.key("m")["tool"], "mark");
+  const State smoothed = user.drag(1, {240, 420}, {440, 420}, 8, "shift");
+  EXPECT_EQ(smoothed["steps"], 2);
+  EXPECT_EQ(smoothed["tool"], "mark") << "the tool of before";
+  (void)user.key("Escape");
+  saveAs(user, work);
+  (void)quit(user);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "convert", work, saved}).status, 0);
+  const Differences changed = compare(load(scan), load(saved));
+  EXPECT_GT(changed.changed, 500);
+  const Outcome again = runProcess({FETTLE_PROGRAM, "replay", work, replayed});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(compare(load(saved), load(replayed)).changed, 0);
+  const Outcome journal = runProcess({FETTLE_PROGRAM, "journal", work});
+  EXPECT_NE(journal.out.find("falloff = \\\"smooth\\\""), std::string::npos);
+  EXPECT_EQ(journal.out.find("\"Mark\""), std::string::npos) << "no step marks";
+}
+
+TEST_F(HandTools, the_scan_as_it_was_is_seen_while_a_key_is_held) {
+  openOnly({"Tool"});
+  const auto program = start({scan});
+  User user(display, *program, "before");
+  (void)opened(*program);
+  (void)user.key("7");
+  user.at({20, 790});
+  const Screen before = user.look("the scan");
+  (void)user.key("s");
+  EXPECT_EQ(user.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  const Screen after = user.changed("smoothed", before);
+  hold("BackSpace");
+  program->until("held", [](const State& s) { return s["shows_before"] == true && s["settled"] == true; });
+  (void)user.same("as it was", before);
+  letGo("BackSpace");
+  program->until("released",
+                 [](const State& s) { return s["shows_before"] == false && s["settled"] == true; });
+  (void)user.same("as it is", after);
+  EXPECT_EQ(program->now()["steps"], 1);
+  end(*program);
+}
+
+TEST_F(HandTools, the_step_under_the_cursor_is_outlined_where_it_changed_something) {
+  openOnly({"Steps"});
+  const auto program = start({scan});
+  User user(display, *program, "steps");
+  (void)opened(*program);
+  (void)user.key("7");
+  (void)user.key("s");
+  (void)user.stroke({240, 332}, {440, 332}, 8);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  const Screen plain = user.look("no step under the cursor");
+  const State before = program->now();
+  const int panels = before["picture"][0].get<int>() + before["picture"][2].get<int>();
+  Place step{0, 0};
+  for (const State& text : before["texts"])
+    if (text["text"].get<std::string>().find("Smooth") != std::string::npos && text["at"][0] > panels)
+      step = {text["at"][0].get<int>() + 20, text["at"][1].get<int>() + text["at"][3].get<int>() / 2};
+  ASSERT_GT(step.x, 0);
+  user.at(step);
+  program->until("the step", [](const State& s) { return s["pointed_step"] == 1 && s["settled"] == true; });
+  const Screen outlined = user.look("outlined");
+  // Around the stroke, and nowhere else.
+  EXPECT_GT(differing(plain, outlined, {180, 270, 320, 130}), 300);
+  EXPECT_EQ(differing(plain, outlined, {4, 420, 640, 250}), 0);
+  user.at({20, 790});
+  (void)user.same("gone again", plain);
+  end(*program);
+}
+
+TEST_F(HandTools, tools_around_the_cursor_are_chosen_by_a_direction) {
+  openOnly({"Tool"});
+  const auto program = start({scan});
+  User user(display, *program, "radial");
+  (void)opened(*program);
+  user.at(kOnPart);
+  hold("space");
+  waitRadial(*program, "");
+  (void)user.look("open");
+  user.at({kOnPart.x + 50, kOnPart.y - 50});
+  waitRadial(*program, "Mark");
+  (void)user.look("at mark");
+  letGo("space");
+  (void)waitTool(*program, "mark");
+  // Escape, and the middle: nothing.
+  user.at(kOnPart);
+  hold("space");
+  waitRadial(*program, "");
+  user.at({kOnPart.x + 50, kOnPart.y});
+  waitRadial(*program, "Unmark");
+  (void)user.press("Escape");
+  letGo("space");
+  (void)waitTool(*program, "mark");
+  user.at(kOnPart);
+  hold("space");
+  waitRadial(*program, "");
+  user.at({kOnPart.x + 50, kOnPart.y});
+  waitRadial(*program, "Unmark");
+  user.at(kOnPart);
+  waitRadial(*program, "");
+  letGo("space");
+  (void)waitTool(*program, "mark");
+  // By keys alone.
+  hold("space");
+  waitRadial(*program, "");
+  letGo("space");
+  (void)user.press("Up");
+  waitRadial(*program, "Smooth");
+  (void)user.press("Return");
+  (void)waitTool(*program, "smooth");
+  // The mouse's second button, on the whole screen, near its corner: the menu is whole, and presses nothing.
+  (void)user.press("F11");
+  program->until("the picture alone",
+                 [](const State& s) { return s["picture"][1] == 0 && s["settled"] == true; });
+  user.at(kOnPart);
+  user.down(3);
+  waitRadial(*program, "");
+  user.at({kOnPart.x + 50, kOnPart.y + 50});
+  waitRadial(*program, "Lasso");
+  (void)user.look("full screen");
+  user.at({kOnPart.x - 50, kOnPart.y});
+  waitRadial(*program, "Point tip");
+  user.at({kOnPart.x - 40, kOnPart.y + 40});
+  waitRadial(*program, "Ball tip");
+  user.up(3);
+  program->until("a ball",
+                 [](const State& s) { return s["contact_level"] == "ball" && s["radial"].is_null(); });
+  EXPECT_EQ(program->now()["tool"], "smooth");
+  EXPECT_EQ(program->now()["steps"], 0);
+  (void)user.press("F11");
+  (void)user.rest();
+  end(*program);
+}
+
+}  // namespace
+}  // namespace fettle::tests
