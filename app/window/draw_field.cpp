@@ -92,7 +92,8 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
 
 void addTitles(const Parts& parts, const std::vector<FilterPreview::Picture>& previews,
                render::FrameInput& input) {
-  if (meansShown(parts) != nullptr) input.titles.emplace_back("without the form, approximate");
+  if (const CoarseForm* coarse = meansShown(parts))
+    input.titles.push_back(fmt::format("without the form: {}", coarseFormState(*coarse)));
   if (previews.empty()) return;
   input.titles.emplace_back("unchanged");
   for (const FilterPreview::Picture& preview : previews) input.titles.push_back(preview.title);

@@ -5,6 +5,9 @@
 #include <new>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "app/work/read_units.h"
 #include "engine/field/means.h"
 #include "engine/measure/form_surface.h"
 
@@ -44,6 +47,12 @@ double rmsBetween(const engine::FieldReader& fine, const engine::FieldReader& co
 }
 
 }  // namespace
+
+std::string coarseFormState(const CoarseForm& form) {
+  const engine::LengthUnit& unit = form.surface.grid().height_unit;
+  const ReadAs as = readLengthAs(form.off_rms, unit.mm, unit.name);
+  return fmt::format("approximate, off by about {:.3g} {} rms", form.off_rms / as.size, as.name);
+}
 
 bool formTakesLong(const engine::Grid& grid) noexcept {
   return grid.samples() > kFewSamples;

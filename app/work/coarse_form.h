@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -17,6 +18,9 @@ struct CoarseForm {
   /// How far the surface is from one that is fitted to a quarter of the means, rms [height_unit].
   double off_rms = 0.0;
 };
+
+/// "approximate, off by about 3.2 um rms".
+[[nodiscard]] std::string coarseFormState(const CoarseForm& form);
 
 /// Whether previews of a field begin so.
 [[nodiscard]] bool formTakesLong(const engine::Grid& grid) noexcept;

@@ -13,7 +13,7 @@ namespace {
 // Rounds of adoption: each leaves only the edits of some milliseconds, so without edits one is enough.
 constexpr int kMostRounds = 50;
 // Between two looks at what is there so far: each is drawn.
-constexpr auto kLookAgain = std::chrono::milliseconds(100);
+constexpr auto kLookAgain = std::chrono::milliseconds(200);
 // All of the view at once looks better than one part after the other, if it does not take longer.
 constexpr auto kWaitForAll = std::chrono::milliseconds(200);
 

@@ -18,8 +18,10 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kCoarse_s = 0.12;  // of filtering means
-constexpr double kFewestCells = 96.0 * 96.0, kMostCells = 1600.0 * 1600.0;
+constexpr double kCoarse_s = 0.08;  // of filtering means
+// Of a sample in a new tile, whose memory the system clears first.
+constexpr double kNewSample_s = 5e-9;
+constexpr double kFewestCells = 96.0 * 96.0, kMostCells = 1280.0 * 1280.0;
 // Of the field in view, as its inverse: from then on all of it is approximated.
 constexpr std::int64_t kMuch = 4;
 constexpr std::int64_t kFewSamples = 1 << 21;  // whose noise is found at once
@@ -169,7 +171,8 @@ void FilterView::approximateIfSlow(const FilterSpec& asked, JobControl& job) {
   if (comesInPieces(*spec) || needsWholeField(filterOf(spec->kind)))
     samples = piecesAreExact(*spec, input_) ? count(grown(seen, reachOf(*spec, input_), grid))
                                             : static_cast<double>(grid.samples());
-  const bool slow = samples * *each > kSoon_s || (range_is_missing && grid.samples() > kFewSamples);
+  const bool slow = samples * *each + count(seen) * kNewSample_s > kSoon_s ||
+                    (range_is_missing && grid.samples() > kFewSamples);
   if (!slow) return;
   {
     const std::scoped_lock lock(mutex_);

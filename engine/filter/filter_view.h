@@ -27,7 +27,7 @@ struct FieldView {
 /// A filter of a whole field, of which what is seen is there first.
 ///
 /// The tiles in view come first, the nearest to its middle before the others, then the rest, each with the bits of
-/// applyFilter. Where those in view would take longer than kSoon, they are approximated first from means of as many samples
+/// applyFilter. Where those in view would take longer than kSoon_s, they are approximated first from means of as many samples
 /// as take a fraction of it (CoarseFilter), and each tile is replaced as its result comes. Where much of the field is in view,
 /// the first picture is the field of the means itself: tiles for all of it take longer to fill than to filter. How far the
 /// approximation is off is measured on every tile that is replaced, of a filter that needs the whole field beforehand by an

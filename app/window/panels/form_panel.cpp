@@ -65,9 +65,8 @@ void formPanel(const PanelContext& context, FormTool& form) {
     ImGui::SameLine();
     if (ImGui::Button("Cancel##form")) form.cancel();
     if (const auto& preview = form.previewed(); preview && preview->coarse)
-      writeWrapped(fmt::format("preview, approximate: from means of {} x {} samples, off by about {} rms",
-                               preview->coarse->step, preview->coarse->step,
-                               lengthText(preview->coarse->off_rms, context.units.change, 3)));
+      writeWrapped(fmt::format("preview, from means of {} x {} samples: {}", preview->coarse->step,
+                               preview->coarse->step, coarseFormState(*preview->coarse)));
     return;
   }
   if (ImGui::Button("Fit")) form.measure(context.client);

@@ -1,5 +1,6 @@
 #include "app/work/coarse_form.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -52,6 +53,8 @@ TEST(CoarseForm, is_near_the_form_of_all_samples_and_says_how_near) {
     EXPECT_LT(most, 0.002);
     EXPECT_GT(coarse->off_rms, 0.0);
     EXPECT_LT(coarse->off_rms, 0.002);
+    EXPECT_TRUE(coarseFormState(*coarse).starts_with("approximate, off by about "));
+    EXPECT_TRUE(coarseFormState(*coarse).ends_with("m rms"));
   }
 }
 
