@@ -22,11 +22,11 @@ inline float between(float a, float b, float share) noexcept {
 }
 
 // Between which cells a sample lies, counted from the rectangle's first sample.
-struct Place {
+struct CoarsePlace {
   std::int32_t cell = 0, next = 0;
   float share = 0.0F;
 };
-Place placeOf(std::int32_t sample, std::int32_t step, std::int32_t cells) noexcept {
+CoarsePlace coarsePlaceOf(std::int32_t sample, std::int32_t step, std::int32_t cells) noexcept {
   const double x = (sample + 0.5) / step - 0.5;
   const auto cell = static_cast<std::int32_t>(std::floor(x));
   if (cell < 0) return {0, 0, 0.0F};
@@ -87,8 +87,8 @@ Result<CoarseFilter> CoarseFilter::make(const Version& input, const Version& ori
 }
 
 float CoarseFilter::heightAt(std::int32_t column, std::int32_t row) const noexcept {
-  const Place x = placeOf(column - rect_.column, step_, columns_);
-  const Place y = placeOf(row - rect_.row, step_, rows_);
+  const CoarsePlace x = coarsePlaceOf(column - rect_.column, step_, columns_);
+  const CoarsePlace y = coarsePlaceOf(row - rect_.row, step_, rows_);
   const auto across = [&](const float* z) { return between(z[x.cell], z[x.next], x.share); };
   return between(across(rowOfCells(y.cell)), across(rowOfCells(y.next)), y.share);
 }
@@ -99,9 +99,9 @@ TileRef CoarseFilter::tile(const Version& input, const Version& original, const 
   const Tile& before = reader.tile(tc, tr);
   TileRef after = TileRef::adopt(input.memory()->bulk().acquire());
   if (!after) return after;
-  std::array<Place, kTileSide> across;
+  std::array<CoarsePlace, kTileSide> across;
   for (std::int32_t c = 0; c < kTileSide; ++c)
-    across[static_cast<std::size_t>(c)] = placeOf(tc * kTileSide + c - rect_.column, step_, columns_);
+    across[static_cast<std::size_t>(c)] = coarsePlaceOf(tc * kTileSide + c - rect_.column, step_, columns_);
   using Row = std::array<float, kTileSide>;
   // Two rows of cells, spread out over the samples of the tile.
   std::array<Row, 2> spread{};
@@ -119,7 +119,7 @@ TileRef CoarseFilter::tile(const Version& input, const Version& original, const 
   alignas(64) std::array<float, kTileSamples> results;
   const float sign = reader.sign();
   for (std::int32_t r = 0; r < kTileSide; ++r) {
-    const Place y = placeOf(tr * kTileSide + r - rect_.row, step_, rows_);
+    const CoarsePlace y = coarsePlaceOf(tr * kTileSide + r - rect_.row, step_, rows_);
     const Row& low = rowOf(y.cell);
     const Row& high = rowOf(y.next);
     const float* const old = before.samples.data() + r * kTileSide;
