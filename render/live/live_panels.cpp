@@ -46,10 +46,11 @@ glm::vec2 contourSquareOf(const PanelPlan& p, int shift) {
   return glm::clamp(glm::round(steps), 1.0, double{kMostAround});
 }
 
-glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
+// Of the view, also where a headset's eyes see it: the light stays where it is when the head turns.
+glm::vec3 towardsLight(const FrameInput& input) {
   const double azimuth = input.light_azimuth_deg * std::numbers::pi / 180.0;
   const double up = std::sin(input.light_elevation_deg * std::numbers::pi / 180.0);
-  const glm::dvec3 right = camera.right();
+  const glm::dvec3 right = axesOf(input.view).right;
   const glm::dvec3 away{-right.y, right.x, 0.0};
   const glm::dvec3 level = std::cos(azimuth) * right + std::sin(azimuth) * away;
   return std::sqrt(std::max(0.0, 1.0 - up * up)) * level + glm::dvec3(0.0, 0.0, up);
@@ -68,7 +69,7 @@ Rectangle sideOf(const Rectangle& plot, double split, bool right) {
 }
 
 LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields,
-                       PatchTreeCache& trees)
+                       PatchTreeCache& trees, const std::array<Camera, 2>* head)
     : fields_(fields), part_(input.part) {
   const bool split = input.arrangement == Arrangement::kSplit && fields.count() >= 2;
   const std::size_t count = split ? 2 : plan.panels.size();
@@ -85,6 +86,7 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
   for (std::size_t i = 0; i < count; ++i) {
     const PanelPlan& p = plan.panels[i];
     if (stereo) eyes_.push_back(eyesOf(p.camera, input.stereo, window));
+    if (head != nullptr) eyes_.push_back(*head);
     queries_.push_back(queryOf(i, input, p,
                                input.panel_vertices.empty()
                                    ? input.vertex_budget / static_cast<std::int64_t>(count)
@@ -181,7 +183,7 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
   u.paging.x = paging.log2_columns;
   u.paging.y = paging.log2_rows;
   u.paging.z = static_cast<int>(paging.across);
-  u.light = glm::vec4(towardsLight(input, p.camera), u.light.w);
+  u.light = glm::vec4(towardsLight(input), u.light.w);
   const bool on_demand = fields_.onDemand();
   const bool smooth = std::max(px.x, px.y) > 1.5;
   glm::ivec2 footprint(0);

@@ -23,7 +23,9 @@ class LivePanels {
  public:
   /// Chooses the patches as if everything were on the device. Panels unchanged since `cache` was used last
   /// reuse its trees.
-  LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, PatchTreeCache& trees);
+  /// `head`: cameras of a headset's eyes (FrameInput::eyes), else null.
+  LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, PatchTreeCache& trees,
+             const std::array<Camera, 2>* head = nullptr);
   LivePanels& operator=(LivePanels&&) = delete;
 
   /// The pages that the patches need, for submission `frame`; only on demand.

@@ -66,6 +66,17 @@ vk::Extent2D extentOf(const FrameInput& input) {
           static_cast<std::uint32_t>(input.part->height)};
 }
 
+// The cameras of a headset's eyes, of which the left one takes the place of the view's; none without them.
+std::optional<std::array<Camera, 2>> headCameras(const FrameInput& input, PicturePlan& plan) {
+  if (!input.eyes) return std::nullopt;
+  PanelPlan& panel = plan.panels.front();
+  const std::array<EyeView, 2> eyes = input.eyes(panel.framing);
+  const auto of = [&](const EyeView& eye) { return Camera::ofEye(eye, panel.framing.drawn, panel.plot); };
+  const std::array<Camera, 2> cameras{of(eyes[0]), of(eyes[1])};
+  panel.camera = cameras[0];
+  return cameras;
+}
+
 // Share of the visible plots that is drawn again, 0 .. 1.
 double redrawnShare(const std::vector<LivePanel>& panels) {
   double plots_px = 0.0, redrawn_px = 0.0;
@@ -138,6 +149,11 @@ struct LivePicture::Impl {
   void recordStereo(const Stereo& stereo, Sharpness sharpness, std::vector<LivePanel>& panels,
                     const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
                     const LiveTarget& target);
+  void recordHead(Stereo::Passes passes, Sharpness sharpness, std::vector<LivePanel>& panels,
+                  const glm::vec3& ground, const LiveTarget& target);
+  [[nodiscard]] bool onePass(Stereo::Passes passes) const noexcept;
+  void recordEachEye(Sharpness sharpness, std::vector<LivePanel>& panels,
+                     const std::vector<gpu::Quad>& decorations, const glm::vec3& ground);
 };
 
 LivePicture::Impl::~Impl() {
@@ -170,6 +186,12 @@ engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input,
     return draw(eye, target);
   }
   if (engine::Status ok = check(input.stereo); !ok) return tl::unexpected(ok.error());
+  if (input.eyes &&
+      (fields.shown().versions.size() != 1 || input.stereo.mode != StereoMode::kOff || input.part ||
+       input.view.projection != Projection::kPerspective || input.decoration != Decoration::kNone))
+    return engine::inputError(
+        "a headset's eyes see a whole picture of one version in perspective, without decorations", "picture",
+        "see FrameInput::eyes");
   const Shown& shown = fields.shown();
   if (!spans) spans = spansOf(shown.versions, shown.original);
   engine::Result<PicturePlan> planned = planFrame(input, shown, *spans);
@@ -188,9 +210,7 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
                                      std::vector<LivePanel>& panels,
                                      const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
                                      const LiveTarget& target) {
-  const bool one_pass = stereo.passes == Stereo::Passes::kBest  ? context.multiviewWorks()
-                        : stereo.passes == Stereo::Passes::kOne ? context.multiview()
-                                                                : false;
+  const bool one_pass = onePass(stereo.passes);
   if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
   compose->begin(submissions, StereoCompose::eyeExtent(stereo.mode, target.extent),
                  one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
@@ -199,14 +219,41 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
     both_eyes->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
                       LiveFrame::Redraw::kAll, sharpness);
   } else {
-    frame.record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
-                 LiveFrame::Redraw::kAll, sharpness);
-    for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
-    if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
-    right_eye->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kRight),
-                      LiveFrame::Redraw::kAll, sharpness);
+    recordEachEye(sharpness, panels, decorations, ground);
   }
   compose->record(submissions.commands(), stereo.mode, target);
+}
+
+bool LivePicture::Impl::onePass(Stereo::Passes passes) const noexcept {
+  return passes == Stereo::Passes::kBest  ? context.multiviewWorks()
+         : passes == Stereo::Passes::kOne ? context.multiview()
+                                          : false;
+}
+
+// Both eyes into the images of `compose`, in two passes.
+void LivePicture::Impl::recordEachEye(Sharpness sharpness, std::vector<LivePanel>& panels,
+                                      const std::vector<gpu::Quad>& decorations, const glm::vec3& ground) {
+  frame.record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
+               LiveFrame::Redraw::kAll, sharpness);
+  for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
+  if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
+  right_eye->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kRight),
+                    LiveFrame::Redraw::kAll, sharpness);
+}
+
+// A headset's eyes, into the two layers of the target: directly in one pass, else by a copy.
+void LivePicture::Impl::recordHead(Stereo::Passes passes, Sharpness sharpness, std::vector<LivePanel>& panels,
+                                   const glm::vec3& ground, const LiveTarget& target) {
+  if (onePass(passes)) {
+    if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
+    both_eyes->record(submissions, staging, panels, {}, ground, glyphs, target, LiveFrame::Redraw::kAll,
+                      sharpness);
+    return;
+  }
+  if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
+  compose->begin(submissions, target.extent, StereoCompose::Layers::kTwoImages);
+  recordEachEye(sharpness, panels, {}, ground);
+  compose->copyToLayers(submissions.commands(), target);
 }
 
 // Uploads pages of the chosen patches, all that are missing for Pages::kAll; only on demand.
@@ -267,7 +314,8 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   const double upload_ms = watch.ms();
 
   const engine::Stopwatch selecting;
-  LivePanels chosen(input, plan, fields, patch_tree_cache);
+  const std::optional<std::array<Camera, 2>> head = headCameras(input, plan);
+  LivePanels chosen(input, plan, fields, patch_tree_cache, head ? &*head : nullptr);
   uploadPages(chosen, input.pages, stats);
   chosen.finishChoice(stats);
   std::vector<LivePanel>& panels = chosen.panels();
@@ -278,7 +326,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   // unknown detail are drawn finer than necessary, but correctly; missing pages are part of DrawnFrame.
   const bool stereo = input.stereo.mode != StereoMode::kOff;
   const bool reusable =
-      !stereo && !input.part &&
+      !stereo && !head && !input.part &&
       (input.sharpness == Sharpness::kFull || input.sharpness == Sharpness::kRest) &&
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
   std::optional<DrawnFrame> previous;
@@ -294,12 +342,14 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.select_ms = selecting.ms();
 
   if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
-  const bool whole_frame = stereo || input.sharpness != Sharpness::kRest;
+  const bool whole_frame = stereo || head || input.sharpness != Sharpness::kRest;
   const bool still = !whole_frame && stats.continued && stats.upload.pending_tiles == 0 &&
                      std::ranges::all_of(panels, [](const LivePanel& p) { return empty(p.redraw); });
   if (!whole_frame) stats.rest_left = rest_refused == input.view ? 0 : kRestBands;
   if (still && stats.rest_left > 0)
     recordRest(input, plan, decorations, target, stats);
+  else if (head)
+    recordHead(input.stereo.passes, input.sharpness, panels, plan.palette.ground, target);
   else if (stereo)
     recordStereo(input.stereo, input.sharpness, panels, decorations, plan.palette.ground, target);
   else

@@ -72,8 +72,8 @@ void StereoCompose::begin(Submissions& submissions, vk::Extent2D eye, Layers lay
     context_.device().updateDescriptorSets(writes, {});
   }
   vk::MemoryBarrier2 read;
-  read.setSrcStageMask(Stage::eFragmentShader)
-      .setSrcAccessMask(Access::eShaderRead)
+  read.setSrcStageMask(Stage::eFragmentShader | Stage::eCopy)
+      .setSrcAccessMask(Access::eShaderRead | Access::eTransferRead)
       .setDstStageMask(Stage::eCopy | Stage::eColorAttachmentOutput)
       .setDstAccessMask(Access::eTransferWrite | Access::eColorAttachmentWrite);
   vk::DependencyInfo dependency;
@@ -119,6 +119,22 @@ void StereoCompose::record(const vk::raii::CommandBuffer& commands, StereoMode m
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
          copied ? Stage::eCopy : Stage::eBottomOfPipe,
          copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{});
+}
+
+void StereoCompose::copyToLayers(const vk::raii::CommandBuffer& commands, const LiveTarget& target) const {
+  // The acquired image is free at this stage: the change of layout comes after it.
+  change(commands, target.image, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal, Stage::eCopy, {},
+         Stage::eCopy, Access::eTransferWrite);
+  for (std::uint32_t eye = 0; eye < 2; ++eye) {
+    vk::ImageCopy copy;
+    copy.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, eye, 1})
+        .setExtent({target.extent.width, target.extent.height, 1});
+    commands.copyImage(images_[eye].image(), ImageLayout::eTransferSrcOptimal, target.image,
+                       ImageLayout::eTransferDstOptimal, copy);
+  }
+  change(commands, target.image, ImageLayout::eTransferDstOptimal, target.leaves_as, Stage::eCopy,
+         Access::eTransferWrite, Stage::eBottomOfPipe, {});
 }
 
 vk::Pipeline StereoCompose::pipeline(StereoMode mode) {

@@ -31,6 +31,8 @@ class StereoCompose {
   [[nodiscard]] LiveTarget target(Eye eye) const;
   /// After the eyes are drawn: draws both into `target`, then what LiveTarget::over draws.
   void record(const vk::raii::CommandBuffer& commands, StereoMode mode, const LiveTarget& target);
+  /// In place of record(): copies each eye's picture (kTwoImages) into its layer of `target`.
+  void copyToLayers(const vk::raii::CommandBuffer& commands, const LiveTarget& target) const;
 
  private:
   [[nodiscard]] vk::Pipeline pipeline(StereoMode mode);

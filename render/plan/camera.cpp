@@ -128,6 +128,47 @@ Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const R
   return camera;
 }
 
+Camera Camera::ofEye(const EyeView& eye, const Box& drawn, const Rectangle& plot) {
+  Camera camera;
+  camera.right_ = eye.axes.right;
+  camera.up_ = eye.axes.up;
+  camera.to_viewer_ = eye.axes.to_viewer;
+  camera.plot_ = plot;
+  camera.perspective_ = true;
+  const auto ahead = [&](const glm::dvec3& point) {
+    return -glm::dot(eye.axes.to_viewer, point - eye.position);
+  };
+  double near = std::numeric_limits<double>::infinity(), far = 0.0;
+  for (const glm::dvec3& corner : corners(drawn)) {
+    near = std::min(near, ahead(corner));
+    far = std::max(far, ahead(corner));
+  }
+  const double size = glm::length(drawn.high - drawn.low);
+  // A head may be inside the block or look away from it: then the middle has no distance in front of the eye.
+  const double least = 1e-3 * size + 1e-9;
+  camera.distance_ = std::max(ahead(0.5 * (drawn.low + drawn.high)), least);
+  camera.target_ = eye.position - camera.distance_ * eye.axes.to_viewer;
+  const double margin = 0.01 * size;
+  near = std::max(near - margin, least);
+  far = std::max(far + margin, 2.0 * near);
+  const double across = eye.right - eye.left, along = eye.up - eye.down;
+  camera.near_w_ = near;
+  camera.across_ = 2.0 / across;
+  camera.pixels_per_mm_ = std::max(plot.width / across, plot.height / along) / camera.distance_;
+  const double range = far / (far - near);
+  glm::dmat4 from_view(0.0);  // columns: clip x, y, z, w as functions of view x, y, z, 1; clip w = -z
+  from_view[0][0] = 2.0 / across;
+  from_view[1][1] = -2.0 / along;
+  from_view[2] = {(eye.right + eye.left) / across, -(eye.up + eye.down) / along, -range, -1.0};
+  from_view[3][2] = -range * near;
+  const glm::dmat3 rotation = glm::transpose(glm::dmat3(camera.right_, camera.up_, camera.to_viewer_));
+  glm::dmat4 view_from_scene(rotation);
+  view_from_scene[3] = glm::dvec4(-(rotation * eye.position), 1.0);
+  camera.clip_from_scene_ = from_view * view_from_scene;
+  camera.scene_from_clip_ = glm::inverse(camera.clip_from_scene_);
+  return camera;
+}
+
 Camera Camera::aside(double share, double window) const noexcept {
   Camera eye = *this;
   const double aside = share * distance_, at_window = window * distance_;

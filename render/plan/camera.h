@@ -39,6 +39,14 @@ struct ViewAxes {
 /// Exact at multiples of 90 degrees, where pictures must be aligned with the field.
 [[nodiscard]] ViewAxes axesOf(const View& view) noexcept;
 
+/// An eye in the scene, with the part of space that its picture shows: tangents of the angles from the direction in which it
+/// looks, to the right and upwards.
+struct EyeView {
+  glm::dvec3 position{0.0};  ///< scene [mm]
+  ViewAxes axes;
+  double left = -1.0, right = 1.0, down = -1.0, up = 1.0;  ///< left < right, down < up
+};
+
 /// Transforms scene coordinates into pixels and back, in double precision. Scene coordinates are
 /// right-handed: x and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
 class Camera {
@@ -50,6 +58,10 @@ class Camera {
   /// view.height are not used.
   [[nodiscard]] static Camera fit(const View& view, const Box& shown, const Box& drawn,
                                   const Rectangle& plot);
+
+  /// The perspective camera of an eye, whose depth range contains what lies in front of it of `drawn`. Its distance() is that
+  /// of the box's middle.
+  [[nodiscard]] static Camera ofEye(const EyeView& eye, const Box& drawn, const Rectangle& plot);
 
   [[nodiscard]] const glm::dmat4& clipFromScene() const noexcept { return clip_from_scene_; }
   /// Unit vectors in the scene: to the picture's right, to its top, to the viewer.

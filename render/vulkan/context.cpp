@@ -94,7 +94,8 @@ Context::~Context() {
 }
 
 engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& options,
-                                                         const SurfaceRequest* request) try {
+                                                         const SurfaceRequest* request,
+                                                         const VulkanMaker* maker) try {
   std::unique_ptr<Context> context(new Context());
   const bool validate = options.validation == Validation::kOn;
   if (context->loader_.enumerateInstanceVersion() < VK_API_VERSION_1_3)
@@ -116,7 +117,9 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     extensions.insert(extensions.end(), request->instance_extensions.begin(),
                       request->instance_extensions.end());
   instance_info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
-  context->instance_ = vk::raii::Instance(context->loader_, instance_info);
+  context->instance_ = maker == nullptr
+                           ? vk::raii::Instance(context->loader_, instance_info)
+                           : vk::raii::Instance(context->loader_, maker->instance(instance_info));
   if (validate) context->messenger_ = vk::raii::DebugUtilsMessengerEXT(context->instance_, messenger);
   if (request != nullptr)
     context->surface_ = vk::raii::SurfaceKHR(context->instance_, request->make(*context->instance_));
@@ -137,7 +140,9 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     vk::raii::PhysicalDevice device = nullptr;
   };
   std::vector<Candidate> candidates;
+  const VkPhysicalDevice chosen = maker == nullptr ? VK_NULL_HANDLE : maker->physical(*context->instance_);
   for (vk::raii::PhysicalDevice& device : devices) {
+    if (chosen != VK_NULL_HANDLE && static_cast<VkPhysicalDevice>(*device) != chosen) continue;
     const vk::PhysicalDeviceProperties properties = device.getProperties();
     const std::string name = properties.deviceName;
     std::uint32_t family = 0;
@@ -160,7 +165,7 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
   // A device that fails to start is still listed: then the next best draws, more slowly.
   for (Candidate& candidate : candidates) {
     try {
-      context->startDevice(candidate.device, candidate.family, needed);
+      context->startDevice(candidate.device, candidate.family, needed, maker);
     } catch (const vk::SystemError& error) {
       reject(candidate.device.getProperties().deviceName, fmt::format("does not start ({})", error.what()));
       continue;
@@ -191,7 +196,7 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
 }
 
 void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
-                          const std::vector<const char*>& extensions) {
+                          const std::vector<const char*>& extensions, const VulkanMaker* maker) {
   const float priority = 1.0F;
   const vk::DeviceQueueCreateInfo queue{{}, family, 1, &priority};
   const bool multiview =
@@ -206,7 +211,9 @@ void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_
   features.synchronization2 = VK_TRUE;
   vk::DeviceCreateInfo device_info;
   device_info.setQueueCreateInfos(queue).setPNext(&features).setPEnabledExtensionNames(extensions);
-  vk::raii::Device device(physical, device_info);
+  vk::raii::Device device = maker == nullptr
+                                ? vk::raii::Device(physical, device_info)
+                                : vk::raii::Device(physical, maker->device(*physical, device_info));
   pool_ = vk::raii::CommandPool(device, {vk::CommandPoolCreateFlagBits::eTransient, family});
   queue_ = vk::raii::Queue(device, family, 0);
   device_ = std::move(device);

@@ -38,6 +38,14 @@ struct SurfaceRequest {
   std::function<VkSurfaceKHR(VkInstance)> make;
 };
 
+/// Who creates Vulkan's instance and device in place of the loader, with what it needs added: the runtime of a headset, which
+/// also chooses the device. The context owns both. Throw vk::SystemError.
+struct VulkanMaker {
+  std::function<VkInstance(const VkInstanceCreateInfo&)> instance;
+  std::function<VkPhysicalDevice(VkInstance)> physical;
+  std::function<VkDevice(VkPhysicalDevice, const VkDeviceCreateInfo&)> device;
+};
+
 /// One Vulkan device: instance, device, one queue that draws and copies (and presents, where a surface was
 /// requested), one command pool. Guarantees Vulkan 1.3 with dynamic rendering and synchronization2, and
 /// sampling of 32-bit and 8-bit unsigned images. Does not include: windows, several queues, memory management
@@ -47,11 +55,12 @@ struct SurfaceRequest {
 /// window.cpp turn that into an Error.
 class Context {
  public:
-  /// The best device that starts; with `surface` only of those that can present on it. Errors (kFailed): no
+  /// The best device that starts; with `surface` only of those that can present on it, with `maker` its choice. Errors (kFailed): no
   /// Vulkan loader, driver or suitable device - the message states why each device found was rejected and
   /// what to install; validation layers requested but not installed.
   [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(
-      const DeviceOptions& options, const SurfaceRequest* request = nullptr);
+      const DeviceOptions& options, const SurfaceRequest* request = nullptr,
+      const VulkanMaker* maker = nullptr);
   Context& operator=(Context&&) = delete;
   ~Context();
 
@@ -86,7 +95,7 @@ class Context {
                                                             vk::MemoryPropertyFlags required) const noexcept;
   /// Creates device, queue and pool; leaves none when it throws.
   void startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
-                   const std::vector<const char*>& extensions);
+                   const std::vector<const char*>& extensions, const VulkanMaker* maker);
 
   // Destroyed in reverse: device before messenger before instance, and the messages it writes to last.
   std::unique_ptr<DebugMessages> messages_ = std::make_unique<DebugMessages>();

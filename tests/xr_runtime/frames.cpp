@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <thread>
+
+#include "tests/xr_runtime/runtime.h"
+
+namespace fettle::tests::xr {
+
+namespace {
+
+// The states that the frames and the script bring about, one step a frame.
+void advance(Runtime& r) {
+  for (const std::string& word : r.script.events(r.frame)) {
+    if (word == "hide") r.seen = false;
+    if (word == "show") r.seen = true;
+    if (word == "stop") r.asked_exit = true;
+    if (word == "lose") {
+      r.lost = true;
+      r.enter(XR_SESSION_STATE_LOSS_PENDING);
+    }
+  }
+  if (r.lost || !r.running) return;
+  const bool leaves = r.asked_exit || !r.seen;
+  switch (r.state) {
+    case XR_SESSION_STATE_READY:
+      r.enter(XR_SESSION_STATE_SYNCHRONIZED);
+      break;
+    case XR_SESSION_STATE_SYNCHRONIZED:
+      if (r.asked_exit)
+        r.enter(XR_SESSION_STATE_STOPPING);
+      else if (r.seen)
+        r.enter(XR_SESSION_STATE_VISIBLE);
+      break;
+    case XR_SESSION_STATE_VISIBLE:
+      r.enter(leaves ? XR_SESSION_STATE_SYNCHRONIZED : XR_SESSION_STATE_FOCUSED);
+      break;
+    case XR_SESSION_STATE_FOCUSED:
+      if (leaves) r.enter(XR_SESSION_STATE_VISIBLE);
+      break;
+    default:
+      break;
+  }
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL waitFrame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
+  Runtime& r = runtime();
+  XrTime due = 0;
+  const auto period = static_cast<XrTime>(1e9 / r.script.rate_hz);
+  {
+    const std::lock_guard lock(r.mutex);
+    if (r.lost) return XR_ERROR_SESSION_LOST;
+    if (!r.running)
+      return r.wrong("a frame is waited for without a running session", XR_ERROR_SESSION_NOT_RUNNING);
+    if (r.waited) return r.wrong("a frame is waited for while one is waited for and not begun");
+    due = std::max(nowNs(), r.last_wake + period);
+  }
+  // A headset's clock: frames come at its own pace.
+  std::this_thread::sleep_for(std::chrono::nanoseconds(due - nowNs()));
+  const std::lock_guard lock(r.mutex);
+  r.last_wake = due;
+  ++r.frame;
+  advance(r);
+  r.waited = true;
+  r.shown = due + period;
+  state->predictedDisplayTime = r.shown;
+  state->predictedDisplayPeriod = period;
+  state->shouldRender = r.state == XR_SESSION_STATE_VISIBLE || r.state == XR_SESSION_STATE_FOCUSED;
+  return XR_SUCCESS;
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL beginFrame(XrSession, const XrFrameBeginInfo*) {
+  Runtime& r = runtime();
+  const std::lock_guard lock(r.mutex);
+  if (r.lost) return XR_ERROR_SESSION_LOST;
+  if (!r.running) return r.wrong("a frame is begun without a running session", XR_ERROR_SESSION_NOT_RUNNING);
+  if (!r.waited) return r.wrong("a frame is begun that was not waited for");
+  if (r.begun) (void)r.wrong("a frame is begun before the last one was ended");
+  r.waited = false;
+  r.begun = true;
+  return XR_SUCCESS;
+}
+
+// Whether a layer's picture may be shown.
+bool good(Runtime& r, const XrSwapchainSubImage& part, const char* what) {
+  const auto* swapchain = reinterpret_cast<const Swapchain*>(part.swapchain);
+  if (r.swapchains.count(const_cast<Swapchain*>(swapchain)) == 0) {
+    (void)r.wrong(std::string(what) + " of a swapchain that does not exist");
+    return false;
+  }
+  if (swapchain->released < 0) {
+    (void)r.wrong(std::string(what) + " of a swapchain without a released image");
+    return false;
+  }
+  const XrRect2Di& rect = part.imageRect;
+  if (rect.offset.x < 0 || rect.offset.y < 0 || rect.extent.width <= 0 || rect.extent.height <= 0 ||
+      rect.offset.x + rect.extent.width > static_cast<int>(swapchain->info.width) ||
+      rect.offset.y + rect.extent.height > static_cast<int>(swapchain->info.height) ||
+      part.imageArrayIndex >= swapchain->info.arraySize) {
+    (void)r.wrong(std::string(what) + " outside its image");
+    return false;
+  }
+  return true;
+}
+
+void keep(Runtime& r, const XrSwapchainSubImage& part, const std::string& name) {
+  const auto* swapchain = reinterpret_cast<const Swapchain*>(part.swapchain);
+  const std::string path = r.keep + "/frame" + std::to_string(r.frame) + "." + name + ".png";
+  if (keepPicture(swapchain->images[static_cast<std::size_t>(swapchain->released)],
+                  static_cast<VkFormat>(swapchain->info.format), part.imageRect, part.imageArrayIndex, path))
+    r.say("kept " + path);
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
+  Runtime& r = runtime();
+  const std::lock_guard lock(r.mutex);
+  if (r.lost) return XR_ERROR_SESSION_LOST;
+  if (!r.running) return r.wrong("a frame is ended without a running session", XR_ERROR_SESSION_NOT_RUNNING);
+  if (!r.begun) return r.wrong("a frame is ended that was not begun");
+  r.begun = false;
+  if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
+    return XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED;
+  if (info->displayTime != r.shown) (void)r.wrong("a frame is ended for another time than was waited for");
+  const auto events = r.script.events(r.frame);
+  const bool kept = !r.keep.empty() && std::find(events.begin(), events.end(), "keep") != events.end();
+  int quads = 0;
+  std::string layers;
+  for (std::uint32_t i = 0; i < info->layerCount; ++i) {
+    const XrCompositionLayerBaseHeader* layer = info->layers[i];
+    if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
+      const auto* projection = reinterpret_cast<const XrCompositionLayerProjection*>(layer);
+      if (projection->viewCount != 2)
+        (void)r.wrong("a projection without two views", XR_ERROR_VALIDATION_FAILURE);
+      for (std::uint32_t eye = 0; eye < projection->viewCount; ++eye) {
+        const XrSwapchainSubImage& part = projection->views[eye].subImage;
+        if (good(r, part, "a projection") && kept) keep(r, part, eye == 0 ? "left" : "right");
+      }
+      layers += " projection";
+    } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
+      const auto* quad = reinterpret_cast<const XrCompositionLayerQuad*>(layer);
+      if (good(r, quad->subImage, "a quad") && kept) keep(r, quad->subImage, "quad" + std::to_string(quads));
+      ++quads;
+      layers += " quad";
+    } else {
+      return r.wrong("a layer of an unknown kind", XR_ERROR_LAYER_INVALID);
+    }
+  }
+  if (kept) r.say("frame " + std::to_string(r.frame) + layers);
+  return XR_SUCCESS;
+}
+
+}  // namespace
+
+XrTime nowNs() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+void addFrameCalls(Calls& calls) {
+  calls["xrWaitFrame"] = asVoid(&waitFrame);
+  calls["xrBeginFrame"] = asVoid(&beginFrame);
+  calls["xrEndFrame"] = asVoid(&endFrame);
+}
+
+}  // namespace fettle::tests::xr

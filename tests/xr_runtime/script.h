@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fettle::tests::xr {
+
+/// Where something is: metres in the room, y up, -z ahead; degrees about y (to the left) and about x (up).
+struct Place {
+  double x = 0.0, y = 0.0, z = 0.0, yaw_deg = 0.0, pitch_deg = 0.0;
+};
+
+/// What happens in which frame, read from a text of lines, `#` for comments:
+///
+///   size 320 360                     pixels of one eye's picture
+///   rate 90                          frames per second
+///   0 head 0 1.6 0 0 -30             place from this frame on; between two such lines on the straight way
+///   0 left ... / right ...           the same of a hand; one without a place is not tracked
+///   10 right trigger 0.7             from this frame on; also squeeze, and button 0 or 1
+///   20 keep                          the pictures of this frame become files
+///   30 hide, show, stop, lose        the session: no longer seen, seen again, asked to end, lost
+///
+/// Frames are counted by xrWaitFrame, from 1.
+class Script {
+ public:
+  /// False, with a message on standard error, for a file that cannot be read or understood.
+  [[nodiscard]] bool read(const std::string& path);
+
+  /// Of "head", "left", "right"; false where the thing is not tracked.
+  [[nodiscard]] bool place(const std::string& of, long frame, Place& at) const;
+  /// Of "right trigger" and so on; 0 before the first line.
+  [[nodiscard]] double value(const std::string& of, long frame) const;
+  /// Words of this frame: "keep", "hide" and so on.
+  [[nodiscard]] std::vector<std::string> events(long frame) const;
+
+  int width = 320, height = 360;
+  double rate_hz = 90.0;
+
+ private:
+  std::map<std::string, std::map<long, Place>> places_;
+  std::map<std::string, std::map<long, double>> values_;
+  std::multimap<long, std::string> events_;
+};
+
+}  // namespace fettle::tests::xr
