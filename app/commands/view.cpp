@@ -22,6 +22,7 @@ struct ViewArguments {
   std::string size = "1280x800";
   bool validate = false;
   bool plain_rest = false;
+  std::string xr_scale = "giant";
 };
 
 engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
@@ -35,6 +36,7 @@ engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job)
     if (!scene) return tl::unexpected(scene.error());
     options.scene = *std::move(scene);
   }
+  options.xr_scale = given.xr_scale == "true" ? RoomScale::kTrue : RoomScale::kGiant;
   if (given.validate) options.window.validation = render::Validation::kOn;
   auto station = Workstation::create(options);
   if (!station) return tl::unexpected(station.error());
@@ -97,6 +99,14 @@ void addView(Command root, Chosen& chosen) {
        .to = &options->view.events,
        .text = "Write the state of the window and its actions to it: one JSON object per line, for scripts",
        .kind = ValueKind::kNewFile},
+      {.name = "--xr",
+       .to = &options->view.xr,
+       .text = "Show the field in a headset as well, by the OpenXR runtime that is installed"},
+      {.name = "--xr-scale",
+       .to = &options->xr_scale,
+       .text = "How large the field is in the headset at first",
+       .words = {{"giant", "as a giant sees it: its longer side is 0.6 m, on a table"},
+                 {"true", "a millimetre is a millimetre"}}},
       {.name = "--gpu",
        .to = &options->view.window.device,
        .text = "Use the Vulkan device whose name contains this"},

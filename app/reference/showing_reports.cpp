@@ -47,6 +47,8 @@ std::vector<ReportSchema> showing() {
           {"session?", "string", ""},
           {"session_named?", "boolean", ""},
           {"unsaved_changes?", "boolean", ""},
+          {"headset?", "string", "with --xr, as the next"},
+          {"headset_frames?", "integer", ""},
           {"validation_messages", "[string]", ""}}}}},
       {"demo",
        1,

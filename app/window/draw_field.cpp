@@ -144,6 +144,17 @@ void drawField(Parts& parts, const DrawOptions& options) {
   client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }
 
+HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
+  LoopClient& client = *parts.document.client();
+  HeadsetView::Picture picture;
+  picture.shown = shownOf(parts, {});
+  picture.input = frameInput(parts, render::Sharpness::kFull, options);
+  const haptic::LoopState state = client.state();
+  if (client.mouse() == nullptr && state.link == haptic::LinkState::kConnected)
+    StylusOverlay::append(client, state, parts.picture.mmPerPixel(), picture.input.overlays);
+  return picture;
+}
+
 void drawCoarse(Parts& parts, const DrawOptions& options) {
   WindowPicture& picture = parts.picture;
   picture.fit(parts.view);

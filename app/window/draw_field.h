@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/window/parts.h"
+#include "app/xr/headset_view.h"
 
 namespace fettle::app {
 
@@ -13,6 +14,8 @@ struct DrawOptions {
 /// Draws the picture of the frame if one is due: the document with its previews, suggested edges and stylus. Threading:
 /// main.
 void drawField(Parts& parts, const DrawOptions& options);
+/// What a headset shows of the open document: the field without previews, in the colours of the window, and the stylus.
+[[nodiscard]] HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options);
 /// The same for the coarse picture of a scan that is being read.
 void drawCoarse(Parts& parts, const DrawOptions& options);
 

@@ -42,6 +42,10 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"status", p.feedback.status},
            {"asks_before_quitting", p.settings.ask_before_quitting},
            {"device_losses", run.device_losses},
+           {"headset", run.headset.name.empty() ? "none"
+                       : run.headset.over       ? "over"
+                       : run.headset.frames > 0 ? "shown"
+                                                : "starting"},
            {"loading", p.opening.busy()},
            {"coarse", p.coarseIsShown()},
            {"saving", p.saving.busy(p.document)},
@@ -392,7 +396,13 @@ Report runReport(const Parts& parts, const RunFigures& run) {
     r["session_named"] = parts.document.keeper()->named();
     r["unsaved_changes"] = parts.document.unsaved();
   }
-  r["validation_messages"] = parts.window.validationMessages();
+  if (!run.headset.name.empty()) {
+    r["headset"] = run.headset.name;
+    r["headset_frames"] = run.headset.frames;
+  }
+  std::vector<std::string> messages = parts.window.validationMessages();
+  messages.insert(messages.end(), run.headset.validation.begin(), run.headset.validation.end());
+  r["validation_messages"] = messages;
   return r;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "app/report.h"
 #include "app/window/event_log.h"
@@ -9,10 +11,19 @@
 
 namespace fettle::app {
 
+/// Of the headset (`--xr`).
+struct HeadsetFigures {
+  std::string name;          ///< empty without one
+  std::uint64_t frames = 0;  ///< drawn
+  bool over = false;         ///< its session has ended
+  std::vector<std::string> validation;
+};
+
 /// Figures of the window's report in addition to its parts.
 struct RunFigures {
   std::uint64_t frames = 0;  ///< shown
   int device_losses = 0;
+  HeadsetFigures headset{};
 };
 
 /// Whether something moves or must be drawn: the next frame follows immediately.

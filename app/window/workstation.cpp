@@ -66,6 +66,11 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
     if (!events) return tl::unexpected(events.error());
     station->events_ = *std::move(events);
   }
+  if (options.xr) {
+    auto headset = HeadsetView::start({options.window.validation}, options.xr_scale);
+    if (!headset) return tl::unexpected(headset.error());
+    station->headset_ = *std::move(headset);
+  }
   if (!options.scan.empty()) station->open(options.scan, std::nullopt);
   return station;
 }
@@ -81,6 +86,11 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     }
     const double lived = watch.seconds();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
+  }
+  if (headset_) {
+    headset_->finish();
+    noteHeadset(headset_->state());
+    headset_.reset();
   }
   Report report = runReport(parts_, figures());
   // A user who quits has saved what was to be saved. Otherwise there was no question: unsaved work is
@@ -104,6 +114,7 @@ void Workstation::runFrame() {
   }
   releaseHandsWhenAsked();
   takeResults();
+  followHeadset();
   releaseHandsWhenAsked();
   if (!parts_.picture.made() || window_->displayLost()) {
     // No graphics device: loop and workers continue.
@@ -138,6 +149,30 @@ void Workstation::handleInput() {
     parts_.cursor = {event->x, event->y};
     releaseHandsWhenAsked();
   }
+}
+
+void Workstation::noteHeadset(const HeadsetView::State& state) {
+  headset_figures_ = {state.headset, state.frames, state.over, state.validation};
+}
+
+void Workstation::followHeadset() {
+  if (!headset_) return;
+  const HeadsetView::State state = headset_->state();
+  noteHeadset(state);
+  if (!state.over) {
+    if (!parts_.document.isOpen()) return;
+    HeadsetView::Picture picture = headsetPicture(parts_, options_.drawing);
+    picture.field = documents_;
+    headset_->show(std::move(picture));
+    return;
+  }
+  // The window goes on without it, and nothing that was done is lost.
+  parts_.feedback.notices.push_back(
+      state.error
+          ? Notice{state.error->what, "the window continues; start fettle view --xr again for the headset"}
+          : Notice{"the headset's session was ended", "the window continues"});
+  headset_.reset();
+  parts_.picture.requestRedraw();
 }
 
 void Workstation::followFlight() {
@@ -380,6 +415,7 @@ void Workstation::takeOpened() {
 }
 
 void Workstation::startDocument(Document document) {
+  ++documents_;
   Parts& p = parts_;
   p.opening.noteRead(p.document.isOpen());
   p.closeDocument(SessionKeeper::Afterwards::kDiscard);

@@ -13,6 +13,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/parts.h"
 #include "app/window/window_state.h"
+#include "app/xr/headset_view.h"
 
 namespace fettle::app {
 
@@ -24,6 +25,8 @@ struct ViewOptions {
   render::WindowOptions window;
   double seconds = 0.0;  ///< ends after this time; 0 = no limit
   DrawOptions drawing;
+  bool xr = false;  ///< shows the field in a headset as well
+  RoomScale xr_scale = RoomScale::kGiant;
   std::string events;  ///< where to write the events (EventLog); empty: nowhere
 };
 
@@ -55,6 +58,9 @@ class Workstation {
   void followFlight();
   void takeResults();
   void showFrame();
+  /// Gives the headset what is to be seen, and notes its end.
+  void followHeadset();
+  void noteHeadset(const HeadsetView::State& state);
   void noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns, bool announces);
 
   // Documents.
@@ -79,11 +85,14 @@ class Workstation {
   void renewPicture();
   void saveSettings();
   void saveSettingsNow();
-  [[nodiscard]] RunFigures figures() const { return {frames_, renewal_.losses()}; }
+  [[nodiscard]] RunFigures figures() const { return {frames_, renewal_.losses(), headset_figures_}; }
 
   ViewOptions options_;
   std::unique_ptr<render::Window> window_;
   Parts parts_;
+  std::unique_ptr<HeadsetView> headset_;  // null without one
+  HeadsetFigures headset_figures_;
+  std::uint64_t documents_ = 0;  // opened
   Input input_;
   DeviceRenewal renewal_;
   EventLog events_;

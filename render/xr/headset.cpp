@@ -297,7 +297,7 @@ engine::Status Headset::Impl::frame(const HeadsetFrame& frame) {
 
   bool complete = false;
   engine::Status drew;
-  if (state.shouldRender != XR_FALSE) drew = drawEyes(frame, complete);
+  if (state.shouldRender != XR_FALSE && frame.draw) drew = drawEyes(frame, complete);
   std::array<XrCompositionLayerProjectionView, 2> projected{};
   for (std::size_t eye = 0; eye < 2; ++eye)
     projected[eye] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[eye].pose, views[eye].fov,

@@ -31,7 +31,7 @@ struct HeadsetFrame {
   /// The hands, as they will be when the frame is seen. Also called while nothing is drawn.
   std::function<void(const RoomHands&)> hands;
   /// Draws both eyes into the two layers of the target, in an image of Headset::colourFormat(). Called only where the
-  /// picture is seen. Headset::eyes() may be called by it, as late as it likes.
+  /// picture is seen; empty: nothing is drawn yet. Headset::eyes() may be called by it, as late as it likes.
   std::function<engine::Status(LiveTarget&)> draw;
   /// Shown in front of the picture, where setPanel() gave it one.
   std::optional<RoomPanel> panel;
