@@ -144,6 +144,9 @@ void drawField(Parts& parts, const DrawOptions& options) {
   client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }
 
+// The pen's size is that of a window's pixels.
+constexpr StylusLook kTipInTheRoom{.pen = false, .shadow = false, .force = true, .trail = false};
+
 HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
   LoopClient& client = *parts.document.client();
   HeadsetView::Picture picture;
@@ -151,7 +154,8 @@ HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
   picture.input = frameInput(parts, render::Sharpness::kFull, options);
   const haptic::LoopState state = client.state();
   if (client.mouse() == nullptr && state.link == haptic::LinkState::kConnected)
-    StylusOverlay::append(client, state, parts.picture.mmPerPixel(), picture.input.overlays);
+    StylusOverlay::appendTip(client, state, parts.picture.mmPerPixel(), kTipInTheRoom,
+                             picture.input.overlays);
   return picture;
 }
 

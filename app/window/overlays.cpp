@@ -169,8 +169,8 @@ bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) c
          glm::length(turned) * kStylus_px > kTurn_px || state.contact != state_.contact;
 }
 
-void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                           const StylusLook& look, render::Overlays& overlays) {
+void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+                              const StylusLook& look, render::Overlays& overlays) {
   const haptic::Scene& scene = client.scene();
   const engine::Grid& grid = client.field().grid();
   render::StylusState tip;
@@ -197,8 +197,14 @@ void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& st
                                          .to_tail = state.stylus_axis,
                                          .colour = ring.colour,
                                          .shadow = look.shadow};
+}
+
+void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+                           const StylusLook& look, render::Overlays& overlays) {
+  appendTip(client, state, mm_per_pixel, look, overlays);
   if (look.trail)
-    trail_.append(seen_mm, mm_per_pixel, StylusTrail::Clock::now(), overlays);
+    trail_.append(state.contact ? state.proxy_mm : state.endpoint_mm, mm_per_pixel, StylusTrail::Clock::now(),
+                  overlays);
   else
     trail_.clear();
 }

@@ -64,6 +64,9 @@ class StylusOverlay {
   /// the picture would hold it.
   void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
               const StylusLook& look, render::Overlays& overlays);
+  /// The same without its trail: for a picture beside the window's.
+  static void appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+                        const StylusLook& look, render::Overlays& overlays);
   /// The next frame shows no stylus.
   void hide() noexcept { trail_.clear(); }
   /// Whether the picture changes with time alone.
