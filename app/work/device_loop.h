@@ -34,7 +34,7 @@ struct LoopClientOptions {
   /// Values of the first scene with which the device is not stable (haptic::stabilityProblem) are lowered to
   /// the largest stable ones, with a notice; otherwise such a scene is refused.
   bool lower_scene = false;
-  Loudness loudness;  ///< of scenes with sound
+  Loudness loudness;         ///< of scenes with sound
   DeviceSetups setups = {};  ///< of the devices that are known
 };
 
