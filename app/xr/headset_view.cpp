@@ -53,7 +53,7 @@ engine::Status HeadsetView::takePicture() {
     next.swap(next_);
   }
   if (!next) return {};
-  if (const auto updated = picture_->update(next->shown); !updated) return updated;
+  if (auto updated = picture_->update(next->shown); !updated) return updated;
   if (!has_picture_ || next->field != now_.field) table_ = RoomTable(table_.scale());
   now_ = *std::move(next);
   now_.shown = {};  // the picture holds it

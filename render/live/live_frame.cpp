@@ -215,7 +215,7 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
 }
 
 void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
-                     const Layers& layers) {
+                     const Layers& layers, const GpuImage& under_stylus) {
   Packing packing;
   struct Blocks {
     Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages, stylus;
@@ -264,7 +264,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
     if (p.stylus) {
       writes.buffer(*sets.stylus, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
       writes.buffer(*sets.stylus, gpu::kBindStylus, kStorage, slot.arena, blocks[i].stylus);
-      writes.image(*sets.stylus, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
+      writes.image(*sets.stylus, gpu::kBindDepth, under_stylus.view(), ImageLayout::eDepthReadOnlyOptimal);
     }
     for (const auto& [set, list] :
          {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
@@ -586,7 +586,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
                          : sharpness == Sharpness::kFine ? fine_
                                                          : whole_;
   const bool resized = &layers != &whole_;
-  fill(slot, panels, decorations, layers);
+  fill(slot, panels, decorations, layers, layers.depth);
 
   const bool all = redraw == Redraw::kAll;
   const bool redraws =
@@ -620,7 +620,7 @@ void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
   makeRest(submissions, target.extent);
-  fill(slot, panels, decorations, fine_);
+  fill(slot, panels, decorations, fine_, whole_.depth);  // recordTarget() draws the stylus
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
   Barriers compose;
   if (rest.draws) {

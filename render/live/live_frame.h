@@ -112,8 +112,9 @@ class LiveFrame {
   void uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
                     const Glyphs& glyphs);
   void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
+  // `under_stylus`: depth of the surface over which the stylus is drawn.
   void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
-            const Layers& layers);
+            const Layers& layers, const GpuImage& under_stylus);
   void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part,
                   float scale = 1.0F);
   void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,

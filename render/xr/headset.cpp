@@ -75,7 +75,7 @@ Headset::Impl::~Impl() {
 }
 
 engine::Status Headset::Impl::startInstance() {
-  if (const auto loaded = xr.load(); !loaded) return loaded;
+  if (auto loaded = xr.load(); !loaded) return loaded;
   std::uint32_t count = 0;
   XrResult result = xr.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
   std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, "", 0});
@@ -97,7 +97,7 @@ engine::Status Headset::Impl::startInstance() {
   result = xr.CreateInstance(&info, &instance);
   if (XR_FAILED(result))
     return engine::failure(fmt::format("no headset can be used: {}", reasonOf(result)), "OpenXR", kStart);
-  if (const auto found = xr.find(instance); !found) return found;
+  if (auto found = xr.find(instance); !found) return found;
   XrSystemGetInfo wanted{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
   result = xr.GetSystem(instance, &wanted, &system);
   if (XR_FAILED(result))

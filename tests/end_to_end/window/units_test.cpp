@@ -65,6 +65,9 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
   const Scale& scale = GetParam();
   const std::string waves = folder.file("waves.asc");
   writeWaves(waves, scale.cell_m, scale.span_m, scale.origin_m);
+  // So that the change is in view below the tool.
+  std::ofstream(folder.path() / "fettle" / "window.json")
+      << State{{"panels", State{{"Steps", false}, {"Status", false}, {"Filters", false}}}};
   const auto program = start({waves, "--unit", "m"});
   User user(display, *program, scale.name);
   (void)opened(*program);
@@ -79,6 +82,7 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
   EXPECT_TRUE(says(stroked, "Sq before, now"));
   EXPECT_EQ(unitsRead(stroked), std::set<std::string>{scale.unit}) << written(stroked);
   // What is typed is in the unit that stands beside it.
+  (void)user.click("Filters");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
   const double taken = user.enter("max change", scale.typed)["max_change"];
   EXPECT_NEAR(taken, scale.most_m, 1e-12 * scale.most_m);
