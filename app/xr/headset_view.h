@@ -29,7 +29,7 @@ class HeadsetView {
   ~HeadsetView();
   HeadsetView& operator=(HeadsetView&&) = delete;
 
-  /// What the headset shows from its next frame on. `field`: where it differs from the last one, the field is placed anew.
+  /// What the headset shows from its next frame on. `field`: where it differs from the last one, the field is placed on the table again.
   struct Picture {
     render::Shown shown;
     render::FrameInput input;

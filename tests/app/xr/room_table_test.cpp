@@ -71,7 +71,7 @@ TEST(RoomTable, one_hand_moves_the_field_with_it) {
   table.follow(hands({}, glm::dvec3(0.3, 0.9, -0.7)));
   expectNear(table.roomOf(held), {0.3, 0.9, -0.7});
   table.follow(hands({}, {}));
-  table.follow(hands({}, glm::dvec3(0.0, 0.0, 0.0)));  // holds anew
+  table.follow(hands({}, glm::dvec3(0.0, 0.0, 0.0)));  // takes hold again
   expectNear(table.roomOf(held), {0.3, 0.9, -0.7});
 }
 

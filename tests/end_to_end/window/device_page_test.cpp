@@ -86,7 +86,7 @@ TEST_F(DevicePage, measures_a_device_by_keys_and_uses_it_so_again_when_it_is_ope
 
     EXPECT_EQ(push(user, "1", 30.0, 2.0, -3.0, "right")["device_check"]["right"], "+x");
     EXPECT_EQ(push(user, "2", 0.0, 25.0, 0.0, "away")["device_check"]["away"], "+y");
-    // A person who pushes it down where up is asked for is told so.
+    // Down where up is asked for is reported.
     EXPECT_EQ(push(user, "3", 0.0, 0.0, -25.0, "up")["device_check"]["up"], "-z");
 
     (void)user.press("t");

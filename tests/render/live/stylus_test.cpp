@@ -102,7 +102,7 @@ TEST(StylusPicture, ItsPointIsAtTheTipAndItsLengthIsInPixels) {
   EXPECT_NEAR(body.high.y - body.low.y, 2 * 0.065 * 96.0, 3.0);
   // Only the picture over the surface is other: nothing of the surface was drawn again.
   EXPECT_EQ(drawn.stats.redrawn, 0.0);
-  // And without it again the picture is the same to the bit.
+  // And without it again the picture is bit-identical.
   input.overlays.stylus.reset();
   EXPECT_EQ(shoot(*picture, input).image.rgba, plain.image.rgba);
 }
