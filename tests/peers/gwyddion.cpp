@@ -16,6 +16,7 @@
 
 #include "engine/formats/formats.h"
 #include "engine/measure/areal.h"
+#include "engine/measure/form.h"
 #include "engine/measure/spatial.h"
 #include "engine/measure/surface.h"
 
