@@ -81,21 +81,29 @@ DeviceInfo describe(const HidInterface& i) {
 }
 
 engine::Result<std::unique_ptr<Device>> openWooden(std::unique_ptr<ReportSource> source,
-                                                   std::optional<WoodenForm> form) {
+                                                   std::optional<WoodenForm> form, std::string serial) {
   const engine::Result<WoodenConfig> config = userConfig();
   if (!config) return tl::unexpected(config.error());
-  return std::make_unique<WoodenHaptics>(*config, std::move(source), form);
+  return std::make_unique<WoodenHaptics>(*config, std::move(source), form, OutputTimes{}, std::move(serial));
+}
+
+// Of the interface that HidSource opens; empty when none is there, or it states none.
+std::string serialOf(HidKind kind, const std::string& which) {
+  for (const HidInterface& i : hidInterfaces())
+    if (hidKind(i) == kind && (which.empty() || i.path == which || i.serial == which)) return i.serial;
+  return {};
 }
 
 using Opened = engine::Result<std::unique_ptr<Device>>;
 
 // Of hardware: a path or a serial number, else the first that is found.
 Opened openWoodenHid(const std::string& which, double) {
-  return openWooden(std::make_unique<HidSource>(HidKind::kWoodenHaptics, which), std::nullopt);
+  return openWooden(std::make_unique<HidSource>(HidKind::kWoodenHaptics, which), std::nullopt,
+                    serialOf(HidKind::kWoodenHaptics, which));
 }
 
 Opened openWoodenSerial(const std::string& path, double) {
-  return openWooden(std::make_unique<SerialSource>(path), WoodenForm::kS);
+  return openWooden(std::make_unique<SerialSource>(path), WoodenForm::kS, {});
 }
 
 Opened openSpaceMouse(const std::string& which, double) {

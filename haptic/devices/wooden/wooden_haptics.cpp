@@ -8,10 +8,19 @@
 
 namespace fettle::haptic {
 
+namespace {
+
+DeviceProfile withSerial(DeviceProfile profile, std::string serial) {
+  profile.serial = std::move(serial);
+  return profile;
+}
+
+}  // namespace
+
 WoodenHaptics::WoodenHaptics(const WoodenConfig& config, std::unique_ptr<ReportSource> source,
-                             std::optional<WoodenForm> form, const OutputTimes& times)
+                             std::optional<WoodenForm> form, const OutputTimes& times, std::string serial)
     : config_(config),
-      profile_(woodenProfile(config)),
+      profile_(withSerial(woodenProfile(config), std::move(serial))),
       fixed_form_(form),
       home_{static_cast<std::int16_t>(config.calibrate_enc[0]),
             static_cast<std::int16_t>(config.calibrate_enc[1]),

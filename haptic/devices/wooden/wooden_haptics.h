@@ -21,9 +21,10 @@ namespace fettle::haptic {
 /// again after each re-plug: its encoders lose their zero without power.
 class WoodenHaptics final : public Device, private ReportHandler {
  public:
-  /// `form`: kS for a serial board; nothing for HID.
+  /// `form`: kS for a serial board; nothing for HID. `serial`: DeviceProfile::serial.
   WoodenHaptics(const WoodenConfig& config, std::unique_ptr<ReportSource> source,
-                std::optional<WoodenForm> form = std::nullopt, const OutputTimes& times = {});
+                std::optional<WoodenForm> form = std::nullopt, const OutputTimes& times = {},
+                std::string serial = {});
   ~WoodenHaptics() override;
 
   [[nodiscard]] const DeviceProfile& profile() const noexcept override { return profile_; }

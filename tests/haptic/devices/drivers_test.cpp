@@ -382,6 +382,10 @@ TEST_F(Drivers, TwoDevicesAreDistinguishedBySerialNumber) {
     EXPECT_EQ(d.usage_page, 0xFFAB);
     EXPECT_EQ(d.name, "WoodenHaptics");  // without a maker, on no bus, with interface -1
   }
+  const auto named = openDevice("woodenhaptics:R2"), first = openDevice("woodenhaptics");
+  ASSERT_TRUE(named && first);
+  EXPECT_EQ((*named)->profile().serial, "R2");
+  EXPECT_EQ((*first)->profile().serial, "L1");
   auto device = driver("R2");
   ASSERT_TRUE(device->start());
   Loop loop(*device);
