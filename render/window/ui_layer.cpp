@@ -210,6 +210,34 @@ std::vector<int> UiLayer::holdShortPresses() {
   return changed;
 }
 
+void UiLayer::noteButton(int button, bool down, float x, float y) {
+  if (button < 0 || button >= static_cast<int>(down_.size())) return;
+  // What is dragged follows to where it is let go, before it is let go.
+  const ImVec2 last = clicks_.empty() ? ImGui::GetIO().MousePos : ImVec2(clicks_.back().x, clicks_.back().y);
+  const bool held = clicks_.empty() ? down_[static_cast<std::size_t>(button)] : clicks_.back().down;
+  if (!down && held && (last.x != x || last.y != y)) clicks_.push_back({button, true, x, y});
+  clicks_.push_back({button, down, x, y});
+}
+
+// A click that came and went in one slow frame, its cursor somewhere else by now, is a press in this frame and a release in
+// the next, both at their place. What waits when a dialog opens was meant for what it covers.
+void UiLayer::holdClick() {
+  ImGuiIO& io = ImGui::GetIO();
+  const bool dialog = ImGui::GetTopMostPopupModal() != nullptr;
+  if (dialog && !std::exchange(dialog_, dialog)) {
+    for (const Click& click : clicks_) down_[static_cast<std::size_t>(click.button)] = false;
+    clicks_.clear();
+  }
+  dialog_ = dialog;
+  if (!clicks_.empty()) {
+    const Click click = clicks_.front();
+    clicks_.erase(clicks_.begin());
+    down_[static_cast<std::size_t>(click.button)] = click.down;
+    io.MousePos = ImVec2(click.x, click.y);
+  }
+  std::copy(down_.begin(), down_.end(), std::begin(io.MouseDown));
+}
+
 void UiLayer::beginFrame() {
   // In dialogs and menus the arrow keys move between fields; elsewhere they turn the view, and must not
   // navigate in the panels.
@@ -221,6 +249,7 @@ void UiLayer::beginFrame() {
     io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  holdClick();
   const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
   for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -37,8 +38,13 @@ class UiLayer {
   /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
   /// gets keys that were released by then, for one frame.
   void notePress(int key, int modifiers);
+  /// A mouse button (GLFW's number) went down or up at this place of the window. ImGui reads buttons and place when a frame
+  /// begins: with this call it gets each press and each release where it was, one a frame.
+  void noteButton(int button, bool down, float x, float y);
   /// Whether presses or characters wait for a later frame.
-  [[nodiscard]] bool behind() const noexcept { return !pressed_.empty() || !waiting_.empty(); }
+  [[nodiscard]] bool behind() const noexcept {
+    return !pressed_.empty() || !waiting_.empty() || !clicks_.empty();
+  }
   void beginFrame();
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
   /// ends.
@@ -63,7 +69,13 @@ class UiLayer {
     int key, modifiers;
     std::size_t typed_before;  // characters that came before it and wait for a frame
   };
+  struct Click {
+    int button;
+    bool down;
+    float x, y;
+  };
   void makeStyle(double scale) const;
+  void holdClick();
   [[nodiscard]] bool wantsKeys() const noexcept;
   [[nodiscard]] std::vector<int> holdShortPresses();
 
@@ -71,6 +83,9 @@ class UiLayer {
   bool entered_ = false;
   GLFWwindow* window_;
   std::vector<Press> pressed_;    // since the last frame began, or waiting for the next one
+  std::vector<Click> clicks_;     // the same
+  bool dialog_ = false;           // one was open when the last frame began
+  std::array<bool, 5> down_{};    // of the buttons, after the clicks that had their frame
   std::vector<ImWchar> waiting_;  // characters that wait for the next frame
   std::string layout_file_;       // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;

@@ -1,10 +1,12 @@
 #include "render/window/window.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <dlfcn.h>
@@ -161,12 +163,20 @@ struct Window::Impl {
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
   std::vector<InputEvent> input;
+  std::optional<std::array<double, 2>>
+      cursor;  // of the last event: GLFW asks where it is now, a slow frame later
   std::vector<std::string> drops;
   std::function<void()> while_waiting;
 
+  std::array<double, 2> cursorOfEvent() {
+    if (!cursor) {
+      cursor.emplace();
+      glfwGetCursorPos(glfw.window, &(*cursor)[0], &(*cursor)[1]);
+    }
+    return *cursor;
+  }
   void note(InputEvent event) {
-    double x = 0.0, y = 0.0;
-    glfwGetCursorPos(glfw.window, &x, &y);
+    const auto [x, y] = cursorOfEvent();
     int window_width = 1, window_height = 1, width = 1, height = 1;
     glfwGetWindowSize(glfw.window, &window_width, &window_height);
     glfwGetFramebufferSize(glfw.window, &width, &height);
@@ -253,9 +263,12 @@ void Window::Impl::listen() {
                    : button == GLFW_MOUSE_BUTTON_MIDDLE ? MouseButton::kMiddle
                                                         : MouseButton::kOther;
     event.modifiers = modifiersOf(mods);
+    const auto [x, y] = of(w).cursorOfEvent();
+    of(w).ui->noteButton(button, action == GLFW_PRESS, static_cast<float>(x), static_cast<float>(y));
     of(w).note(event);
   });
-  glfwSetCursorPosCallback(glfw.window, [](GLFWwindow* w, double, double) {
+  glfwSetCursorPosCallback(glfw.window, [](GLFWwindow* w, double x, double y) {
+    of(w).cursor = {x, y};
     InputEvent event;
     event.kind = InputKind::kMove;
     event.modifiers = of(w).modifiersNow();

@@ -138,5 +138,50 @@ TEST_F(LockTest, what_was_pressed_before_a_dialog_does_not_come_to_it) {
   (void)quit(user);
 }
 
+// In a slow frame a click acts where it was, wherever the cursor is when the frame begins; a second one that waits when a dialog
+// comes does not act on what the dialog has there.
+TEST_F(LockTest, a_click_acts_where_it_was_and_not_on_a_dialog_that_came_after_it) {
+  const auto program = startOpened();
+  User user(display, *program, "click");
+  const auto middle = [&](const std::string& text) {
+    const State now = program->now();
+    for (const State& t : now["texts"])
+      if (t["text"].get<std::string>().starts_with(text))
+        return User::Place{t["at"][0].get<int>() + t["at"][2].get<int>() / 2,
+                           t["at"][1].get<int>() + t["at"][3].get<int>() / 2};
+    ADD_FAILURE() << text << " is not written in " << now["texts"].dump();
+    return User::Place{};
+  };
+  const auto at = [](User::Place p) {
+    return std::vector<std::string>{"mousemove", std::to_string(p.x), std::to_string(p.y)};
+  };
+  const auto then = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  user.at({20, 740});
+  (void)user.rest();
+  const User::Place smooth = middle("Smooth");
+  inOneFrame(then(then(at(smooth), {"click", "1"}), at({20, 740})));
+  program->until("the tool", [](const State& s) { return s["tool"] == "smooth" && s["settled"] == true; });
+  const auto is_asked = [](const State& s) {
+    return s["dialog"] == "export" && s["settled"] == true && s["text_field"] == true;
+  };
+  const auto leave = [&] {
+    (void)user.press("Escape");
+    program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  };
+  (void)user.press("ctrl+e");
+  program->until("where to", is_asked);
+  const User::Place cancel = middle("Cancel");
+  leave();
+  inOneFrame(then({"key", "--delay", "0", "ctrl+e"}, then(at(cancel), {"click", "1"})));
+  program->until("where to", is_asked);
+  user.at({20, 740});
+  EXPECT_EQ(user.rest()["dialog"], "export");
+  leave();
+  (void)quit(user);
+}
+
 }  // namespace
 }  // namespace fettle::tests
