@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "bench/least_ball.h"
 #include "bench/least_search.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"
@@ -34,18 +35,29 @@ struct HapticCase {
   haptic::BallSteps ball_steps = haptic::BallSteps::kInPlan;
 };
 
+// Of the ticks a ball runs one in so many; its radius in samples.
+constexpr std::int64_t kBallShare = 10;
+constexpr double kHapticBallSamples = 2.0;
+
 constexpr HapticCase kHapticCases[] = {
     {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1, 0.0},
     {"descent, feel", haptic::Tool::kFeel, haptic::ContactLevel::kDescent, 1, 0.0},
     {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1, 0.0},
     {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
-    {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
-    {"the same, 4 steps per tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
-    {"the same, minima of equal pieces", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 2048,
-     haptic::kBallSearches, haptic::BallMinima::kPieces},
-    {"the same, as before contact revision 4", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0,
-     2048, 64, haptic::BallMinima::kPieces, haptic::BallSteps::kInSpace},
+    {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, kBallShare,
+     kHapticBallSamples},
+    {"the same, 4 steps per tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, kBallShare,
+     kHapticBallSamples, 5},
+    {"the same, minima of equal pieces", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, kBallShare,
+     kHapticBallSamples, 2048, haptic::kBallSearches, haptic::BallMinima::kPieces},
+    {"the same, as before contact revision 4", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, kBallShare,
+     kHapticBallSamples, 2048, 64, haptic::BallMinima::kPieces, haptic::BallSteps::kInSpace},
 };
+
+std::span<const haptic::StrokeSample> partOf(std::span<const haptic::StrokeSample> strokes,
+                                             std::int64_t share) {
+  return strokes.first(std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(share)));
+}
 
 // A field that is difficult for a search of the closest point.
 struct HardGround {
@@ -141,8 +153,7 @@ engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Ve
     s.tip_mm.z += radius_mm - raised_mm;
   }
   raised_mm = radius_mm;
-  const auto part = std::span<const haptic::StrokeSample>(strokes).first(
-      std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(test_case.share)));
+  const auto part = partOf(strokes, test_case.share);
   const auto differ = [&] {
     return engine::failure("two runs of the same strokes differ", test_case.name, "please report this");
   };
@@ -197,13 +208,13 @@ engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
   return row;
 }
 
-// The lower bound of level paper over the same strokes: rates of all ticks, though only those in contact are computed.
-HapticBenchRow runLeast(const engine::Version& field, std::span<const haptic::StrokeSample> strokes,
+// A lower bound over the same strokes, LeastSearch or LeastBall: rates of all ticks, though only those in contact are computed.
+template <class Least>
+HapticBenchRow runLeast(const char* name, const Least& least, std::span<const haptic::StrokeSample> strokes,
                         const HapticBenchOptions& options) {
   HapticBenchRow row;
-  row.name = "plain array, the least of level paper";
+  row.name = name;
   row.ticks = static_cast<std::int64_t>(strokes.size());
-  const LeastSearch least(field, strokes);
   row.contact_ticks = least.contacts();
   row.cells = least.cells();
   row.newton_cells = least.newtonCells();
@@ -242,11 +253,16 @@ engine::Status touch(const Touched& what, const HapticBenchOptions& options, eng
     return {};
   };
   if (auto done = add(runPlain(what.field, strokes, options, job)); !done) return done;
-  if (auto done = add(runLeast(what.field, strokes, options)); !done) return done;
+  if (auto done = add(runLeast("plain array, the least of level paper", LeastSearch(what.field, strokes),
+                               strokes, options));
+      !done)
+    return done;
   double raised_mm = 0.0;  // a ball's endpoint is its centre: for the same press it is one radius higher
   for (const HapticCase& test_case : kHapticCases)
     if (auto done = add(run(test_case, what.field, strokes, raised_mm, options, job)); !done) return done;
-  return {};
+  const std::span<const haptic::StrokeSample> balls = partOf(strokes, kBallShare);
+  return add(runLeast("plain array, the least of a ball",
+                      LeastBall(what.field, kHapticBallSamples * kSpacingMm, balls), balls, options));
 }
 
 }  // namespace

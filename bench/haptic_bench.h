@@ -34,7 +34,7 @@ struct HapticBenchRow {
   double p999_ns = 0.0;
   double p9999_ns = 0.0;
   double worst_ns = 0.0;
-  // Of a contact, for the lower bound of level paper alone (LeastSearch).
+  // Of a contact, for the lower bounds alone (LeastSearch, LeastBall).
   double cells = 0.0, newton_cells = 0.0, bytes = 0.0;
   /// Of the field after it and of force and proxy in every timed tick; of the forces for the plain search, of the sum for the
   /// lower bound. The same in every repeat, else an error.
@@ -50,7 +50,7 @@ struct HapticBenchReport {
 /// Replays a hand that moves over a milled, noisy workpiece, as fast as possible: the whole tick with
 /// collision, contact, force and, where named, 3 x 3 local smoothing; every case at each speed. Then over the
 /// same part without noise and over the hard grounds, 1024 samples square, at 20 mm/s. Yardstick of each:
-/// PlainSearch over the same strokes; lower bound of level paper: LeastSearch. Errors:
+/// PlainSearch over the same strokes; lower bounds: LeastSearch of level paper, LeastBall of the ball. Errors:
 /// kInput for options out of range, kCancelled, kFailed when two repeats differ in a bit. Thread: any;
 /// blocks.
 [[nodiscard]] engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,

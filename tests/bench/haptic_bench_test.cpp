@@ -30,6 +30,14 @@ TEST(HapticBench, TheHashOfARowTellsSearchesApartThatFeelOtherPoints) {
     EXPECT_NE(row, report->rows.end()) << name;
     return row == report->rows.end() ? 0 : row->hash;
   };
+  // The lower bounds stand on every ground, over the ticks of what they bound.
+  for (const HapticBenchRow& row : report->rows) {
+    if (!row.name.starts_with("plain array, the least of")) continue;
+    EXPECT_GT(row.contact_ticks, 0) << row.ground << row.name;
+    EXPECT_GE(row.cells, 1.0) << row.ground << row.name;
+    EXPECT_EQ(row.ticks, row.name.ends_with("a ball") ? options.ticks / 10 : options.ticks);
+  }
+  EXPECT_NE(hashOf("plain array, the least of a ball"), hashOf("plain array, the least of level paper"));
   EXPECT_NE(hashOf("paper, feel"), hashOf("descent, feel"));
   EXPECT_NE(hashOf("paper, feel"), hashOf("certified radius 2, feel"));
   EXPECT_NE(hashOf("ball r = 2 samples, to rest"), hashOf("the same, as before contact revision 4"));

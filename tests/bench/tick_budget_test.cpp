@@ -11,6 +11,7 @@
 
 #include "bench/accuracy/subjects.h"
 #include "bench/instructions.h"
+#include "bench/least_ball.h"
 #include "bench/least_search.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
@@ -203,6 +204,32 @@ TEST(LeastOfATick, OfLevelPaperIsBesideTheLeastThatItsSearchNeeds) {
   // Four edges and their comparison take some 100.
   EXPECT_GT(each, 100.0 * least.cells());
   EXPECT_LT(each, kBudgets[0].instructions);
+}
+
+TEST(LeastOfATick, OfABallIsBesideTheLeastThatItsContactsNeed) {
+  if (!kReleased) GTEST_SKIP() << "not a release build";
+  const engine::Version field = trials::workpiece(256, kSpacingMm);
+  const double radius_mm = 2.0 * kSpacingMm;
+  trials::HandMotion motion;
+  motion.ticks = 20'000;
+  motion.speed_mm_s = 20.0;
+  std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
+  for (haptic::StrokeSample& s : strokes) s.tip_mm.z += radius_mm;
+  const LeastBall least(field, radius_mm, std::span(strokes).subspan(strokes.size() / 2, 60));
+  EXPECT_NE(least.run(), 0.0);
+  // Most ticks' places lead to where the ball went: else the least would be that of its last steps alone.
+  EXPECT_LT(least.shareOfEndsAlone(), 0.25);
+  EXPECT_GT(least.steps(), 1.5);
+  const auto count = countInstructions([&] { static_cast<void>(least.run()); });
+  if (!count.instructions) GTEST_SKIP() << "instructions cannot be counted here";
+  const double each = static_cast<double>(*count.instructions) / static_cast<double>(least.contacts());
+  std::printf(
+      "least of a ball: %.0f instructions, %.2f steps, %.2f places, %.2f of them insides, %.0f bytes\n", each,
+      least.steps(), least.cells(), least.newtonCells(), least.bytes());
+  EXPECT_GT(least.contacts(), 50);
+  // A place's point, distance and half-space take some 100.
+  EXPECT_GT(each, 100.0 * least.cells());
+  EXPECT_LT(each, 26903.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, TickBudget, testing::ValuesIn(kBudgets), [](const auto& tried) {
