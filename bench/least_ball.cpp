@@ -120,21 +120,14 @@ glm::dvec3 stepOnThree(const glm::dvec3& goal, const std::array<Distance, 3>& at
 
 LeastBall::LeastBall(const engine::Version& field, double radius_mm,
                      std::span<const haptic::StrokeSample> strokes)
-    : width_(field.grid().width),
-      height_(field.grid().height),
-      sx_(field.grid().spacingXMm()),
-      sy_(field.grid().spacingYMm()),
-      unit_(field.grid().height_unit.mm),
-      radius_(radius_mm) {
-  heights_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  field.reader().readHeights(0, 0, width_, height_, heights_.data(), width_);
+    : heights_(field), radius_(radius_mm) {
   haptic::Surface surface(field.reader());
   haptic::SphereTracker ball(radius_mm, field.grid());
   const auto window = std::make_unique<haptic::SphereWindow>(haptic::BallMinima::kAll);
   const auto near = std::make_unique<haptic::SphereContactList>();
   std::array<haptic::HalfSpace, haptic::SphereContactList::kMost> half_spaces;
   haptic::TickCounters counters;
-  const double cell = std::min(sx_, sy_);
+  const double cell = std::min(heights_.spacing_x_mm, heights_.spacing_y_mm);
   bool touching = false;
   for (const haptic::StrokeSample& sample : strokes) {
     const glm::dvec3 before = ball.centre();
@@ -188,12 +181,12 @@ void LeastBall::addSamples(Tick& tick, const glm::dvec3& centre) {
   const auto first = [&](double x, double s) {
     return static_cast<std::int32_t>(std::ceil((x - radius_) / s));
   };
-  for (std::int32_t row = std::max(first(centre.y, sy_), 0); row < height_ && row * sy_ <= centre.y + radius_;
-       ++row)
-    for (std::int32_t column = std::max(first(centre.x, sx_), 0);
-         column < width_ && column * sx_ <= centre.x + radius_; ++column) {
-      const double dx = column * sx_ - centre.x;
-      const double dy = row * sy_ - centre.y;
+  for (std::int32_t row = std::max(first(centre.y, heights_.spacing_y_mm), 0);
+       row < heights_.height && row * heights_.spacing_y_mm <= centre.y + radius_; ++row)
+    for (std::int32_t column = std::max(first(centre.x, heights_.spacing_x_mm), 0);
+         column < heights_.width && column * heights_.spacing_x_mm <= centre.x + radius_; ++column) {
+      const double dx = column * heights_.spacing_x_mm - centre.x;
+      const double dy = row * heights_.spacing_y_mm - centre.y;
       if (!(dx * dx + dy * dy < radius_ * radius_)) continue;
       below_.push_back({column, row});
       read.emplace(column, row);
@@ -209,7 +202,7 @@ void LeastBall::addSamples(Tick& tick, const glm::dvec3& centre) {
 
 // How many steps lead from the tick's beginning to `centre`, the last one as short as a rest; 0: they lead elsewhere.
 int LeastBall::stepsTo(const glm::dvec3& centre, const Tick& tick) const noexcept {
-  const double cell = std::min(sx_, sy_);
+  const double cell = std::min(heights_.spacing_x_mm, heights_.spacing_y_mm);
   Tick tried = tick;
   glm::dvec3 at = tick.from_mm;
   for (int n = 1; n <= kMostSteps; ++n) {
@@ -221,15 +214,6 @@ int LeastBall::stepsTo(const glm::dvec3& centre, const Tick& tick) const noexcep
   return 0;
 }
 
-Patch LeastBall::patch(CellIndex cell) const noexcept {
-  const float* z = heights_.data() + static_cast<std::ptrdiff_t>(cell.row) * width_ + cell.column;
-  const double a = unit_ * static_cast<double>(z[0]);
-  const double b = unit_ * static_cast<double>(z[1]) - a;
-  const double c = unit_ * static_cast<double>(z[width_]) - a;
-  const double d = unit_ * static_cast<double>(z[width_ + 1]) - a - b - c;
-  return {cell.column * sx_, cell.row * sy_, sx_, sy_, a, b, c, d};
-}
-
 // One step; places move to their nearest points.
 glm::dvec3 LeastBall::step(const glm::dvec3& centre, Tick& tick) const noexcept {
   const glm::dvec3 goal = tick.endpoint_mm - centre;
@@ -237,7 +221,7 @@ glm::dvec3 LeastBall::step(const glm::dvec3& centre, Tick& tick) const noexcept 
   std::array<double, kMostPlaces> lack;
   for (std::size_t k = 0; k < static_cast<std::size_t>(tick.count); ++k) {
     Place& place = tick.places[k];
-    at[k] = distanceOf(patch(place.cell), centre, place.u, place.v);
+    at[k] = distanceOf(heights_.patch(place.cell), centre, place.u, place.v);
     lack[k] = radius_ - at[k].mm - glm::dot(at[k].normal, goal);
   }
   if (tick.count == 1) return stepOnOne(goal, at[0], lack[0]);
@@ -253,10 +237,11 @@ double LeastBall::run() const noexcept {
     double nearest2 = radius_ * radius_;
     for (std::size_t k = tick.first_below; k < tick.end_below; ++k) {
       const CellIndex at = below_[k];
-      const std::size_t i = static_cast<std::size_t>(at.row) * static_cast<std::size_t>(width_) +
+      const std::size_t i = static_cast<std::size_t>(at.row) * static_cast<std::size_t>(heights_.width) +
                             static_cast<std::size_t>(at.column);
       const glm::dvec3 away =
-          centre - glm::dvec3(at.column * sx_, at.row * sy_, unit_ * static_cast<double>(heights_[i]));
+          centre - glm::dvec3(at.column * heights_.spacing_x_mm, at.row * heights_.spacing_y_mm,
+                              heights_.unit_mm * static_cast<double>(heights_.samples[i]));
       nearest2 = std::min(nearest2, glm::dot(away, away));
     }
     sum += centre.z + nearest2;

@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "bench/plain_heights.h"
 #include "engine/field/version.h"
 #include "haptic/base/strokes.h"
 #include "haptic/contact/sphere_window.h"
@@ -59,7 +60,6 @@ class LeastBall {
     int steps = 1;
     std::size_t first_below = 0, end_below = 0;  // of below_
   };
-  [[nodiscard]] haptic::Patch patch(haptic::CellIndex cell) const noexcept;
   void addSamples(Tick& tick, const glm::dvec3& centre);
   [[nodiscard]] int stepsTo(const glm::dvec3& centre, const Tick& tick) const noexcept;
   [[nodiscard]] glm::dvec3 step(const glm::dvec3& centre, Tick& tick) const noexcept;
@@ -67,9 +67,8 @@ class LeastBall {
     return ticks_.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(ticks_.size());
   }
 
-  std::vector<float> heights_;  // row-major
-  std::int32_t width_, height_;
-  double sx_, sy_, unit_, radius_;
+  PlainHeights heights_;
+  double radius_;
   std::vector<Tick> ticks_;
   std::vector<haptic::CellIndex> below_;  // samples below the ball
   std::size_t solved_ = 0, solved_inside_ = 0, steps_ = 0, read_ = 0, ends_alone_ = 0;

@@ -29,12 +29,7 @@ std::int8_t sideOf(double x) noexcept {
 }  // namespace
 
 LeastSearch::LeastSearch(const engine::Version& field, std::span<const haptic::StrokeSample> strokes)
-    : width_(field.grid().width),
-      sx_(field.grid().spacingXMm()),
-      sy_(field.grid().spacingYMm()),
-      unit_(field.grid().height_unit.mm) {
-  heights_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(field.grid().height));
-  field.reader().readHeights(0, 0, width_, field.grid().height, heights_.data(), width_);
+    : heights_(field) {
   engine::LiveField live(field, engine::Growth::kAllowed);
   haptic::Tick tick(haptic::defaultScene(), live, field);
   haptic::Surface surface(field.reader());
@@ -48,15 +43,15 @@ LeastSearch::LeastSearch(const engine::Version& field, std::span<const haptic::S
       CellIndex cell = proxy.cell;
       double u = proxy.u, v = proxy.v;
       for (;;) {
-        PatchPoint at = haptic::closestOnCell(patch(cell.column, cell.row), sample.tip_mm, u, v);
+        PatchPoint at = haptic::closestOnCell(heights_.patch(cell), sample.tip_mm, u, v);
         steps_.push_back(
             {sample.tip_mm, cell.column, cell.row, u, v, isInside(at), false, sideOf(at.u), sideOf(at.v)});
         newton_cells_ += isInside(at) ? 1 : 0;
         samples_ += 4;
         CellIndex next = cell;
         haptic::forEachSharing(surface, cell, at.u, at.v, [&](const haptic::SharingCell& other) {
-          const PatchPoint point = haptic::closestOnCell(patch(other.cell.column, other.cell.row),
-                                                         sample.tip_mm, other.u, other.v);
+          const PatchPoint point =
+              haptic::closestOnCell(heights_.patch(other.cell), sample.tip_mm, other.u, other.v);
           if (!(point.distance2_mm2 < haptic::shorterThan(at.distance2_mm2, sample.tip_mm))) return;
           at = point;
           next = other.cell;
@@ -75,19 +70,10 @@ LeastSearch::LeastSearch(const engine::Version& field, std::span<const haptic::S
   }
 }
 
-Patch LeastSearch::patch(std::int32_t column, std::int32_t row) const noexcept {
-  const float* z = heights_.data() + static_cast<std::ptrdiff_t>(row) * width_ + column;
-  const double a = unit_ * static_cast<double>(z[0]);
-  const double b = unit_ * static_cast<double>(z[1]) - a;
-  const double c = unit_ * static_cast<double>(z[width_]) - a;
-  const double d = unit_ * static_cast<double>(z[width_ + 1]) - a - b - c;
-  return {column * sx_, row * sy_, sx_, sy_, a, b, c, d};
-}
-
 double LeastSearch::run() const noexcept {
   double sum = 0.0;
   for (const Step& step : steps_) {
-    const Patch s = patch(step.column, step.row);
+    const Patch s = heights_.patch({step.column, step.row});
     const PatchPoint at = step.newton ? haptic::closestOnPatch(s, step.endpoint_mm, step.u, step.v)
                                       : haptic::closestOnEdges(s, step.endpoint_mm);
     if (!step.last) continue;
@@ -98,11 +84,13 @@ double LeastSearch::run() const noexcept {
     const auto rise = [&](int du, int dv) {
       const std::int32_t column = std::max(step.column + (at.u == 1.0 ? 1 : 0) + du, 0);
       const std::int32_t row = std::max(step.row + (at.v == 1.0 ? 1 : 0) + dv, 0);
-      const std::size_t i = std::min(
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column),
-          heights_.size() - 1);
-      return away.x * (column * sx_ - point.x) + away.y * (row * sy_ - point.y) +
-             away.z * (unit_ * static_cast<double>(heights_[i]) - point.z);
+      const std::size_t i =
+          std::min(static_cast<std::size_t>(row) * static_cast<std::size_t>(heights_.width) +
+                       static_cast<std::size_t>(column),
+                   heights_.samples.size() - 1);
+      return away.x * (column * heights_.spacing_x_mm - point.x) +
+             away.y * (row * heights_.spacing_y_mm - point.y) +
+             away.z * (heights_.unit_mm * static_cast<double>(heights_.samples[i]) - point.z);
     };
     double highest = 0.0;
     if (step.du != 0 && step.dv != 0)

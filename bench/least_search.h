@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "bench/plain_heights.h"
 #include "engine/field/version.h"
 #include "haptic/base/strokes.h"
 #include "haptic/contact/surface.h"
@@ -43,14 +44,11 @@ class LeastSearch {
     bool last;           // of its tick
     std::int8_t du, dv;  // the cells around the last point: -1, 0 or 1 along each parameter
   };
-  [[nodiscard]] haptic::Patch patch(std::int32_t column, std::int32_t row) const noexcept;
   [[nodiscard]] double perContact(std::size_t count) const noexcept {
     return contacts_ > 0 ? static_cast<double>(count) / static_cast<double>(contacts_) : 0.0;
   }
 
-  std::vector<float> heights_;  // row-major
-  std::int32_t width_;
-  double sx_, sy_, unit_;
+  PlainHeights heights_;
   std::vector<Step> steps_;
   std::size_t newton_cells_ = 0, samples_ = 0;
   std::int64_t contacts_ = 0;

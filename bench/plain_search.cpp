@@ -5,32 +5,14 @@
 namespace fettle::bench {
 
 using haptic::CellIndex;
-using haptic::Patch;
 using haptic::PatchPoint;
 
-PlainSearch::PlainSearch(const engine::Version& field)
-    : width_(field.grid().width),
-      height_(field.grid().height),
-      sx_(field.grid().spacingXMm()),
-      sy_(field.grid().spacingYMm()),
-      unit_(field.grid().height_unit.mm) {
-  heights_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  field.reader().readHeights(0, 0, width_, height_, heights_.data(), width_);
-}
-
-Patch PlainSearch::patch(CellIndex cell) const noexcept {
-  const float* z = heights_.data() + static_cast<std::ptrdiff_t>(cell.row) * width_ + cell.column;
-  const double a = unit_ * static_cast<double>(z[0]);
-  const double b = unit_ * static_cast<double>(z[1]) - a;
-  const double c = unit_ * static_cast<double>(z[width_]) - a;
-  const double d = unit_ * static_cast<double>(z[width_ + 1]) - a - b - c;
-  return {cell.column * sx_, cell.row * sy_, sx_, sy_, a, b, c, d};
-}
+PlainSearch::PlainSearch(const engine::Version& field) : heights_(field) {}
 
 glm::dvec3 PlainSearch::tick(const glm::dvec3& e, double stiffness) noexcept {
-  const double x = e.x / sx_;
-  const double y = e.y / sy_;
-  if (!(x >= 0.0 && y >= 0.0 && x < width_ - 1 && y < height_ - 1)) {
+  const double x = e.x / heights_.spacing_x_mm;
+  const double y = e.y / heights_.spacing_y_mm;
+  if (!(x >= 0.0 && y >= 0.0 && x < heights_.width - 1 && y < heights_.height - 1)) {
     touching_ = false;
     return glm::dvec3(0.0);
   }
@@ -38,9 +20,9 @@ glm::dvec3 PlainSearch::tick(const glm::dvec3& e, double stiffness) noexcept {
     cell_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
     u_ = x - cell_.column;
     v_ = y - cell_.row;
-    if (!(e.z < patch(cell_).heightAt(u_, v_))) return glm::dvec3(0.0);
+    if (!(e.z < heights_.patch(cell_).heightAt(u_, v_))) return glm::dvec3(0.0);
   }
-  PatchPoint best = closestOnPatch(patch(cell_), e, u_, v_);
+  PatchPoint best = closestOnPatch(heights_.patch(cell_), e, u_, v_);
   for (bool moved = true; moved;) {
     moved = false;
     PatchPoint nearest = best;
@@ -52,10 +34,11 @@ glm::dvec3 PlainSearch::tick(const glm::dvec3& e, double stiffness) noexcept {
       const int dv = (k & 2) != 0 ? across_v : 0;
       if (((k & 1) != 0 && du == 0) || ((k & 2) != 0 && dv == 0)) continue;
       const CellIndex other{cell_.column + du, cell_.row + dv};
-      if (other.column < 0 || other.row < 0 || other.column >= width_ - 1 || other.row >= height_ - 1)
+      if (other.column < 0 || other.row < 0 || other.column >= heights_.width - 1 ||
+          other.row >= heights_.height - 1)
         continue;
-      const PatchPoint p =
-          closestOnPatch(patch(other), e, du == 0 ? best.u : 1.0 - best.u, dv == 0 ? best.v : 1.0 - best.v);
+      const PatchPoint p = closestOnPatch(heights_.patch(other), e, du == 0 ? best.u : 1.0 - best.u,
+                                          dv == 0 ? best.v : 1.0 - best.v);
       if (!(p.distance2_mm2 < nearest.distance2_mm2)) continue;
       nearest = p;
       nearest_cell = other;
@@ -66,7 +49,7 @@ glm::dvec3 PlainSearch::tick(const glm::dvec3& e, double stiffness) noexcept {
   }
   u_ = best.u;
   v_ = best.v;
-  const glm::dvec3 penetration = patch(cell_).at(u_, v_) - e;
+  const glm::dvec3 penetration = heights_.patch(cell_).at(u_, v_) - e;
   touching_ = penetration.z > 0.0;
   return touching_ ? stiffness * penetration : glm::dvec3(0.0);
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "bench/plain_heights.h"
 #include "engine/field/version.h"
 #include "haptic/contact/surface.h"
 
@@ -28,11 +28,7 @@ class PlainSearch {
   [[nodiscard]] glm::dvec3 tick(const glm::dvec3& endpoint_mm, double stiffness) noexcept;
 
  private:
-  [[nodiscard]] haptic::Patch patch(haptic::CellIndex cell) const noexcept;
-
-  std::vector<float> heights_;  // row-major
-  std::int32_t width_, height_;
-  double sx_, sy_, unit_;
+  PlainHeights heights_;
   bool touching_ = false;
   haptic::CellIndex cell_;
   double u_ = 0.0, v_ = 0.0;

@@ -128,8 +128,8 @@ struct FrameInput {
   Overlays overlays;
   /// A picture for each eye; no cost when off. Bounds hold for each eye's picture.
   Stereo stereo;
-  /// Of a headset: where the eyes are, left and right, and what they see. Called once a frame, as late as possible: when
-  /// the device is free for it. The target then has two layers, one for each eye; one version is shown. `view`
+  /// Of a headset: where the eyes are, left and right, and what they see. Called once a frame, when the device
+  /// is free for it, so that the head's place is the latest. The target then has two layers, one for each eye; one version is shown. `view`
   /// gives size, exaggeration and light, and is in perspective. Not together with stereo, part or decorations.
   std::function<std::array<EyeView, 2>(const Framing&)> eyes;
   /// Requested screen error [px], > 0. FrameStatistics::bound_px reports what was reached.
