@@ -256,11 +256,12 @@ TEST(FilterView, TheErrorIsThatOfTheTilesThatWereApproximated) {
 
 // Its results are all there at the end only.
 TEST(FilterView, AFilterOfTheWholeFieldIsApproximatedWithAnEstimate) {
-  const Version field = groundOf(1280, 1280);
+  // A quarter of it takes about as long as is soon enough for nothing to be approximated.
+  const Version field = groundOf(2560, 2560);
   FilterSpec spec = specOf(FilterKind::kRobustSpline);
   spec.nesting_mm = 40.0;
   spec.threads = 1;
-  FilterView view(field, field, {{0, 0, 20, 20}, 640, 640});
+  FilterView view(field, field, {{0, 0, 40, 40}, 1280, 1280});
   Running running(view, spec);
   const auto first = running.until(view, [](const auto& p) { return p.step > 0 && p.off; });
   ASSERT_FALSE(first.field.empty());
