@@ -44,6 +44,16 @@ engine::Status saveFilled(const engine::Version& filled, const engine::Version& 
   return saveMarks(*marked, path, job);
 }
 
+void sayWhatIsBeyond(const engine::Filled& done, const engine::Version& before, const std::string& scan) {
+  const engine::BeyondBefore beyond = engine::beyondBefore(before, done.field);
+  const std::string& unit = before.grid().height_unit.name;
+  if (beyond.below > 0.0 || beyond.above > 0.0)
+    warn(fmt::format(
+        "{}: filled heights reach {:.4g} {} below the lowest and {:.4g} {} above the highest of the scan: "
+        "--method membrane stays between the heights of the rim, --max-extent leaves large holes",
+        shownInput(scan), beyond.below, unit, beyond.above, unit));
+}
+
 void sayWhatStays(const engine::Filled& done, const std::string& scan, const engine::FillOptions& options) {
   if (done.too_many > 0)
     warn(fmt::format("{}: {} hole{} of more than {} samples stay{}: their equations are too large",
@@ -91,6 +101,7 @@ engine::Result<Report> fillOne(const FillRun& options, const BatchTask& task, en
   if (!done) return tl::unexpected(done.error());
   const double seconds = watch.seconds();
   sayWhatStays(*done, task.in, *fill);
+  sayWhatIsBeyond(*done, imported->field, task.in);
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original.value_or(imported->field);
   auto known = KnownSteps::of(*imported, task, job);

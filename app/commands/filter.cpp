@@ -354,8 +354,7 @@ void addFilterRows(Command command, const std::shared_ptr<FilterArguments>& opti
   std::vector<Word> filters;
   std::vector<std::string> sigmas, ranges;
   for (const engine::Filter& filter : engine::filters()) {
-    filters.emplace_back(std::string(filter.word),
-                         engine::lowerCase(filter.title) == filter.word ? "" : std::string(filter.title));
+    filters.emplace_back(std::string(filter.word), std::string(filter.says));
     if (filter.sigma.exists()) sigmas.push_back(fmt::format("{} ({})", filter.sigma.when_zero, filter.word));
     if (filter.range_sigma.exists()) ranges.push_back(fmt::format("{:g} ({})", filter.noises, filter.word));
   }

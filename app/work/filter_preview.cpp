@@ -104,6 +104,10 @@ bool FilterPreview::takeSoFar() {
   return true;
 }
 
+bool FilterPreview::isCurrent(const Variant& variant) const {
+  return same(variant.asked, spec);
+}
+
 void FilterPreview::apply(LoopClient& client) {
   if (applying()) return;
   client.awaitRestored();
@@ -112,7 +116,7 @@ void FilterPreview::apply(LoopClient& client) {
     computing_.cancel();
     form_ = client.newest().formOver();
   }
-  if (!variants_.empty() && same(variants_.back().asked, spec)) {
+  if (!variants_.empty() && isCurrent(variants_.back())) {
     adopt(client, variants_.back());
     return;
   }

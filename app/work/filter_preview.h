@@ -61,6 +61,8 @@ class FilterPreview {
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
+  /// Whether a variant is what `spec` asks for now.
+  [[nodiscard]] bool isCurrent(const Variant& variant) const;
   void drop(std::size_t variant);
   /// What is to be drawn next to the field.
   [[nodiscard]] std::vector<Picture> pictures() const;

@@ -26,7 +26,8 @@ struct MakerName {
 };
 
 std::string foundIn(const haptic::ComputedHeights& heights, const haptic::HeightsMaker& maker,
-                    const engine::Grid& grid) {
+                    const engine::Version& before) {
+  const engine::Grid& grid = before.grid();
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readLengthAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
     return fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
@@ -41,6 +42,15 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   stay(filled.at_border, "reach the border");
   stay(filled.too_many, "have too many samples");
   stay(filled.no_rim, "have no height next to them");
+  const engine::BeyondBefore beyond = engine::beyondBefore(before, heights.field);
+  const ReadAs as =
+      readLengthAs(beyond.below + beyond.above, before.grid().height_unit.mm, before.grid().height_unit.name);
+  if (beyond.below > 0.0)
+    text += fmt::format("; down to {:.3g} {} below all else: a membrane stays between the heights of the rim",
+                        beyond.below / as.size, as.name);
+  if (beyond.above > 0.0)
+    text += fmt::format("; up to {:.3g} {} above all else: a membrane stays between the heights of the rim",
+                        beyond.above / as.size, as.name);
   return text;
 }
 
@@ -74,7 +84,7 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   // Under a stroke the field is another one every tick.
   if (done_ && !client.strokeIsUnderWay()) {
     changed = true;
-    found_ = foundIn(done_->heights, maker_, client.field().grid());
+    found_ = foundIn(done_->heights, maker_, done_->base);
     if (!(done_->base == done_->heights.field) &&
         !client.changeHeights(done_->base, done_->heights.field, makerName(maker_), maker_))
       asked_ = maker_;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
@@ -28,6 +29,10 @@ class HeightTool {
   [[nodiscard]] const char* stage() const noexcept { return working_.stage(); }
   /// What the last one found, in a sentence; empty before.
   [[nodiscard]] const std::string& found() const noexcept { return found_; }
+  /// Whether the last one filled holes instead of levelling lines.
+  [[nodiscard]] bool filledLast() const noexcept {
+    return std::holds_alternative<engine::FillOptions>(maker_);
+  }
   /// Forgets all of a document that is closed.
   void clear();
 

@@ -137,4 +137,12 @@ Result<Filled> fillHoles(const Version& field, const FillOptions& options, JobCo
                  "fill smaller holes alone");
 }
 
+BeyondBefore beyondBefore(const Version& before, const Version& filled) noexcept {
+  const HeightBounds old = before.reader().bounds(), now = filled.reader().bounds();
+  if (old.empty() || now.empty()) return {};
+  const double worth_saying = 0.05 * (double{old.max} - double{old.min});
+  const auto far = [&](double beyond) { return beyond > worth_saying ? beyond : 0.0; };
+  return {far(double{old.min} - double{now.min}), far(double{now.max} - double{old.max})};
+}
+
 }  // namespace fettle::engine

@@ -50,4 +50,11 @@ struct Filled {
 /// under work need, those of over 50,000 samples one after the other. Thread: any; a long job on all workers of the arena.
 [[nodiscard]] Result<Filled> fillHoles(const Version& field, const FillOptions& options, JobControl& job);
 
+/// How far heights of a filled field lie below the lowest and above the highest one before, as a surface of least curvature may
+/// continue a steep rim [height_unit, sign applied]; 0 up to a twentieth of the span of heights. From the pyramids.
+struct BeyondBefore {
+  double below = 0.0, above = 0.0;
+};
+[[nodiscard]] BeyondBefore beyondBefore(const Version& before, const Version& filled) noexcept;
+
 }  // namespace fettle::engine

@@ -55,6 +55,7 @@ struct Filter {
   FilterKind kind;
   std::string_view word;  ///< of the command line, of journals and of sessions: never changed
   const char* title;      ///< of panels
+  std::string_view says;  ///< what it does to a scan, for those who choose one
   /// Steps stay as steep as they are. Those that do not are the paper's: the demonstration and, unless
   /// others are named, the benchmarks run these. What keeps edges costs ten to a hundred times as much.
   bool keeps_edges = false;

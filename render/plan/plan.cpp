@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -85,6 +86,21 @@ ShownUnit unitOfColours(Quantity quantity, const engine::Grid& grid, const Value
 
 glm::vec4 vec4Of(const glm::vec3& v, double w) {
   return {v, static_cast<float>(w)};
+}
+
+// Of heights as they are now: the spans may be those of before an edit, so that colours stay as they are. Deviations have no
+// pyramid; theirs are those of the span.
+ValueRange extremesNow(std::span<const engine::Version> fields, Quantity quantity, const ValueSpan& span) {
+  if (quantity == Quantity::kDeviation) return span.extreme;
+  const double unit = fields.front().grid().height_unit.mm;
+  ValueRange extreme{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const engine::Version& v : fields) {
+    const engine::HeightBounds bounds = v.reader().bounds();
+    if (bounds.empty()) continue;
+    const double to_first = v.grid().height_unit.mm / unit;
+    extreme = {std::min(extreme.low, bounds.min * to_first), std::max(extreme.high, bounds.max * to_first)};
+  }
+  return extreme.low <= extreme.high ? extreme : span.extreme;
 }
 
 }  // namespace
@@ -229,8 +245,9 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
 
   DecorationContent& f = plan.decorations;
   f.range = plan.range;
-  f.below = !colours.empty && colours.extreme.low < plan.range.low;
-  f.above = !colours.empty && colours.extreme.high > plan.range.high;
+  const ValueRange extreme = extremesNow(fields, quantity, colours);
+  f.below = !colours.empty && extreme.low < plan.range.low;
+  f.above = !colours.empty && extreme.high > plan.range.high;
   f.quantity = quantity == Quantity::kDeviation ? "deviation" : "height";
   f.height_unit = unitOfColours(quantity, fields.front().grid(), heights.robust, plan.range);
   f.lateral_unit = fields.front().grid().lateral_unit;
@@ -243,8 +260,8 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   }
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
-    f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * f.height_unit.per_unit),
-                         shortNumber(colours.extreme.high * f.height_unit.per_unit));
+    f.note = fmt::format("lowest {}\nhighest {}", shortNumber(extreme.low * f.height_unit.per_unit),
+                         shortNumber(extreme.high * f.height_unit.per_unit));
     if (quantity == Quantity::kDeviation && !spec.range)
       f.note += fmt::format("\nbar: {:.3g} %", 100.0 * colours.share);
   }

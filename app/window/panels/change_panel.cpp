@@ -40,12 +40,13 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
   list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height),
                ImGui::GetColorU32(ImGuiCol_TextDisabled));
   if (hovered && pointed >= 0 && pointed < kClasses)
-    ImGui::SetTooltip("%s", fmt::format("{:.3g} to {}: {} samples", histogram.lowEnd(pointed) * unit.per_unit,
-                                        lengthText(histogram.lowEnd(pointed + 1), unit, 3),
-                                        histogram.counts[static_cast<std::size_t>(pointed)])
-                                .c_str());
+    ImGui::SetTooltip("%s",
+                      fmt::format("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
+                                  lengthText(histogram.lowEnd(pointed + 1), unit, 3),
+                                  histogram.counts[static_cast<std::size_t>(pointed)])
+                          .c_str());
   // The axis: its ends and zero.
-  const std::string low = fmt::format("-{:.3g}", histogram.reach * unit.per_unit),
+  const std::string low = fmt::format("-{}", render::shortNumber(histogram.reach * unit.per_unit)),
                     high = fmt::format("+{}", lengthText(histogram.reach, unit, 3));
   ImGui::TextDisabled("%s", low.c_str());
   ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 0.5F * width - 0.5F * ImGui::CalcTextSize("0").x);

@@ -10,22 +10,34 @@ namespace fettle::app {
 namespace {
 
 void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
-  fieldName("filter");
-  if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return;
-  for (const engine::Filter& each : engine::filters())
-    if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
+  fieldName("filter", engine::filterOf(spec.kind).says);
+  const bool open =
+      ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title, ImGuiComboFlags_HeightLargest);
+  if (!open) {
+    explain(engine::filterOf(spec.kind).says);
+    return;
+  }
+  for (const engine::Filter& each : engine::filters()) {
+    const bool chosen = ImGui::Selectable(each.title, each.kind == spec.kind);
+    explain(each.says);
+    if (chosen && each.kind != spec.kind) {
       spec.kind = each.kind;
       spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
       spec.nesting_mm = engine::usualNesting(each, grid);
       if (!each.has_element) spec.element = engine::FilterSpec{}.element;
       if (!each.window.exists()) spec.window = engine::FilterSpec{}.window;
     }
+  }
   ImGui::EndCombo();
 }
 
 void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render::FieldUnits& units) {
   const bool window = engine::filterOf(spec.kind).window.exists();
-  if (window && field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
+  if (window &&
+      field("window",
+            "Side of the square of samples around each sample that its new height comes from: a larger "
+            "one takes more away.",
+            [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // As a length across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
@@ -37,6 +49,12 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     spec.window =
         std::clamp(2 * static_cast<int>(std::lround(0.5 * (window_mm / grid.spacingXMm() - 1.0))) + 1, 1,
                    engine::FilterSpec::kMaxWindow);
+  // Where samples lie closer along one axis, the same number of them is another length there.
+  if (window && grid.spacingXMm() != grid.spacingYMm()) {
+    fieldName("");
+    const render::ShownUnit length = ofMillimetres(units.length, grid.lateral_unit.mm);
+    ImGui::TextDisabled("x %s along columns", lengthText(spec.window * grid.spacingYMm(), length).c_str());
+  }
   if (engine::filterOf(spec.kind).has_element) {
     fieldName("element");
     if (ImGui::BeginCombo("##element",
@@ -54,7 +72,8 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
       return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
                         ofMillimetres(units.length, grid.lateral_unit.mm));
     });
-  if (field("passes", [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
+  if (field("passes", "How often the filter runs, each time over what the last one left.",
+            [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
 }
 
@@ -64,18 +83,21 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units) {
     return value > 0.0 ? format : "0: " + std::string(parameter.when_zero);
   };
   if (filter.sigma.exists())
-    (void)field("sigma", [&] {
+    (void)field("sigma", "Standard deviation of the weights in the window.", [&] {
       return typeNumber("##sigma", spec.sigma, 0.0, 1000.0, orElse(spec.sigma, "%.2f samples", filter.sigma));
     });
   if (filter.range_sigma.exists())
-    (void)field("range sigma", [&] {
-      double shown = spec.range_sigma * units.change.per_unit;
-      if (!typeNumber("##range", shown, 0.0, filter.range_sigma.most * units.change.per_unit,
-                      orElse(spec.range_sigma, "%.4g " + units.change.name, filter.range_sigma)))
-        return false;
-      spec.range_sigma = shown / units.change.per_unit;
-      return true;
-    });
+    (void)field("range sigma",
+                "Heights that differ by no more than about this differ by noise, which goes; what differs by "
+                "more stays.",
+                [&] {
+                  double shown = spec.range_sigma * units.change.per_unit;
+                  if (!typeNumber("##range", shown, 0.0, filter.range_sigma.most * units.change.per_unit,
+                                  orElse(spec.range_sigma, "%.4g " + units.change.name, filter.range_sigma)))
+                    return false;
+                  spec.range_sigma = shown / units.change.per_unit;
+                  return true;
+                });
 }
 
 void limitField(const PanelContext& context, engine::FilterSpec& spec) {
@@ -124,6 +146,11 @@ void previewList(const render::FieldUnits& units, FilterPreview& filters) {
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);
+  // Previews stay, so that another can be put beside them: one says so where the fields are ahead of them.
+  const auto current = [&](const FilterPreview::Variant& v) { return filters.isCurrent(v); };
+  const std::vector<FilterPreview::Variant>& all = filters.variants();
+  if (!all.empty() && !filters.computing() && std::none_of(all.begin(), all.end(), current))
+    ImGui::TextDisabled("not shown yet: what the fields say now (P)");
 }
 
 }  // namespace
@@ -139,6 +166,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   endFields();
   int scope = static_cast<int>(spec.scope);
   ImGui::RadioButton("keep marks", &scope, 0);
+  tip(Action::kFilterScope);
   sameLineIfFits("only marks", ItemKind::kTick);
   ImGui::RadioButton("only marks", &scope, 1);
   tip(Action::kFilterScope);

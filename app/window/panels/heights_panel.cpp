@@ -70,6 +70,13 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
+void foundText(const HeightTool& heights) {
+  if (heights.found().empty()) return;
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(heights.found().c_str());
+  ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 void heightsPanel(const PanelContext& context, HeightTool& heights) {
@@ -90,13 +97,11 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
   ImGui::Checkbox("at the border too", &heights.fill.at_border);
   actionButton("Fill holes", Action::kFillHoles, context.act);
+  if (heights.filledLast()) foundText(heights);
   ImGui::Separator();
   linesFields(heights.lines);
   actionButton("Level lines", Action::kLevelLines, context.act);
-  if (heights.found().empty()) return;
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(heights.found().c_str());
-  ImGui::PopTextWrapPos();
+  if (!heights.filledLast()) foundText(heights);
 }
 
 }  // namespace fettle::app

@@ -48,12 +48,12 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     linePanel(context, parts.marking.lines, settings.draw_lines);
   }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
+  if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
   if (section(settings, "Form", false)) formPanel(context, parts.form);
   if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(settings, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
   if (section(settings, "Section", false)) sectionPanel(context, parts.section);
-  if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
   if (section(settings, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
   if (section(settings, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
@@ -62,7 +62,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     colourPanel(context, settings.display, parts.colours, parts.picture);
   if (section(settings, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
-  if (section(settings, "Status", true)) statusPanel(context, parts.picture, parts.opening.times());
+  if (section(settings, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
   if (section(settings, "Haptics", false))
     rate_hz = hapticsPanel(context, parts.stylus_overlay, settings.loudness, parts.costs);
   ImGui::End();

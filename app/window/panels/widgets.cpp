@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "app/window/action_tips.h"
+
 namespace fettle::app {
 
+constexpr float kTip = 24.0F;    // of a tip's width, in heights of a letter
 constexpr float kNames = 0.36F;  // of a panel's width, for the names of fields and figures
 
 void figure(const char* name, const std::string& value) {
@@ -30,10 +33,19 @@ void workBar(const WorkProgress& progress, float width, const char* what) {
   ImGui::ProgressBar(static_cast<float>(progress.share), ImVec2(width, 0.0F), text.c_str());
 }
 
+void explain(std::string_view says) {
+  if (says.empty() || !ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(kTip * ImGui::GetFontSize());
+  ImGui::TextUnformatted(says.data(), says.data() + says.size());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
 void tip(Action action) {
-  if (!ImGui::IsItemHovered()) return;
   const ActionRow& s = rowOf(action);
-  ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
+  const std::string_view says = tipOf(action);
+  explain(fmt::format("{}: {}{}{}", s.name, keyText(s.key, s.modifiers), says.empty() ? "" : "\n", says));
 }
 
 void actionButton(const char* name, Action action, const Act& act) {
@@ -62,10 +74,11 @@ void endFields() {
   ImGui::PopItemWidth();
 }
 
-void fieldName(const char* name) {
+void fieldName(const char* name, std::string_view says) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", name);
+  explain(says);
   const float room = kNames * width - ImGui::GetStyle().ItemInnerSpacing.x;
   if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
 }
@@ -96,7 +109,13 @@ bool typeLength(const char* id, double& value, double low, double high, const re
 }
 
 std::string lengthText(double value, const render::ShownUnit& unit, int digits) {
-  return fmt::format("{:.{}g} {}", value * unit.per_unit, digits, unit.name);
+  const double shown = value * unit.per_unit;
+  // No exponents where a person reads a plain number sooner.
+  const double size = std::abs(shown);
+  if (!(size >= std::pow(10.0, digits) && size < 1e7))
+    return fmt::format("{:.{}g} {}", shown, digits, unit.name);
+  const double step = std::pow(10.0, std::floor(std::log10(size)) + 1.0 - digits);
+  return fmt::format("{:.0f} {}", std::round(shown / step) * step, unit.name);
 }
 
 render::ShownUnit ofMillimetres(const render::ShownUnit& shown, double mm) {

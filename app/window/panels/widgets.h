@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <imgui.h>
 
@@ -24,7 +25,9 @@ void workBar(const WorkProgress& progress, float width, const char* what);
 /// Receives the actions of buttons, tick boxes and menus.
 using Act = std::function<void(Action)>;
 
-/// Shows the keys of an action as a tip of the last item.
+/// A tip of the last item, below it.
+void explain(std::string_view says);
+/// Shows what an action does and its keys as a tip of the last item.
 void tip(Action action);
 /// A button and a tick box for an action, with its tip.
 void actionButton(const char* name, Action action, const Act& act);
@@ -39,10 +42,17 @@ void sameLineIfFits(const char* text, ItemKind what = ItemKind::kButton);
 /// rest of the line to `edit` and returns its result. A name too long for its column has a line of its own.
 void beginFields();
 void endFields();
-void fieldName(const char* name);
+/// `says`: the tip of the name and of the field.
+void fieldName(const char* name, std::string_view says = {});
 bool field(const char* name, const auto& edit) {
   fieldName(name);
   return edit();
+}
+bool field(const char* name, std::string_view says, const auto& edit) {
+  fieldName(name, says);
+  const bool changed = edit();
+  explain(says);
+  return changed;
 }
 
 /// A typed number with its unit: returns what was typed and confirmed, any finite value; nothing while it is

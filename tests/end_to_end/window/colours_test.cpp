@@ -16,7 +16,7 @@ class ColoursTest : public WindowTest {
   void SetUp() override {
     WindowTest::SetUp();
     State panels{{"Colours", true}};
-    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan"})
       panels[closed] = false;
     std::ofstream(folder.path() / "fettle" / "window.json")
         << State{{"edge_lines", false}, {"panels", panels}};

@@ -14,7 +14,7 @@ using State = User::State;
 // Only these panels are open.
 void openPanels(const TempFolder& folder, const std::vector<std::string>& names) {
   State panels;
-  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan", "Status"})
+  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan"})
     panels[other] = false;
   for (const std::string& name : names) panels[name] = true;
   std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};

@@ -281,6 +281,22 @@ TEST(Fill, AMembraneStaysBetweenTheLowestAndHighestOfTheRimAlsoWithASpike) {
   EXPECT_EQ(summarize(curved).no_data, 0);
 }
 
+// A bowl's bottom, which is missing, is lower than its walls: by curvature far below all that is known, by a membrane not.
+TEST(Fill, SaysHowFarItGoesBeyondTheHeightsBefore) {
+  const Version bowl = scanOf(
+      41, 41, [](int c, int r) { return (c - 20) * (c - 20) + (r - 20) * (r - 20); },
+      [](int c, int r) { return std::hypot(c - 20, r - 20) < 12; });
+  const BeyondBefore curved = beyondBefore(bowl, fill(bowl, by(FillMethod::kCurvature)).field);
+  EXPECT_NEAR(curved.below, 144, 20);
+  EXPECT_EQ(curved.above, 0.0);
+  const BeyondBefore flat = beyondBefore(bowl, fill(bowl, by(FillMethod::kMembrane)).field);
+  EXPECT_EQ(flat.below, 0.0);
+  const BeyondBefore turned =
+      beyondBefore(bowl.inverted(), fill(bowl.inverted(), by(FillMethod::kCurvature)).field);
+  EXPECT_EQ(turned.below, 0.0);
+  EXPECT_EQ(turned.above, curved.below);
+}
+
 TEST(Fill, GoesOnWithBothSidesOfAStepUpToItsLineAndNotOver) {
   // A step between columns 39 and 40; the line is drawn across the hole, where nothing could be located.
   const auto step = [](int c, int r) { return (c < 40 ? 0.0 : 10.0) + 0.01 * r; };

@@ -339,6 +339,24 @@ TEST(Plan, ContourLinesAreAsFarApartAsAskedOrAtTheStepsOfTheBar) {
   EXPECT_FALSE(plan());
 }
 
+// Colours stay as they were planned while heights are edited; what stands below them is what there is now.
+TEST(Plan, TheNoteNamesTheExtremesOfNowWhateverTheColoursWereChosenBy) {
+  const auto sloped = [](int c, int) { return c; };
+  const std::vector<engine::Version> before{fieldOf(gridOf(64, 64), sloped)};
+  const PictureSpans spans = spansOf(before, {});
+  const std::vector<engine::Version> after{
+      fieldOf(gridOf(64, 64), [](int c, int r) { return c == 9 && r == 7 ? -500 : c; })};
+  PictureSpec spec;
+  const auto decorations = [&](const std::vector<engine::Version>& fields) {
+    return planPicture(spec, fields, spans, layOut(spec.view, spec.decoration, 1, Titles::kNone))->decorations;
+  };
+  EXPECT_FALSE(decorations(before).below);
+  EXPECT_EQ(decorations(before).note, "");
+  EXPECT_TRUE(decorations(after).below);
+  EXPECT_EQ(decorations(after).note, "lowest \u2212500\nhighest 63.0");
+  EXPECT_EQ(decorations(after).range, decorations(before).range);
+}
+
 TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
   View view;
   view.width = 1280;

@@ -1,0 +1,48 @@
+#include "app/window/action_tips.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace fettle::app {
+namespace {
+
+struct Tip {
+  Action action;
+  std::string_view says;
+};
+
+constexpr Tip kTips[] = {
+    {Action::kNavigate, "The left button moves the view again."},
+    {actionOf(haptic::Tool::kFeel), "The stylus feels the surface and changes nothing."},
+    {actionOf(haptic::Tool::kSmooth),
+     "Takes noise off under the brush while the button is down. A single spike becomes a hill: take the "
+     "median, only on marks, for spikes."},
+    {actionOf(haptic::Tool::kMark),
+     "What is marked no filter and no stroke changes; or filters change it alone, with \"only marks\"."},
+    {actionOf(haptic::Tool::kUnmark), "Takes marks away under the brush."},
+    {Action::kLasso, "Draw around a place."},
+    {Action::kBox, "Drag over a place, for spikes or a bad strip; then a filter with \"only marks\"."},
+    {Action::kClearMarks, "Heights stay; undo brings them back."},
+    {Action::kDrawLines,
+     "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
+    {Action::kEdges, "Shows where the scan has edges; Enter takes them as marks or edge lines."},
+    {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
+    {Action::kFilterAdd, "One more filter beside the others, to compare them."},
+    {Action::kFilterApply, "Makes the previewed filter a step, which undo takes back."},
+    {Action::kFilterScope,
+     "\"keep marks\": marked samples keep their heights. \"only marks\": nothing else changes."},
+    {Action::kFilterMaxChange, "No sample moves farther than this from the scan."},
+    {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},
+    {Action::kLevelLines, "For scanners whose rows lie at different heights: stripes go."},
+    {Action::kShowMarks, "They count whether they are shown or not."},
+    {Action::kKeepWithin, "Strokes move no sample farther than this from the scan."},
+};
+
+}  // namespace
+
+std::string_view tipOf(Action action) noexcept {
+  const auto* const row = std::ranges::find(kTips, action, &Tip::action);
+  return row == std::end(kTips) ? std::string_view{} : row->says;
+}
+
+}  // namespace fettle::app
