@@ -74,7 +74,7 @@ struct RenderBenchReport {
 };
 
 /// A machined, noisy part. At each size: an empty frame (ground and decorations, the yardstick); from all
-/// sides, plain, at half resolution ("moving", as in the window) and while a brush of 31 x 31 samples works;
+/// sides, plain, at half resolution ("moving", as in the window), at a quarter, and while a brush of 31 x 31 samples works;
 /// from one side, the brush with frames drawn in parts and as a whole, and a stylus that moves over the
 /// surface; and as finely as the window draws a picture at rest. At the first size also each render effect
 /// alone, for comparison with the plain row, so that an effect left out can be seen to cost nothing, and a field under a

@@ -285,6 +285,18 @@ void LiveFields::uploadPending(UploadStatistics& all) {
   uploaded_ = {};
 }
 
+std::int64_t LiveFields::measureFor(double ms) {
+  constexpr std::size_t kAtOnce = 64;  // tiles: 1 to 3 ms
+  const engine::Stopwatch watch;
+  std::int64_t left = 0;
+  for (Field& f : fields_) {
+    const engine::FieldReader reader = f.texture.version().reader();
+    while (f.measure.unknown() > 0 && watch.ms() < ms) (void)f.measure.measureSome(reader, kAtOnce);
+    left += static_cast<std::int64_t>(f.measure.unknown());
+  }
+  return left;
+}
+
 void LiveFields::uploadPages(PageDemand& demand, FrameStatistics& stats) {
   UploadStatistics count;
   ResidencyStatistics& r = stats.residency;

@@ -38,6 +38,8 @@ class LiveFields {
   /// Uploads the next share of what is pending in the submission that is being recorded, and measures some
   /// tiles. Adds what update() uploaded since the last call.
   void uploadPending(UploadStatistics& count);
+  /// As LivePicture::measureFor.
+  [[nodiscard]] std::int64_t measureFor(double ms);
   /// Uploads pages that a frame requests, within what uploadPending() left of upload_bytes_per_frame; only on
   /// demand.
   void uploadPages(PageDemand& demand, FrameStatistics& stats);

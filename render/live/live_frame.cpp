@@ -3,6 +3,7 @@
 #include "render/vulkan/descriptor_writes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace fettle::render {
@@ -42,9 +43,12 @@ vk::Format codesOf(vk::Format colour) {
   }
 }
 
-// Rounded up, so that one pixel of half a picture is two of the whole in each direction.
+// Every `step`-th pixel, rounded up: one pixel of the result is `step` of the whole in each direction.
+vk::Extent2D everyNth(vk::Extent2D extent, std::uint32_t step) {
+  return {(extent.width + step - 1) / step, (extent.height + step - 1) / step};
+}
 vk::Extent2D halfOf(vk::Extent2D extent) {
-  return {(extent.width + 1) / 2, (extent.height + 1) / 2};
+  return everyNth(extent, 2);
 }
 
 // The pixels of a layer that a part of the picture touches.
@@ -53,8 +57,9 @@ Rectangle scaled(const Rectangle& r, float scale) {
     const int rays = static_cast<int>(scale);
     return {rays * r.x, rays * r.y, rays * r.width, rays * r.height};
   }
-  const int x = r.x / 2, y = r.y / 2;
-  return {x, y, (r.x + r.width + 1) / 2 - x, (r.y + r.height + 1) / 2 - y};
+  const int step = static_cast<int>(std::lround(1.0F / scale));
+  const int x = r.x / step, y = r.y / step;
+  return {x, y, (r.x + r.width + step - 1) / step - x, (r.y + r.height + step - 1) / step - y};
 }
 
 vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, vk::AttachmentLoadOp load,
@@ -191,22 +196,31 @@ void LiveFrame::makeRest(Submissions& submissions, vk::Extent2D extent) {
   reduce_to_rest_->set(fine_.base, rest_, layers_);
 }
 
+void LiveFrame::makeSmall(Layers& layers, vk::Extent2D picture, int step, std::unique_ptr<Resize>& enlarge) {
+  layers.scale = 1.0F / static_cast<float>(step);
+  makeLayer(layers, picture, everyNth(picture, static_cast<std::uint32_t>(step)));
+  if (!enlarge)
+    enlarge = std::make_unique<Resize>(
+        context_, step == 2 ? Resize::Direction::kEnlarge : Resize::Direction::kEnlargeMore,
+        vk::Format::eB8G8R8A8Unorm);
+  enlarge->set(layers.base, whole_.base, layers_);
+}
+
 void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
-  const bool half = sharpness == Sharpness::kHalf, fine = sharpness == Sharpness::kFine;
+  const bool half = sharpness == Sharpness::kHalf, quarter = sharpness == Sharpness::kQuarter,
+             fine = sharpness == Sharpness::kFine;
   if (whole_.extent == extent && (!half || half_.extent == extent) &&
-      (!fine || (fine_.extent == extent && reduce_)))
+      (!quarter || quarter_.extent == extent) && (!fine || (fine_.extent == extent && reduce_)))
     return;
   // The frame in flight draws with the old ones.
   submissions.finish();
-  const vk::Extent2D small = halfOf(extent);
-  if (whole_.extent != extent) makeLayer(whole_, extent, {2 * small.width, 2 * small.height});
-  if (half) {
-    half_.scale = 0.5F;
-    makeLayer(half_, extent, small);
-    if (!enlarge_)
-      enlarge_ = std::make_unique<Resize>(context_, Resize::Direction::kEnlarge, vk::Format::eB8G8R8A8Unorm);
-    enlarge_->set(half_.base, whole_.base, layers_);
+  if (whole_.extent != extent) {
+    // Room for what is enlarged from every fourth pixel.
+    const vk::Extent2D fourth = everyNth(extent, 4);
+    makeLayer(whole_, extent, {4 * fourth.width, 4 * fourth.height});
   }
+  if (half) makeSmall(half_, extent, 2, enlarge_);
+  if (quarter) makeSmall(quarter_, extent, 4, enlarge_more_);
   if (fine) {
     if (fine_.extent != extent) makeFine(extent);
     if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
@@ -582,9 +596,10 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
   makeLayers(submissions, target.extent, sharpness);
-  const Layers& layers = sharpness == Sharpness::kHalf   ? half_
-                         : sharpness == Sharpness::kFine ? fine_
-                                                         : whole_;
+  const Layers& layers = sharpness == Sharpness::kHalf      ? half_
+                         : sharpness == Sharpness::kQuarter ? quarter_
+                         : sharpness == Sharpness::kFine    ? fine_
+                                                            : whole_;
   const bool resized = &layers != &whole_;
   fill(slot, panels, decorations, layers, layers.depth);
 
@@ -601,7 +616,12 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
                   {.base = resized ? read : copied,
                    .kept = !all,
                    .lines = resized ? HiddenLines::kInBase : HiddenLines::kOverCopy});
-    if (resized) recordResized(commands, layers, *(&layers == &half_ ? enlarge_ : reduce_), whole_.base);
+    if (resized)
+      recordResized(commands, layers,
+                    *(&layers == &half_      ? enlarge_
+                      : &layers == &quarter_ ? enlarge_more_
+                                             : reduce_),
+                    whole_.base);
     recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }

@@ -44,8 +44,8 @@ struct LivePanel {
 ///   target  a copy of base; then overlay lines, the stylus between those that the surface hides and those on
 ///           top; then what LiveTarget::over draws
 ///
-/// At Sharpness::kHalf and kFine, depth, shading and the lines hidden by the surface use layers of half or
-/// twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.
+/// At Sharpness::kHalf, kQuarter and kFine, depth, shading and the lines hidden by the surface use layers of half, a
+/// quarter of or twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.
 ///
 /// At kRest (recordRest) fine layers are filled part by part, and their reduction is a base of its own, so that what kFull has
 /// drawn stays.
@@ -147,6 +147,7 @@ class LiveFrame {
   void makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size);
   void makeRest(Submissions& submissions, vk::Extent2D extent);
   void makeFine(vk::Extent2D extent);
+  void makeSmall(Layers& layers, vk::Extent2D picture, int step, std::unique_ptr<Resize>& enlarge);
   void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers, const Resize& resize,
                      const GpuImage& to);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -162,8 +163,8 @@ class LiveFrame {
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // bound where the shader reads no pages
   vk::raii::BufferView no_pages_view_ = nullptr;
-  Layers whole_, half_, fine_;  // half_ and fine_ are created on first use
-  std::unique_ptr<Resize> enlarge_, reduce_;
+  Layers whole_, half_, quarter_, fine_;  // all but whole_ are created on first use
+  std::unique_ptr<Resize> enlarge_, enlarge_more_, reduce_;
   GpuImage rest_;  // of recordRest, as whole_.base; created on first use
   vk::Extent2D rest_extent_;
   std::unique_ptr<Resize> reduce_to_rest_;

@@ -13,7 +13,18 @@ namespace {
 
 // Rays across a pixel.
 double raysOf(Sharpness sharpness) {
-  return sharpness == Sharpness::kHalf ? 0.5 : sharpness == Sharpness::kFine ? 2.0 : 1.0;
+  switch (sharpness) {
+    case Sharpness::kQuarter:
+      return 0.25;
+    case Sharpness::kHalf:
+      return 0.5;
+    case Sharpness::kFine:
+      return 2.0;
+    case Sharpness::kFull:
+    case Sharpness::kRest:
+      break;
+  }
+  return 1.0;
 }
 
 bool holed(const engine::Version& v) {

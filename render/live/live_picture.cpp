@@ -476,6 +476,10 @@ engine::Result<UploadStatistics> LivePicture::uploadAll(engine::JobControl& job)
   return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
 
+std::int64_t LivePicture::measureFor(double ms) {
+  return impl_->fields.measureFor(ms);
+}
+
 engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) try {
   FrameInput sized = input;
   sized.part.reset();

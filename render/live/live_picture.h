@@ -92,6 +92,7 @@ struct Shown {
 enum class Sharpness {
   kFull,  ///< every pixel
   kHalf,  ///< every second pixel in each direction, interpolated in between: while the camera moves. Decorations and overlay lines on top stay at full resolution, and the next frame of kFull is bit-identical to one without this frame before it
+  kQuarter,  ///< every fourth pixel in each direction, otherwise as kHalf: while the camera moves and frames of kHalf take too long
   kFine,  ///< four rays per pixel, averaged in linear light: for pictures that are drawn once. Decorations and overlay lines on top as usual
   /// kFull as long as something changes, then kFine, without a long frame: each frame in which nothing of the surface changed
   /// draws one of kRestBands bands of it, and the last one shows it. Lines hidden by the surface are drawn over it as at kFull.
@@ -284,6 +285,11 @@ class LivePicture {
   /// Uploads what is pending and measures all tiles, however long it takes; pages are uploaded with the
   /// frames. `job` advances by uploads. Errors: kCancelled; kFailed as draw().
   [[nodiscard]] engine::Result<UploadStatistics> uploadAll(engine::JobControl& job);
+
+  /// Measures tiles of which the detail is not known yet (UploadStatistics::unmeasured_tiles), for about so long, on all
+  /// cores. Returns how many are left; the next frame shows what came of it. For times in which nothing else
+  /// changes: a frame measures kMeasuredPerFrame tiles itself, and takes longer than they do.
+  [[nodiscard]] std::int64_t measureFor(double ms);
 
   /// Draws the next frame and returns without waiting for it (two may be in flight). Errors: kInput for an
   /// input out of range; kFailed for a lost device: create another LivePicture, the field is not affected.

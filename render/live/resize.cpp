@@ -6,9 +6,18 @@
 #include "resize.vert.h"
 
 namespace fettle::render {
+namespace {
+
+vk::Extent2D resultOf(Resize::Direction direction, vk::Extent2D from) {
+  if (direction == Resize::Direction::kReduce) return {from.width / 2, from.height / 2};
+  const std::uint32_t times = direction == Resize::Direction::kEnlargeMore ? 4 : 2;
+  return {times * from.width, times * from.height};
+}
+
+}  // namespace
 
 Resize::Resize(const Context& context, Direction direction, vk::Format format)
-    : context_(context), format_(format) {
+    : context_(context), direction_(direction), format_(format) {
   constexpr auto kClamp = vk::SamplerAddressMode::eClampToEdge;
   sampler_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
                                                      .setMagFilter(vk::Filter::eLinear)
@@ -32,9 +41,9 @@ Resize::Resize(const Context& context, Direction direction, vk::Format format)
         std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(*set_layout_)).front());
   }
   pipeline_ = makePipeline(context, {.vertex = resize_vert_spirv,
-                                     .fragment = direction == Direction::kEnlarge
-                                                     ? std::span<const std::uint32_t>(enlarge_frag_spirv)
-                                                     : std::span<const std::uint32_t>(reduce_frag_spirv),
+                                     .fragment = direction == Direction::kReduce
+                                                     ? std::span<const std::uint32_t>(reduce_frag_spirv)
+                                                     : std::span<const std::uint32_t>(enlarge_frag_spirv),
                                      .topology = vk::PrimitiveTopology::eTriangleStrip,
                                      .colour = format,
                                      .layout = *layout_});
@@ -42,7 +51,7 @@ Resize::Resize(const Context& context, Direction direction, vk::Format format)
 
 void Resize::set(const GpuImage& from, const GpuImage& to, std::uint32_t layers) {
   count_ = layers;
-  extent_ = to.extent();
+  extent_ = resultOf(direction_, from.extent());
   for (std::uint32_t i = 0; i < count_; ++i) {
     const auto viewOf = [&](const GpuImage& image) {
       vk::ImageViewCreateInfo info;

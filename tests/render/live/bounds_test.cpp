@@ -178,5 +178,27 @@ TEST(Live, ASpikeOfASingleSampleIsDrawnFromAnyDistance) {
   EXPECT_GT(frame.stats.patches, 8);
 }
 
+TEST(Live, WhatIsMeasuredBetweenFramesTheNextFrameShows) {
+  const engine::Version field = partField(1600, 1200);
+  const FrameInput input = bare(480, 320);
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(field));
+  const Shot first = shoot(*picture, input);
+  const std::int64_t unknown = first.stats.upload.unmeasured_tiles;
+  ASSERT_GT(unknown, 0);
+  EXPECT_EQ(picture->measureFor(0.0), unknown);
+  EXPECT_EQ(picture->measureFor(1e6), 0);
+  const Shot known = shoot(*picture, input);
+  EXPECT_EQ(known.stats.upload.measured_tiles, 0);
+  EXPECT_EQ(known.stats.upload.pending_tiles, 0);
+  // As frame by frame.
+  auto other = makePicture();
+  ASSERT_TRUE(other->update(field));
+  const Shot complete = drawComplete(*other, input);
+  EXPECT_EQ(known.image.rgba, complete.image.rgba);
+  EXPECT_EQ(known.stats.bound_px, complete.stats.bound_px);
+}
+
 }  // namespace
 }  // namespace fettle::render

@@ -1,4 +1,4 @@
-// Frames of half the sharpness, while the camera moves.
+// Frames of half the sharpness and of a quarter, while the camera moves.
 #include <random>
 
 #include "engine/field/live_field.h"
@@ -102,6 +102,46 @@ TEST(Live, HalfAsSharpLeavesDecorationsSharpAndNoTraceInTheFramesAfterIt) {
     input.sharpness = Sharpness::kFull;
     EXPECT_EQ(shoot(*picture, input).image.rgba, sharp.image.rgba);
     // Nor in those that draw a kPart alone.
+    EXPECT_EQ(shoot(*picture, input).image.rgba, sharp.image.rgba);
+  }
+}
+
+// Channel differences of a picture within its own pixels, in the mean: how much detail it has.
+double meanStep(const Image& a) {
+  double sum = 0.0;
+  int n = 0;
+  for (int y = 2; y < a.height - 2; ++y)
+    for (int x = 2; x < a.width - 2; ++x, ++n)
+      for (int k = 0; k < 3; ++k) sum += std::abs(pixel(a, x + 1, y)[k] - pixel(a, x, y)[k]);
+  return sum / n;
+}
+
+TEST(Live, AQuarterAsSharpIsTheSamePictureWithLessDetailAndLeavesNoTrace) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(partField()));
+  // Sizes of every remainder by four.
+  int width = 480, height = 321;
+  for (FrameInput input : views()) {
+    input.view.width = width++;
+    input.view.height = height++;
+    SCOPED_TRACE(testing::Message() << input.view.width << " x " << input.view.height);
+    input.sharpness = Sharpness::kFull;
+    const Shot sharp = shoot(*picture, input);
+    input.sharpness = Sharpness::kHalf;
+    const Shot half = shoot(*picture, input);
+    input.sharpness = Sharpness::kQuarter;
+    const Shot quarter = shoot(*picture, input);
+    EXPECT_EQ(quarter.stats.bound_px, sharp.stats.bound_px);
+    EXPECT_EQ(quarter.stats.redrawn, 1.0);
+    const double off = meanOff(quarter.image, sharp.image);
+    EXPECT_GT(off, meanOff(half.image, sharp.image));
+    EXPECT_LT(off, 8.0);
+    EXPECT_LT(meanStep(quarter.image), meanStep(half.image));
+    // It lies where the sharp one does.
+    for (const auto& [dx, dy] : {std::pair{2, 0}, {-2, 0}, {0, 2}, {0, -2}})
+      EXPECT_GT(meanOff(quarter.image, sharp.image, dx, dy), off) << dx << ' ' << dy;
+    input.sharpness = Sharpness::kFull;
     EXPECT_EQ(shoot(*picture, input).image.rgba, sharp.image.rgba);
   }
 }
