@@ -86,6 +86,11 @@ void addView(Command root, Chosen& chosen) {
       {.name = "--sharp-motion",
        .to = &options->view.drawing.sharp_motion,
        .text = "Draw every pixel also while the view moves; without it, every second one in each direction"},
+      {.name = "--steady",
+       .to = &options->view.drawing.steady,
+       .text = "Draw the same however long it takes; without it, every fourth pixel in each direction while "
+               "the view moves, "
+               "and no shadow of the stylus, where frames take long"},
       {.name = "--plain-rest",
        .to = &options->plain_rest,
        .text = "Draw one ray per pixel also at rest; without it, four"},

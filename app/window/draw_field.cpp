@@ -116,6 +116,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
     if (parts.window.usable()) parts.feedback.message(status.error().line(), "");
     return;
   }
+  picture.adapt(!options.steady);
   const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
   picture.smoothAtRest(parts.settings.display.smooth_at_rest && options.smooth_at_rest);
   if (!picture.takeDue(Draws::kRefined)) return;
@@ -123,9 +124,11 @@ void drawField(Parts& parts, const DrawOptions& options) {
   render::FrameInput input = frameInput(parts, sharpness, options);
   addTitles(parts, previews, input);
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
+  // The shadow is three quarters of what a frame with a brush takes.
+  StylusLook look = parts.settings.display.stylus;
+  if (picture.spares()) look.shadow = false;
   if (stylus && state.link == haptic::LinkState::kConnected)
-    parts.stylus_overlay.append(client, state, picture.mmPerPixel(), parts.settings.display.stylus,
-                                input.overlays);
+    parts.stylus_overlay.append(client, state, picture.mmPerPixel(), look, input.overlays);
   else
     parts.stylus_overlay.hide();
   parts.section_overlay.append(client.field(), parts.section, picture.mmPerPixel(), input.overlays);

@@ -8,6 +8,7 @@ namespace fettle::app {
 /// What the settings would leave open for this run of the program.
 struct DrawOptions {
   bool sharp_motion = false;   ///< never Sharpness::kHalf while the view moves
+  bool steady = false;         ///< whatever time it takes (WindowPicture::adapt)
   bool smooth_at_rest = true;  ///< false: never Sharpness::kRest
 };
 

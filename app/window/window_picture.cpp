@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 
 #include "app/window/plane_map.h"
@@ -12,8 +13,21 @@
 namespace fettle::app {
 namespace {
 
+// While nothing but the detail of tiles is unknown they are measured between two frames, which would each take longer
+// than their measuring: input waits for a share, and a frame shows meanwhile what is known.
+constexpr double kMeasuring_ms = 20.0;
+constexpr std::chrono::milliseconds kShownMeanwhile{250};
+
 constexpr int kPicks =
     12;  // positions of the picture, in each direction, at which the visible part is sampled
+
+// Whether what differs between two frames changes every pixel of the surface, whatever the field and the view are.
+bool looksAlike(const render::FrameInput& a, const render::FrameInput& b) {
+  return a.contours == b.contours && a.form == b.form && a.colouring == b.colouring && a.range == b.range &&
+         a.marks_opacity == b.marks_opacity && a.theme == b.theme && a.arrangement == b.arrangement &&
+         a.decoration == b.decoration && a.light_azimuth_deg == b.light_azimuth_deg &&
+         a.light_elevation_deg == b.light_elevation_deg && a.stereo.mode == b.stereo.mode;
+}
 
 bool same(const render::Shown& a, const render::Shown& b) {
   return a.versions == b.versions && a.original == b.original && a.marks == b.marks &&
@@ -66,13 +80,21 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
   const bool pending = motion_.sharpPending();
   const render::Sharpness sharpness = motion_.see(view, held, CameraMotion::Clock::now());
   if (pending && !motion_.sharpPending()) needs_redraw_ = true;
-  return sharpness;
+  return sharpness == render::Sharpness::kHalf && adapts_ && moving_.less() ? render::Sharpness::kQuarter
+                                                                            : sharpness;
+}
+
+void WindowPicture::noteFrame(double ms) noexcept {
+  if (measured_ == Measured::kMoving) moving_.note(ms);
+  if (measured_ == Measured::kStroke) strokes_.note(ms);
+  measured_ = Measured::kNothing;
 }
 
 bool WindowPicture::takeDue(Draws draws) {
   const auto now = Refinement::Clock::now();
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool refines = draws == Draws::kRefined;
+  if (refines && measuresFirst(now)) return false;
   const bool changes =
       needs_redraw_ || figures_.upload.pending_tiles > 0 || (refines && refinement_.due(now));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
@@ -81,7 +103,21 @@ bool WindowPicture::takeDue(Draws draws) {
   return due;
 }
 
+// Whether the next frame is left out for the sake of the tiles whose detail is unknown; measures some of them.
+bool WindowPicture::measuresFirst(Refinement::Clock::time_point now) {
+  const render::UploadStatistics& upload = figures_.upload;
+  const bool only_measures =
+      upload.unmeasured_tiles > 0 &&
+      upload.pending_tiles == upload.unmeasured_tiles + figures_.residency.pages_waiting;
+  if (needs_redraw_ || !only_measures || now - drawn_ >= kShownMeanwhile) return false;
+  return live_->measureFor(kMeasuring_ms) > 0;
+}
+
 bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& status) {
+  // Drawn with the usual vertices at first: a key acts at once, and the picture becomes finer after it.
+  if (look_ && !looksAlike(*look_, input)) refinement_.restart(Refinement::Clock::now());
+  look_ = input;
+  look_->overlays = {};
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
@@ -98,11 +134,18 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
     return false;
   }
   const double took_ns = watch.ns();
+  drawn_ = Refinement::Clock::now();
   figures_ = *figures;
   draw_figures_.last_ms = 1e-6 * took_ns;
   draw_figures_.times.add(static_cast<std::int64_t>(took_ns));
   draw_figures_.tiles_uploaded += figures_.upload.tiles;
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
+  drawn_sharpness_ = input.sharpness;
+  // Frames that refine a picture at rest take long on purpose.
+  if (input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter)
+    measured_ = Measured::kMoving;
+  else if (!rests && figures_.continued && figures_.redrawn < 1.0)
+    measured_ = Measured::kStroke;
   at_rest_.drawn({.changed = figures_.redrawn > 0.0,
                   .at_rest = rests,
                   .left = figures_.rest_left,

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/window/camera_motion.h"
+#include "app/window/frame_budget.h"
 #include "app/window/picture_at_rest.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
@@ -66,6 +67,12 @@ class WindowPicture {
   /// The resolution of a frame of this view, drawn now; `held`: by a button, so that the movement may
   /// continue.
   [[nodiscard]] render::Sharpness sharpness(const render::View& view, bool held);
+  /// Whether drawing adapts to the time it takes (FrameBudget).
+  void adapt(bool wanted) noexcept { adapts_ = wanted; }
+  /// Whether what costs most of a frame in which only a brush works is to be left out.
+  [[nodiscard]] bool spares() const noexcept { return adapts_ && strokes_.less(); }
+  /// The frame that was begun with this picture took so long until it was passed to the window system.
+  void noteFrame(double ms) noexcept;
   enum class Draws : std::uint8_t { kCoarse, kRefined };
   /// Whether a frame is due; if so, it must be drawn now.
   [[nodiscard]] bool takeDue(Draws draws);
@@ -77,6 +84,8 @@ class WindowPicture {
 
   [[nodiscard]] const render::Shown& shown() const noexcept { return shown_; }
   [[nodiscard]] bool empty() const noexcept { return shown_.versions.empty(); }
+  /// Of the last frame.
+  [[nodiscard]] render::Sharpness drawnSharpness() const noexcept { return drawn_sharpness_; }
   [[nodiscard]] const render::FrameStatistics& figures() const noexcept { return figures_; }
   [[nodiscard]] const DrawFigures& drawFigures() const noexcept { return draw_figures_; }
   [[nodiscard]] double pixelsPerMm() const noexcept { return figures_.pixels_per_mm; }
@@ -107,6 +116,7 @@ class WindowPicture {
   [[nodiscard]] bool hasSplitLine(const Display& display) const;
 
  private:
+  [[nodiscard]] bool measuresFirst(Refinement::Clock::time_point now);
   [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
   render::Window& window_;
@@ -119,6 +129,13 @@ class WindowPicture {
   bool smooth_at_rest_ = false;
   bool only_rest_asked_ = false;  // for the frame that is due
   bool needs_redraw_ = true;
+  std::optional<render::FrameInput> look_;  // of the last frame, without overlays
+  bool adapts_ = true;
+  FrameBudget moving_, strokes_;
+  // What the frame that is being shown is measured for.
+  enum class Measured : std::uint8_t { kNothing, kMoving, kStroke } measured_ = Measured::kNothing;
+  render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
+  Refinement::Clock::time_point drawn_;  // the last frame
   DrawFigures draw_figures_;
 };
 

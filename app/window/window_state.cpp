@@ -331,6 +331,9 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
   r["bounds_px"] = bounds;
   r["limits"] = limits;
   r["smooth"] = parts.picture.figures().rests;
+  static constexpr const char* kSharpness[] = {"full", "half", "quarter", "fine", "full"};
+  r["sharpness"] = kSharpness[static_cast<std::size_t>(parts.picture.drawnSharpness())];
+  r["spares"] = parts.picture.spares();
   r["settled"] = settled;
   r["waits_for"] = waited;
   return r;
@@ -359,7 +362,7 @@ void logState(EventLog& log, const Parts& parts, const Input& input, const RunFi
            {"at",
             {std::lround(text.x), std::lround(text.y), std::lround(text.width), std::lround(text.height)}},
            {"cut", text.cut}});
-    return Report{{"frames", run.frames}, {"texts", texts}};
+    return Report{{"frames", run.frames}, {"shown_ns", run.shown_ns}, {"texts", texts}};
   });
 }
 

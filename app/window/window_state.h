@@ -24,6 +24,7 @@ struct RunFigures {
   std::uint64_t frames = 0;  ///< shown
   int device_losses = 0;
   HeadsetFigures headset{};
+  std::int64_t shown_ns = 0;  ///< the last frame: engine::steadyNs() when it was passed to the window system
 };
 
 /// Whether something moves or must be drawn: the next frame follows immediately.

@@ -256,6 +256,7 @@ void Workstation::showFrame() {
       ImVec2(static_cast<float>(window_->width()), static_cast<float>(window_->height()));
   const std::optional<std::int64_t> edit_ns =
       parts_.document.isOpen() ? parts_.document.client()->latency().takeUnshownEdit() : std::nullopt;
+  const engine::Stopwatch watch;
   window_->beginFrame();
   carryOut(layOutPanels(parts_));
   releaseHandsWhenAsked();
@@ -267,7 +268,9 @@ void Workstation::showFrame() {
   } else {
     parts_.picture.skipRedraw();
   }
-  if (const auto shown = window_->present())
+  const auto shown = window_->present();
+  parts_.picture.noteFrame(watch.ms());
+  if (shown)
     noteShown(*shown, edit_ns, announces);
   else
     losePicture(shown.error());
@@ -281,6 +284,7 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
   if (open && edit_ns && report.shown_ns > 0)
     p.document.client()->latency().noteShown(*edit_ns, report.shown_ns);
   ++frames_;
+  shown_ns_ = report.shown_ns;
   if (announces) parts_.opening.noteAnnounced();
   parts_.opening.noteFrame(p.coarseIsShown()                              ? Frame::kCoarse
                            : !open || p.picture.empty()                   ? Frame::kNothing

@@ -85,7 +85,9 @@ class Workstation {
   void renewPicture();
   void saveSettings();
   void saveSettingsNow();
-  [[nodiscard]] RunFigures figures() const { return {frames_, renewal_.losses(), headset_figures_}; }
+  [[nodiscard]] RunFigures figures() const {
+    return {frames_, renewal_.losses(), headset_figures_, shown_ns_};
+  }
 
   ViewOptions options_;
   std::unique_ptr<render::Window> window_;
@@ -99,6 +101,7 @@ class Workstation {
   Settings saved_settings_;  // as in the file
   engine::FieldForm form_;   // over the field of the last frame
   std::uint64_t frames_ = 0;
+  std::int64_t shown_ns_ = 0;  // the last one
   engine::Status end_;
 };
 

@@ -1,0 +1,68 @@
+#include "app/window/frame_budget.h"
+
+#include <gtest/gtest.h>
+
+namespace fettle::app {
+namespace {
+
+// Frames of so many milliseconds until the decision is another; 0: it stays.
+int framesUntilChange(FrameBudget& budget, double ms, int most = 1000) {
+  const bool before = budget.less();
+  for (int i = 1; i <= most; ++i) {
+    budget.note(ms);
+    if (budget.less() != before) return i;
+  }
+  return 0;
+}
+
+TEST(FrameBudget, DrawsAllWhileFramesAreQuickEnough) {
+  FrameBudget budget;
+  EXPECT_FALSE(budget.less());
+  EXPECT_EQ(framesUntilChange(budget, FrameBudget::kSlow_ms), 0);
+}
+
+TEST(FrameBudget, DrawsLessAfterAFewSlowFrames) {
+  FrameBudget budget;
+  EXPECT_EQ(framesUntilChange(budget, 26.0), FrameBudget::kFew);
+  FrameBudget after_quick_ones;
+  for (int i = 0; i < 50; ++i) after_quick_ones.note(12.0);
+  // 12 + 28 (1 - 0.75^n) > 25 at n = 3.
+  EXPECT_EQ(framesUntilChange(after_quick_ones, 40.0), 3);
+}
+
+TEST(FrameBudget, ASingleLongFrameChangesNothing) {
+  FrameBudget budget;
+  for (int i = 0; i < 10; ++i) budget.note(14.0);
+  budget.note(900.0);
+  EXPECT_FALSE(budget.less());
+  EXPECT_EQ(framesUntilChange(budget, 14.0), 0);
+}
+
+TEST(FrameBudget, DrawsAllAgainAfterQuickFramesInARow) {
+  FrameBudget budget;
+  (void)framesUntilChange(budget, 40.0);
+  ASSERT_TRUE(budget.less());
+  // Quick enough for less, but not with time to spare.
+  EXPECT_EQ(framesUntilChange(budget, 20.0), 0);
+  // The mean falls below 12 at the fifth frame of 9: 9 + 11 * 0.75^5 = 11.6.
+  EXPECT_EQ(framesUntilChange(budget, 9.0), FrameBudget::kCalm + 4);
+  EXPECT_FALSE(budget.less());
+}
+
+TEST(FrameBudget, WaitsLongerWhereAllIsSlowAgainSoon) {
+  FrameBudget budget;
+  int calm = FrameBudget::kCalm;
+  for (int round = 0; round < 8; ++round) {
+    ASSERT_GT(framesUntilChange(budget, 40.0), 0);
+    if (round > 0) calm = std::min(2 * calm, FrameBudget::kMostCalm);
+    EXPECT_EQ(budget.calm(), calm);
+    ASSERT_GT(framesUntilChange(budget, 8.0), 0);
+  }
+  EXPECT_EQ(calm, FrameBudget::kMostCalm);
+  // With all it was quick for long: the load is another.
+  for (int i = 0; i < FrameBudget::kSoon; ++i) budget.note(14.0);
+  EXPECT_EQ(budget.calm(), FrameBudget::kCalm);
+}
+
+}  // namespace
+}  // namespace fettle::app
