@@ -31,10 +31,10 @@ std::array<int, 2> makePipe() {
 }  // namespace
 
 ViewProgram::ViewProgram(std::vector<std::string> arguments,
-                         const std::map<std::string, std::string>& environment) {
+                         const std::map<std::string, std::string>& environment, Watched watched) {
   arguments.insert(arguments.begin(), {FETTLE_PROGRAM, "view"});
-  arguments.insert(arguments.end(),
-                   {"--events", "/dev/fd/" + std::to_string(kEvents), "--json", "--validate"});
+  arguments.insert(arguments.end(), {"--events", "/dev/fd/" + std::to_string(kEvents), "--json"});
+  if (watched == Watched::kYes) arguments.emplace_back("--validate");
   const ProgramImage program(std::move(arguments), environment);
   const auto out = makePipe(), err = makePipe(), events = makePipe();
   pid_ = fork();

@@ -22,10 +22,13 @@ class ViewProgram {
   /// Far beyond what a busy machine needs: a test that waits this long has failed.
   static constexpr std::chrono::seconds kPatience{60};
 
+  /// Whether the validation layers watch it; they take their time.
+  enum class Watched { kYes, kNo };
   /// Starts `fettle view` with these arguments besides --events, --json and --validate. `environment` is set
   /// for it alone.
   explicit ViewProgram(std::vector<std::string> arguments,
-                       const std::map<std::string, std::string>& environment = {});
+                       const std::map<std::string, std::string>& environment = {},
+                       Watched watched = Watched::kYes);
   ~ViewProgram();
   ViewProgram(const ViewProgram&) = delete;
   ViewProgram& operator=(const ViewProgram&) = delete;
