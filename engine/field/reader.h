@@ -39,6 +39,25 @@ class FieldReader {
     return *static_cast<const Tile*>(node->children[childIndex(tc, tr, 0)]);
   }
 
+  /// What the tree knows of a tile without reading it.
+  struct TileEntry {
+    const Tile* tile;
+    HeightBounds bounds;  ///< of the tile, without the sign
+    bool marked, holed;   ///< whether any sample of it is
+  };
+  /// The same place as tile().
+  [[nodiscard]] TileEntry entry(std::int32_t tc, std::int32_t tr) const noexcept {
+    assert(tc >= 0 && tr >= 0 && tc < tileColumns() && tr < tileRows());
+    const Node* node = root_;
+    for (int shift = 3 * (node->level - 2); shift > 0; shift -= 3)
+      node = static_cast<const Node*>(node->children[childIndex(tc, tr, shift)]);
+    const std::size_t k = childIndex(tc, tr, 0);
+    return {static_cast<const Tile*>(node->children[k]),
+            {node->child_min[k], node->child_max[k]},
+            (node->marked_children >> k & 1) != 0,
+            (node->holed_children >> k & 1) != 0};
+  }
+
   /// Height of sample (column, row) [height_unit], sign applied; NaN for a hole. Within the field.
   [[nodiscard]] float heightAt(std::int32_t column, std::int32_t row) const noexcept {
     assert(grid_->contains(column, row));

@@ -10,6 +10,12 @@ namespace fettle::engine {
 
 namespace {
 
+// All of a tile but its samples and blocks, which a merge reads.
+void fetchSummary(const Tile& tile) noexcept {
+  for (std::size_t row = 0; row < kTileSide; row += 8) __builtin_prefetch(&tile.marks[row]);
+  __builtin_prefetch(&tile.bounds);
+}
+
 // Orders tiles as a walk over the tree meets them, and so as changedTiles does: eight by eight on every
 // level.
 std::uint64_t placeInTree(std::int32_t column, std::int32_t row) noexcept {
@@ -36,18 +42,19 @@ BlockPass::BlockPass(const Version& input, const Version& original, const Filter
 
 // Whether any sample of the tile can come out different.
 bool BlockPass::mayChange(std::int32_t tc, std::int32_t tr) const noexcept {
-  const Tile& tile = reader_.tile(tc, tr);
-  if (tile.nan_samples == kTileSamples) return false;
+  // The tile itself is mostly not near the core yet.
+  const auto [tile, bounds, marked, holed] = reader_.entry(tc, tr);
+  if (bounds.empty()) return false;
   const auto [columns, rows] = extent(tc, tr);
-  if (spec_.scope == FilterScope::kOnlyMarks && tile.marked_samples == 0) return false;
-  if (spec_.scope == FilterScope::kKeepMarks &&
-      tile.marked_samples == static_cast<std::uint32_t>(columns * rows))
+  if (spec_.scope == FilterScope::kOnlyMarks && !marked) return false;
+  if (spec_.scope == FilterScope::kKeepMarks && marked &&
+      tile->marked_samples == static_cast<std::uint32_t>(columns * rows))
     return false;
-  const bool limit_may_act = spec_.max_change.has_value() && !same_field_ && &original_.tile(tc, tr) != &tile;
+  const bool limit_may_act = spec_.max_change.has_value() && !same_field_ && &original_.tile(tc, tr) != tile;
   if (limit_may_act) return true;
   if (radius_ == 0) return false;
   // A window in which all samples are equal has them for its mean and its median, and nothing to smooth.
-  return !(tile.bounds.min == tile.bounds.max && flatAround(tc, tr, tile.bounds.min));
+  return !(bounds.min == bounds.max && flatAround(tc, tr, bounds.min));
 }
 
 bool BlockPass::flatAround(std::int32_t tc, std::int32_t tr, float height) const noexcept {
@@ -55,7 +62,7 @@ bool BlockPass::flatAround(std::int32_t tc, std::int32_t tr, float height) const
   for (std::int32_t y = std::max(tr - reach, 0); y <= std::min(tr + reach, reader_.tileRows() - 1); ++y)
     for (std::int32_t x = std::max(tc - reach, 0); x <= std::min(tc + reach, reader_.tileColumns() - 1);
          ++x) {
-      const HeightBounds& b = reader_.tile(x, y).bounds;
+      const HeightBounds b = reader_.entry(x, y).bounds;
       if (!b.empty() && !(b.min == height && b.max == height)) return false;
     }
   return true;
@@ -139,6 +146,28 @@ bool BlockPass::merge(const TileRect& rect, float sign, std::int32_t to_next, Bl
 }
 
 // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
+std::optional<TileAround> BlockPass::around(std::int32_t tc, std::int32_t tr) const noexcept {
+  if (tc < 1 || tr < 1 || tc + 1 >= reader_.tileColumns() || tr + 1 >= reader_.tileRows()) return {};
+  TileAround around;
+  for (std::int32_t r = 0; r < 3; ++r)
+    for (std::int32_t c = 0; c < 3; ++c) {
+      const FieldReader::TileEntry entry = reader_.entry(tc + c - 1, tr + r - 1);
+      const auto [columns, rows] = extent(tc + c - 1, tr + r - 1);
+      if (entry.holed || columns < kTileSide || rows < kTileSide) return {};
+      around[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = entry.tile->samples.data();
+    }
+  return around;
+}
+
+bool BlockPass::mergeTileAt(std::int32_t tc, std::int32_t tr, BlockScratch& scratch,
+                            std::vector<NewTile>& made) {
+  // While it computes a tile a window reads a part of the next one as well.
+  const Tile* ahead = tc + 2 < reader_.tileColumns() ? &reader_.tile(tc + 2, tr) : nullptr;
+  if (ahead != nullptr) fetchSummary(*ahead);
+  scratch.out_stride = kTileSide;
+  return mergeOne(tc, tr, scratch.results.data(), 1.0F, ahead, scratch, made);
+}
+
 bool BlockPass::mergeOne(std::int32_t tc, std::int32_t tr, const float* results, float sign,
                          const Tile* ahead, BlockScratch& scratch, std::vector<NewTile>& made) {
   const Tile& before = reader_.tile(tc, tr);
@@ -180,12 +209,18 @@ void BlockPass::clampToOriginal(std::int32_t tc, std::int32_t tr, const float* r
 }
 
 Result<PassResult> BlockPass::finish(std::vector<NewTile> tiles) const {
-  std::ranges::sort(tiles, {}, [](const NewTile& t) { return placeInTree(t.column, t.row); });
+  std::vector<std::pair<std::uint64_t, NewTile*>> placed;
+  placed.reserve(tiles.size());
+  for (NewTile& t : tiles) placed.emplace_back(placeInTree(t.column, t.row), &t);
+  std::ranges::sort(placed, {}, &std::pair<std::uint64_t, NewTile*>::first);
   PassResult result;
-  result.reports.reserve(tiles.size());
+  result.reports.reserve(placed.size());
   LiveField live(input_, Growth::kAllowed);
   bool room = !outOfMemory();
-  for (NewTile& t : tiles) {
+  constexpr std::size_t kAhead = 16;  // tiles whose bounds are fetched meanwhile
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (i + kAhead < placed.size()) __builtin_prefetch(&placed[i + kAhead].second->tile->bounds);
+    NewTile& t = *placed[i].second;
     result.reports.push_back(t.report);
     room = room && live.replaceTile(t.column, t.row, std::move(t.tile));
   }

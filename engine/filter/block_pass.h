@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "engine/filter/block.h"
 #include "engine/filter/merge.h"
 #include "engine/filter/pass.h"
+#include "engine/filter/tile_window.h"
 
 namespace fettle::engine {
 
@@ -33,7 +35,7 @@ struct NewTile {
 struct BlockScratch {
   std::vector<float> heights, out;
   std::ptrdiff_t out_stride = 0;
-  alignas(64) std::array<float, kTileSamples> one_tile;
+  alignas(64) std::array<float, kTileSamples> one_tile, results;
 };
 
 /// What one pass over a field in blocks of tiles does around the filter: which tiles may change, the samples that a
@@ -54,6 +56,8 @@ class BlockPass {
   /// The smallest rectangle of tiles in `rect` that holds all in which any sample can come out different.
   [[nodiscard]] TileRect toChange(const TileRect& rect) const noexcept;
 
+  [[nodiscard]] bool mayChange(std::int32_t tc, std::int32_t tr) const noexcept;
+
   /// Samples of a rectangle of tiles.
   [[nodiscard]] std::int64_t samplesOf(const TileRect& rect) const noexcept;
 
@@ -65,6 +69,12 @@ class BlockPass {
   bool merge(const TileRect& rect, float sign, std::int32_t to_next, BlockScratch& scratch,
              std::vector<NewTile>& made);
 
+  /// The tile and those around it, when all of these lie in the field and none has a hole.
+  [[nodiscard]] std::optional<TileAround> around(std::int32_t tc, std::int32_t tr) const noexcept;
+
+  /// Merges scratch.results, as stored, into one tile, as merge does.
+  bool mergeTileAt(std::int32_t tc, std::int32_t tr, BlockScratch& scratch, std::vector<NewTile>& made);
+
   /// Whether a merge found no memory.
   [[nodiscard]] bool outOfMemory() const noexcept { return out_of_memory_.load(std::memory_order_relaxed); }
 
@@ -72,7 +82,6 @@ class BlockPass {
   [[nodiscard]] Result<PassResult> finish(std::vector<NewTile> tiles) const;
 
  private:
-  [[nodiscard]] bool mayChange(std::int32_t tc, std::int32_t tr) const noexcept;
   [[nodiscard]] bool flatAround(std::int32_t tc, std::int32_t tr, float height) const noexcept;
   [[nodiscard]] std::pair<int, int> extent(std::int32_t tc, std::int32_t tr) const noexcept;
   void surveyTiles(std::int32_t column, std::int32_t row, Block& block) const noexcept;

@@ -33,8 +33,10 @@ constexpr FilterParameter kNesting{"mm", 1e-12, 1e12, 0.0};
 
 // A strip's scratch follows its width alone, so that it can be long.
 constexpr WindowFilter kBoxWindows{makeBoxFilter, {4, 512, 2048}, {8, 2048, 8192}, BoxStrip::make};
-constexpr WindowFilter kGaussianWindows{makeGaussianFilter, {4, 512, 1024}, {1, 128, 512}};
-constexpr WindowFilter kMedianWindows{makeMedianFilter, {1, 128, 512}, {1, 128, 512}};
+constexpr WindowFilter kGaussianWindows{
+    .make = makeGaussianFilter, .columns = {4, 512, 1024}, .rows = {1, 128, 512}, .tile = makeTileGaussian};
+constexpr WindowFilter kMedianWindows{
+    .make = makeMedianFilter, .columns = {1, 128, 512}, .rows = {1, 128, 512}, .tile = makeTileMedian};
 constexpr WindowFilter kBilateralWindows{makeBilateralFilter};
 constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
 

@@ -14,43 +14,12 @@
 #include <tbb/cache_aligned_allocator.h>
 
 #include "engine/filter/block.h"
+#include "engine/filter/gaussian_weights.h"
 #include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
 namespace {
-
-// weights[k] for the distance k = 0 .. radius; their sum over -radius .. radius is 1 up to rounding. Weights
-// far out are dropped as long as all that is dropped is below 2^-54 of the whole: it and what renormalising
-// makes of it are below a fiftieth of what the double roundings may lose anyway, and of a binomial window of
-// 101 that leaves 79.
-std::vector<double> halfWeights(const FilterSpec& spec) {
-  const int radius = spec.window / 2;
-  std::vector<long double> exact(static_cast<std::size_t>(radius) + 1);
-  if (spec.sigma == 0.0) {
-    // C(n - 1, k) / 2^(n - 1): at most 2.7e299 before the scaling, and exact as long as it has 64 bits.
-    long double c = 1.0L;
-    for (int k = 0; k <= radius; ++k) {
-      exact[static_cast<std::size_t>(radius - k)] = std::ldexp(c, -2 * radius);
-      c = c * (2 * radius - k) / (k + 1);
-    }
-  } else {
-    const auto sigma = static_cast<long double>(spec.sigma);
-    long double sum = 0.0L;
-    for (int k = radius; k >= 0; --k) {
-      const long double w = std::exp(-0.5L * (k / sigma) * (k / sigma));
-      exact[static_cast<std::size_t>(k)] = w;
-      sum += k == 0 ? w : 2 * w;
-    }
-    for (long double& w : exact) w /= sum;
-  }
-  long double dropped = 0.0L;
-  while (exact.size() > 1 && dropped + 2 * exact.back() <= std::ldexp(1.0L, -54)) {
-    dropped += 2 * exact.back();
-    exact.pop_back();
-  }
-  return {exact.begin(), exact.end()};
-}
 
 // What a kernel works on: some rows of outputs at once, all that their windows reach, and what is between the
 // pass down and the pass along.
@@ -96,7 +65,7 @@ std::pair<Kernel, Kernel> smallKernels(int radius, CpuLevel level) noexcept {
 class GaussianFilter final : public BlockFilter {
  public:
   GaussianFilter(const FilterSpec& spec, CpuLevel level)
-      : weights_(halfWeights(spec)), radius_(static_cast<int>(weights_.size()) - 1) {
+      : weights_(gaussianHalfWeights(spec)), radius_(static_cast<int>(weights_.size()) - 1) {
     for (int k = -radius_; k <= radius_; ++k)
       all_weights_.push_back(weights_[static_cast<std::size_t>(std::abs(k))]);
     small_ = radius_ <= kSmallRadius;

@@ -4,12 +4,38 @@
 constexpr int kColumns = FETTLE_LEVEL == 2 ? 16 : FETTLE_LEVEL == 1 ? 8 : 4;
 using Samples = float __attribute__((vector_size(kColumns * sizeof(float))));
 
+// a < b ? a : b and a > b ? a : b, with instructions of their own: both together the compiler makes of one comparison and two
+// choices.
+FETTLE_INLINE Samples smaller(const Samples& a, const Samples& b) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_min_ps(a, b);
+#elif FETTLE_LEVEL == 1
+  return _mm256_min_ps(a, b);
+#elif defined(FETTLE_CPU_LEVELS)
+  return _mm_min_ps(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+
+FETTLE_INLINE Samples larger(const Samples& a, const Samples& b) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_max_ps(a, b);
+#elif FETTLE_LEVEL == 1
+  return _mm256_max_ps(a, b);
+#elif defined(FETTLE_CPU_LEVELS)
+  return _mm_max_ps(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
 template <Comparator kStep>
 FETTLE_INLINE void exchange(Samples* v) noexcept {
   const Samples a = v[kStep.low];
   const Samples b = v[kStep.high];
-  if constexpr (kStep.wants_low) v[kStep.low] = a < b ? a : b;
-  if constexpr (kStep.wants_high) v[kStep.high] = a < b ? b : a;
+  if constexpr (kStep.wants_low) v[kStep.low] = smaller(a, b);
+  if constexpr (kStep.wants_high) v[kStep.high] = larger(b, a);
 }
 
 template <class Network, std::size_t... kIndex>
@@ -57,8 +83,7 @@ FETTLE_INLINE Samples middle(const Samples* a, const Samples* b) noexcept {
   Samples least = a[kN];
 #pragma GCC unroll 16
   for (int i = 0; i < kN; ++i) {
-    const Samples greater_one = a[i] > b[kN - 1 - i] ? a[i] : b[kN - 1 - i];
-    least = greater_one < least ? greater_one : least;
+    least = smaller(larger(a[i], b[kN - 1 - i]), least);
   }
   return least;
 }
@@ -122,20 +147,20 @@ void medianStrip(const float* corner, std::ptrdiff_t stride, int last_row, int o
 // smallest high (J. L. Smith, Implementing median filters in XC4000E FPGAs, 1996). Two outputs below each
 // other share the comparison of the two rows they share.
 FETTLE_INLINE void threeColumns(const Samples& low, const Samples& high, const Samples& v, Samples* sorted) {
-  sorted[0] = lesser(low, v);
-  const Samples rest = greater(low, v);
-  sorted[1] = lesser(high, rest);
-  sorted[2] = greater(high, rest);
+  sorted[0] = smaller(low, v);
+  const Samples rest = larger(low, v);
+  sorted[1] = smaller(high, rest);
+  sorted[2] = larger(high, rest);
 }
 
 FETTLE_INLINE Samples middleOfThree(const Samples& a, const Samples& b, const Samples& c) {
-  return greater(lesser(a, b), lesser(greater(a, b), c));
+  return larger(smaller(a, b), smaller(larger(a, b), c));
 }
 
 FETTLE_INLINE Samples middleOfNine(const Samples (*sorted)[3]) {
-  const Samples low = greater(greater(sorted[0][0], sorted[1][0]), sorted[2][0]);
+  const Samples low = larger(larger(sorted[0][0], sorted[1][0]), sorted[2][0]);
   const Samples mid = middleOfThree(sorted[0][1], sorted[1][1], sorted[2][1]);
-  const Samples high = lesser(lesser(sorted[0][2], sorted[1][2]), sorted[2][2]);
+  const Samples high = smaller(smaller(sorted[0][2], sorted[1][2]), sorted[2][2]);
   return middleOfThree(low, mid, high);
 }
 
@@ -150,14 +175,23 @@ void medianStrip<3>(const float* corner, std::ptrdiff_t stride, int last_row, in
     for (int i = 0; i < 3; ++i) {
       const auto b = load<Samples>(row(r + 1) + i);
       const auto c = load<Samples>(row(r + 2) + i);
-      const Samples low = lesser(b, c);
-      const Samples high = greater(b, c);
+      const Samples low = smaller(b, c);
+      const Samples high = larger(b, c);
       threeColumns(low, high, load<Samples>(row(r) + i), first[i]);
       threeColumns(low, high, load<Samples>(row(r + 3) + i), second[i]);
     }
     const Samples medians[2] = {middleOfNine(first), middleOfNine(second)};
     for (int j = 0; j < 2 && r + j < out_rows; ++j) store(out + (r + j) * out_stride, medians[j]);
   }
+}
+
+// The middle one of kCount samples of each lane, to lanes[0 .. kColumns - 1]; sample i of a lane is lanes[i * kColumns + lane].
+template <int kCount>
+void middleOfLanes(float* lanes) noexcept {
+  Samples v[kCount];
+  for (int i = 0; i < kCount; ++i) v[i] = load<Samples>(lanes + i * kColumns);
+  apply<Selecting<kCount>>(v);
+  store(lanes, v[kCount / 2]);
 }
 
 inline int medianColumns() noexcept {

@@ -5,11 +5,14 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "engine/filter/median.h"
 #include "engine/filter/sorting_network.h"
+#include "engine/filter/tile_window.h"
 #include "engine/simd/kernel.h"
 
 namespace fettle::engine {
@@ -19,6 +22,15 @@ namespace {
 template <int kN>
 struct Sorting {
   static constexpr auto kList = sortingNetwork(kN);
+};
+
+template <int kCount>
+struct Selecting {
+  static constexpr auto kList = [] {
+    auto list = sortingNetwork(kCount);
+    list.prune(kCount / 2, kCount / 2 + 1, kCount);
+    return list;
+  }();
 };
 
 template <int kA, int kB, int kBegin, int kEnd>
@@ -55,6 +67,9 @@ class SmallMedian final : public BlockFilter {
         columns_at_once_(FETTLE_AT_LEVEL(level, medianColumns)()),
         holes_of_(FETTLE_AT_LEVEL(level, holesOf)),
         any_hole_(FETTLE_AT_LEVEL(level, anyHole)),
+        middle_(window == 3   ? FETTLE_AT_LEVEL(level, middleOfLanes<9>)
+                : window == 5 ? FETTLE_AT_LEVEL(level, middleOfLanes<25>)
+                              : nullptr),
         by_ranks_(makeRankMedian(window, level)) {}
 
   bool run(const Block& block, const JobControl& job) override {
@@ -67,6 +82,7 @@ class SmallMedian final : public BlockFilter {
   static constexpr int kAcross = 64;  // outputs side by side: bits of a word
   // Windows that are worth sorting a block for.
   static constexpr int kManyWindows = 256;
+  static constexpr int kMostLanes = 16, kMostInLanes = 25;
 
   // Outputs [first, first + n).
   bool runColumns(const Block& block, int first, int n, const JobControl& job) {
@@ -96,6 +112,7 @@ class SmallMedian final : public BlockFilter {
     int windows = 0;
     for (const std::uint64_t row : left_) windows += std::popcount(row);
     if (windows == 0) return true;
+    if (middle_ != nullptr) return runLanes(block, first, job);
     if (windows >= kManyWindows) return runRanks(block, first, job);
     for (int r = 0; r < block.out_rows; ++r)
       for (std::uint64_t row = left_[static_cast<std::size_t>(r)]; row != 0; row &= row - 1) {
@@ -127,6 +144,52 @@ class SmallMedian final : public BlockFilter {
       if (left_[static_cast<std::size_t>(r)] != 0)
         left_[static_cast<std::size_t>(r)] &=
             ~holes_of_(block.row(block.first_row + r) + block.first_column + first, n);
+  }
+
+  // The windows left, one in each lane. Samples that a window lacks are taken as so many below all others and so many above
+  // that the middle one of all is the one wanted; of an even number the mean of two.
+  bool runLanes(const Block& block, int first, const JobControl& job) {
+    alignas(64) float upper[kMostInLanes * kMostLanes], lower[kMostInLanes * kMostLanes];
+    float* outs[kMostLanes];
+    int lanes = 0;
+    const auto finish = [&] {
+      middle_(upper);
+      middle_(lower);
+      for (int lane = 0; lane < lanes; ++lane) *outs[lane] = midpoint(lower[lane], upper[lane]);
+      lanes = 0;
+    };
+    // What lanes without a window hold: any numbers.
+    std::ranges::fill(upper, 0.0F);
+    std::ranges::fill(lower, 0.0F);
+    for (int r = 0; r < block.out_rows; ++r) {
+      if (job.cancelled()) return false;
+      for (std::uint64_t row = left_[static_cast<std::size_t>(r)]; row != 0; row &= row - 1) {
+        const int c = first + std::countr_zero(row);
+        takeWindow(block, c, r, upper + lanes, lower + lanes);
+        outs[lanes++] = block.out + r * block.out_stride + c;
+        if (lanes == columns_at_once_) finish();
+      }
+    }
+    if (lanes > 0) finish();
+    return true;
+  }
+
+  void takeWindow(const Block& block, int c, int r, float* upper, float* lower) const noexcept {
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    const int column = block.first_column + c, row = block.first_row + r;
+    const int all = (2 * radius_ + 1) * (2 * radius_ + 1);
+    int n = 0;
+    for (int y = std::max(row - radius_, 0); y <= std::min(row + radius_, block.rows - 1); ++y)
+      for (int x = std::max(column - radius_, 0); x <= std::min(column + radius_, block.columns - 1); ++x) {
+        const float v = block.row(y)[x];
+        upper[n * columns_at_once_] = lower[n * columns_at_once_] = v;  // a hole's place is the next one's
+        n += v == v ? 1 : 0;
+      }
+    const int below_upper = all / 2 - n / 2, below_lower = all / 2 - (n - 1) / 2;
+    for (int i = n; i < all; ++i) {
+      upper[i * columns_at_once_] = i - n < below_upper ? -kInf : kInf;
+      lower[i * columns_at_once_] = i - n < below_lower ? -kInf : kInf;
+    }
   }
 
   // The rows with windows left, by their ranks.
@@ -180,11 +243,49 @@ class SmallMedian final : public BlockFilter {
   int columns_at_once_;
   decltype(&plain::holesOf) holes_of_;
   decltype(&plain::anyHole) any_hole_;
+  void (*middle_)(float* lanes) noexcept;  // null for windows that are too large for it
   std::unique_ptr<BlockFilter> by_ranks_;
   std::vector<std::uint64_t> left_;  // of each row of outputs, those that are not done yet
 };
 
+// The strips over one tile. A tile and what windows reach around it are copied, since a strip reads each sample for several
+// outputs from places that are no multiple of a vector; the copy stays in the nearest cache.
+class TileStrips final : public TileWindow {
+ public:
+  TileStrips(int window, CpuLevel level)
+      : radius_(window / 2),
+        strip_(chooseStrip(window, level)),
+        columns_at_once_(FETTLE_AT_LEVEL(level, medianColumns)()) {}
+
+  void run(const TileAround& around, float* out) const noexcept override {
+    constexpr int kBeside = 16;  // samples of the tiles to the left and right: a cache line
+    constexpr std::ptrdiff_t kStride = kTileSide + 2 * kBeside;
+    constexpr int kMostRows = kTileSide + 2 * (kSmallMedianWindow / 2);
+    alignas(64) float samples[kMostRows * kStride];
+    for (int y = -radius_; y < kTileSide + radius_; ++y) {
+      const auto& tiles = around[y < 0 ? 0 : y < kTileSide ? 1 : 2];
+      const std::ptrdiff_t at = (y & (kTileSide - 1)) * kTileSide;
+      float* const to = samples + (y + radius_) * kStride;
+      std::memcpy(to, tiles[0] + at + kTileSide - kBeside, kBeside * sizeof(float));
+      std::memcpy(to + kBeside, tiles[1] + at, kTileSide * sizeof(float));
+      std::memcpy(to + kBeside + kTileSide, tiles[2] + at, kBeside * sizeof(float));
+    }
+    for (int c = 0; c < kTileSide; c += columns_at_once_)
+      strip_(samples + kBeside + c - radius_, kStride, kTileSide + 2 * radius_ - 1, kTileSide, out + c,
+             kTileSide);
+  }
+
+ private:
+  int radius_;
+  Strip strip_;
+  int columns_at_once_;
+};
+
 }  // namespace
+
+std::unique_ptr<TileWindow> makeTileStrips(int window, CpuLevel level) {
+  return window <= kSmallMedianWindow ? std::make_unique<TileStrips>(window, level) : nullptr;
+}
 
 std::unique_ptr<BlockFilter> makeSmallMedian(int window, CpuLevel level) {
   return std::make_unique<SmallMedian>(window, level);

@@ -38,10 +38,10 @@ struct ComparatorList {
   }
 };
 
-/// Sorts n values: merge exchange (D. E. Knuth, The Art of Computer Programming, vol. 3, 5.2.2, algorithm M,
+/// Sorts n <= 32 values: merge exchange (D. E. Knuth, The Art of Computer Programming, vol. 3, 5.2.2, algorithm M,
 /// after K. E. Batcher).
-constexpr ComparatorList<128> sortingNetwork(int n) {
-  ComparatorList<128> list;
+constexpr ComparatorList<256> sortingNetwork(int n) {
+  ComparatorList<256> list;
   int top = 1;
   while (2 * top < n) top *= 2;
   for (int p = top; p > 0; p /= 2) {

@@ -20,6 +20,7 @@ namespace {
 struct Scratch {
   std::unique_ptr<BlockFilter> filter;
   std::unique_ptr<BoxStrip> strip;
+  std::unique_ptr<TileWindow> tile;
   BlockScratch block;
 };
 
@@ -43,6 +44,10 @@ class Pass {
     if (filter_.strip != nullptr && radius_ > 0 && blocks_.cuts() == nullptr) {
       if (!scratch.strip) scratch.strip = filter_.strip(radius_, blocks_.level());
       if (scratch.strip) return runStrip(filtered, scratch, job, made);
+    }
+    if (filter_.tile != nullptr && radius_ > 0 && blocks_.cuts() == nullptr) {
+      if (!scratch.tile) scratch.tile = filter_.tile(spec_, blocks_.level());
+      if (scratch.tile) return runTiles(filtered, scratch, job, made);
     }
     if (!gatherAndFilter(filtered, scratch, job)) return false;
     // The next block is mostly the right neighbour.
@@ -71,6 +76,27 @@ class Pass {
       if (!blocks_.merge(band, begun ? 1.0F : blocks_.reader().sign(), 0, scratch.block, made)) return false;
     }
     return true;
+  }
+
+  // As run, with windows over one tile after the other; what they cannot do is gathered in one rectangle.
+  bool runTiles(const TileRect& rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
+    TileRect rest{rect.column1, rect.row1, rect.column0, rect.row0};
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc)
+        if (blocks_.mayChange(tc, tr) && !blocks_.around(tc, tr))
+          rest = {std::min(rest.column0, tc), std::min(rest.row0, tr), std::max(rest.column1, tc + 1),
+                  std::max(rest.row1, tr + 1)};
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
+        const bool gathered = tc >= rest.column0 && tc < rest.column1 && tr >= rest.row0 && tr < rest.row1;
+        if (gathered || !blocks_.mayChange(tc, tr)) continue;
+        if (job.cancelled()) return false;
+        scratch.tile->run(*blocks_.around(tc, tr), scratch.block.results.data());
+        if (!blocks_.mergeTileAt(tc, tr, scratch.block, made)) return false;
+      }
+    if (rest.empty()) return true;
+    return gatherAndFilter(rest, scratch, job) &&
+           blocks_.merge(rest, blocks_.reader().sign(), 0, scratch.block, made);
   }
 
   bool gatherAndFilter(const TileRect& rect, Scratch& scratch, const JobControl& job) {

@@ -5,6 +5,7 @@
 #include "engine/filter/block.h"
 #include "engine/filter/box_strip.h"
 #include "engine/filter/pass.h"
+#include "engine/filter/tile_window.h"
 
 namespace fettle::engine {
 
@@ -31,6 +32,8 @@ struct WindowFilter {
   /// A fast path with the same bits: of a radius, null where the processor has none.
   std::unique_ptr<BoxStrip> (*strip)(int radius, CpuLevel level) = nullptr;
   FixedSquares squares{};
+  /// Another one, for tiles far from borders and holes: null where there is none.
+  std::unique_ptr<TileWindow> (*tile)(const FilterSpec& spec, CpuLevel level) = nullptr;
 };
 
 /// A FilterPass that cuts the field into blocks.

@@ -1,0 +1,33 @@
+// Rows of samples across a tile and the two beside it, for the kernels of tile windows; see tile_window.h. AVX-512 alone.
+#if FETTLE_LEVEL == 2
+
+// Of the rows -kReach .. kTileSide - 1 + kReach of a tile: where the last 16 samples of the tile to the left begin, the row's own,
+// and the first ones of the tile to the right.
+template <int kReach>
+class TileRows {
+ public:
+  explicit TileRows(const TileAround& around) noexcept {
+    for (int y = -kReach; y < kTileSide + kReach; ++y) {
+      const int band = y < 0 ? 0 : y < kTileSide ? 1 : 2;
+      const std::ptrdiff_t at = (y & (kTileSide - 1)) * kTileSide;
+      const auto& tiles = around[static_cast<std::size_t>(band)];
+      rows_[y + kReach] = {tiles[0] + at + kTileSide, tiles[1] + at, tiles[2] + at};
+    }
+  }
+
+  // Samples 8 k .. 8 k + 7 of row y, k in -2 .. 9, 0 being the tile's first.
+  [[nodiscard]] FETTLE_INLINE const float* eight(int y, int k) const noexcept {
+    const Row& row = rows_[y + kReach];
+    return k < 0               ? row.left_end + 8 * k
+           : k < kTileSide / 8 ? row.own + 8 * k
+                               : row.right + (8 * k - kTileSide);
+  }
+
+ private:
+  struct Row {
+    const float *left_end, *own, *right;
+  };
+  Row rows_[kTileSide + 2 * kReach];
+};
+
+#endif
