@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -157,6 +159,54 @@ TEST(Windows, OfABinomialGaussianHaveThePapersWeights) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) EXPECT_EQ(after.at(3 + c, 3 + r), mask[r][c]);
   EXPECT_EQ(after.at(2, 4), 0.0F);
+}
+
+// Tiles that neither a border nor a hole is near have paths of their own. With a hole in every tile none is taken, and samples whose
+// windows do not reach a hole must not show it.
+TEST(Windows, OverTilesWithoutHolesHaveTheBitsOfThoseWithHolesNearby) {
+  std::uint64_t state = 7;
+  const auto noise = [&state] {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<double>(state >> 11) * 0x1p-53 - 0.5;
+  };
+  // Magnitudes that are rounded away, ties, both zeros and denormals.
+  PlainField plain = formed(5 * kTileSide, 5 * kTileSide, [&](int c, int r) {
+    if (c / 50 % 3 == 1) return std::round(static_cast<float>(3.0 * noise()));
+    if (c / 50 % 3 == 2)
+      return static_cast<float>(std::ldexp(noise(), static_cast<int>(160.0 * noise()) - 60));
+    return static_cast<float>(0.01 * r + noise());
+  });
+  for (int i = 0; i < 5 * kTileSide; i += 3) plain.at(i, i) = i % 2 == 0 ? 0.0F : -0.0F;
+  plain.marks.resize(plain.z.size());
+  for (std::size_t i = 0; i < plain.marks.size(); i += 7) plain.marks[i] = 1;
+  const Version version = toVersion(plain);
+  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian})
+    for (const int window : {3, 5, 7, 9, 11})
+      for (const double sigma : {0.0, 1.3}) {
+        if (sigma != 0.0 && kind != FilterKind::kGaussian) continue;
+        const FilterSpec spec = makeSpec(kind, window, sigma);
+        const PlainField whole = toPlain(filtered(version, spec).field);
+        const PlainField turned = toPlain(filtered(version.inverted(), spec).field.inverted());
+        for (const int hole : {5, 32}) {
+          PlainField holed = plain;
+          for (int r = hole; r < plain.height; r += kTileSide)
+            for (int c = hole; c < plain.width; c += kTileSide)
+              holed.at(c, r) = std::numeric_limits<float>::quiet_NaN();
+          const PlainField beside = toPlain(filtered(toVersion(holed), spec).field);
+          int different = 0, compared = 0;
+          const auto reached = [&](int x) { return std::abs(x % kTileSide - hole) <= window / 2; };
+          for (int r = 0; r < plain.height; ++r)
+            for (int c = 0; c < plain.width; ++c) {
+              const auto wraps = [&](int x) { return reached(x) || reached(x + window / 2); };
+              if (wraps(c) && wraps(r)) continue;
+              ++compared;
+              different += !sameBits(whole.at(c, r), beside.at(c, r));
+              different += whole.at(c, r) != turned.at(c, r);
+            }
+          EXPECT_GT(compared, 60000);
+          EXPECT_EQ(different, 0) << name(kind) << " " << window << " " << sigma;
+        }
+      }
 }
 
 TEST(Windows, OfAMedianOverAnEvenCountTakeTheMeanOfTheMiddleTwo) {

@@ -56,7 +56,7 @@ class Noise {
   std::uint64_t state_ = 7;
 };
 
-constexpr int kWidth = 210, kHeight = 150;  // some tiles, the last ones cut
+constexpr int kWidth = 270, kHeight = 210;  // some tiles, the last ones cut, and two with no border near
 
 struct Case {
   const char* name;
