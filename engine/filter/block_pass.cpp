@@ -5,6 +5,7 @@
 
 #include "engine/field/live_field.h"
 #include "engine/filter/limit_change.h"
+#include "engine/simd/prefetch.h"
 
 namespace fettle::engine {
 
@@ -12,8 +13,8 @@ namespace {
 
 // All of a tile but its samples and blocks, which a merge reads.
 void fetchSummary(const Tile& tile) noexcept {
-  for (std::size_t row = 0; row < kTileSide; row += 8) __builtin_prefetch(&tile.marks[row]);
-  __builtin_prefetch(&tile.bounds);
+  for (std::size_t row = 0; row < kTileSide; row += 8) fetchAhead(&tile.marks[row]);
+  fetchAhead(&tile.bounds);
 }
 
 // Orders tiles as a walk over the tree meets them, and so as changedTiles does: eight by eight on every
@@ -219,7 +220,7 @@ Result<PassResult> BlockPass::finish(std::vector<NewTile> tiles) const {
   bool room = !outOfMemory();
   constexpr std::size_t kAhead = 16;  // tiles whose bounds are fetched meanwhile
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (i + kAhead < placed.size()) __builtin_prefetch(&placed[i + kAhead].second->tile->bounds);
+    if (i + kAhead < placed.size()) fetchAhead(&placed[i + kAhead].second->tile->bounds);
     NewTile& t = *placed[i].second;
     result.reports.push_back(t.report);
     room = room && live.replaceTile(t.column, t.row, std::move(t.tile));

@@ -60,10 +60,6 @@ bool moveColumnsOf(const float* enter, const float* leave, int n, float power, s
   return true;
 }
 
-void prefetch(const float* from, int n) {
-  for (int i = 0; i < n; i += kFloats) __builtin_prefetch(from + i);
-}
-
 // Lane i becomes the sum of the lanes 0 .. i (W. D. Hillis, G. L. Steele, Data parallel algorithms, 1986).
 FETTLE_INLINE __m512i running(__m512i v) {
   const __m512i none = _mm512_setzero_si512();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/simd/kernel.h"
+#include "engine/simd/prefetch.h"
 
 namespace fettle::engine {
 
@@ -56,7 +57,7 @@ bool BoxStrip::move(std::int32_t enter, std::int32_t leave) {
   const std::ptrdiff_t enter_at = std::ptrdiff_t{enter & (kTileSide - 1)} * kTileSide;
   const std::ptrdiff_t leave_at = std::ptrdiff_t{leave & (kTileSide - 1)} * kTileSide;
   // Rows ahead that memory is asked for: two cache lines a column of the register, and tiles lie anywhere.
-  constexpr std::int32_t kAhead = 8;
+  constexpr std::int32_t kAhead = 16;
   lookUp(ahead_, enter + kAhead);
   const std::ptrdiff_t ahead_at = std::ptrdiff_t{(enter + kAhead) & (kTileSide - 1)} * kTileSide;
   bool fit = true;
@@ -64,7 +65,8 @@ bool BoxStrip::move(std::int32_t enter, std::int32_t leave) {
     const Piece& piece = pieces_[i];
     const float* in = enter_.none() ? nullptr : enter_.tiles[i] + enter_at;
     const float* out = leave_.none() ? nullptr : leave_.tiles[i] + leave_at;
-    if (!ahead_.none()) avx512::prefetch(ahead_.tiles[i] + ahead_at, piece.columns);
+    if (!ahead_.none())
+      for (std::int32_t c = 0; c < piece.columns; c += kFloats) fetchAhead(ahead_.tiles[i] + ahead_at + c);
     fit &= holes_ ? avx512::moveColumnsOf<true>(in, out, piece.columns, power, sums_.data() + piece.at,
                                                 counts_.data() + piece.at)
                   : avx512::moveColumnsOf<false>(in, out, piece.columns, power, sums_.data() + piece.at,
