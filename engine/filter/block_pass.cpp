@@ -11,6 +11,11 @@ namespace fettle::engine {
 
 namespace {
 
+void fetchRows(const Tile& tile, int begin, int end) noexcept {
+  constexpr int kLine = 16;  // samples in a line of the cache
+  for (int i = begin * kTileSide; i < end * kTileSide; i += kLine) fetchAhead(tile.samples.data() + i);
+}
+
 // All of a tile but its samples and blocks, which a merge reads.
 void fetchSummary(const Tile& tile) noexcept {
   for (std::size_t row = 0; row < kTileSide; row += 8) fetchAhead(&tile.marks[row]);
@@ -164,7 +169,12 @@ bool BlockPass::mergeTileAt(std::int32_t tc, std::int32_t tr, BlockScratch& scra
                             std::vector<NewTile>& made) {
   // While it computes a tile a window reads a part of the next one as well.
   const Tile* ahead = tc + 2 < reader_.tileColumns() ? &reader_.tile(tc + 2, tr) : nullptr;
-  if (ahead != nullptr) fetchSummary(*ahead);
+  if (ahead != nullptr) {
+    fetchSummary(*ahead);
+    const int rows = std::min(radius_, kBlockSide);
+    fetchRows(reader_.tile(tc + 2, tr - 1), kTileSide - rows, kTileSide);
+    fetchRows(reader_.tile(tc + 2, tr + 1), 0, rows);
+  }
   scratch.out_stride = kTileSide;
   return mergeOne(tc, tr, scratch.results.data(), 1.0F, ahead, scratch, made);
 }
