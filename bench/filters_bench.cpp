@@ -324,6 +324,14 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
     job.advance(1);
   }
 
+  for (std::size_t k = 0; options.bounds && k < report.rows.size(); ++k) {
+    FiltersBenchRow& row = report.rows[k];
+    if (row.on_device || row.threads != 1) continue;
+    const auto bound = filterBound(fields[k], specOf(row), options.repeats, job);
+    if (!bound) return tl::unexpected(bound.error());
+    row.bound = *bound;
+  }
+
   std::vector<std::vector<double>> wall(report.rows.size());
   std::vector<std::vector<double>> cpu(report.rows.size());
   std::map<int, std::vector<double>> copy_wall, copy_cpu;

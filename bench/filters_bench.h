@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/filter_bounds.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/filter/catalogue.h"
@@ -31,6 +32,8 @@ struct FiltersBenchOptions {
   double limit_s = 10.0;  ///< a row that would take longer gets a smaller field, > 0 .. 1e6
   /// Adds a row with this device to each row of a filter that can use it (Filter::on_device); null: none.
   engine::TgvDevice* device = nullptr;
+  /// Adds to each row of one thread on the processor what its filter cannot do without (filter_bounds.h).
+  bool bounds = false;
 };
 
 /// One filter over one field: all of applyFilter, its report included. Rates in samples per second.
@@ -52,6 +55,7 @@ struct FiltersBenchRow {
   /// result [range_sigma].
   double over_processor = 0.0, most_off = 0.0;
   std::uint64_t hash = 0;  ///< of the result; the same in every repeat
+  FilterBound bound;       ///< all 0 where it was not asked for
 };
 
 struct FiltersBenchReport {

@@ -55,6 +55,9 @@ engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_devic
                               {"off_cpu_range_sigmas", row.on_device ? Report(row.most_off) : Report()},
                               {"share_target", target.share},
                               {"over_one_thread_target", target.over_one},
+                              {"bound_filter_s", row.bound.filter},
+                              {"bound_tiles_s", row.bound.tiles},
+                              {"bound_operations_s", row.bound.operations},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   }
   return report;
@@ -90,6 +93,15 @@ void printBenchFilters(const Report& report) {
         valueAndTarget(number("share_of_copy"), number("share_target"), 4),
         valueAndTarget(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
         number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
+    if (number("bound_tiles_s") > 0.0) {
+      const double tiles = number("bound_tiles_s"), operations = number("bound_operations_s");
+      fmt::print(
+          "{:<16}cannot do without, alone, in ns per sample: {:.3f} for reading tiles and writing new ones",
+          "", tiles * 1e9);
+      if (operations > 0.0) fmt::print(", {:.3f} for its operations", operations * 1e9);
+      fmt::print("; all of it {:.3f}, {:.0f} % of that bound's rate\n", number("bound_filter_s") * 1e9,
+                 100.0 * (tiles + operations) / number("bound_filter_s"));
+    }
     if (!row["over_cpu"].is_null())
       fmt::print("{:<12}on {}: {:.2f} of the rate above, at most {:.2g} of the noise off its result\n", "",
                  report["device"].get<std::string>(), number("over_cpu"), number("off_cpu_range_sigmas"));
@@ -164,6 +176,9 @@ void addBenchFilters(Command bench, Chosen& chosen) {
        .to = on_device.get(),
        .text = fmt::format("Measure {} on a graphics device as well, against the processor in the same run",
                            engine::filterWords(engine::runsOnDevices))},
+      {.name = "--bound",
+       .to = &options->bounds,
+       .text = "What each filter cannot do without, measured alone, for the rows of one thread"},
       {.name = "--repeats", .to = &options->repeats, .text = "Runs of each row", .range = Range{1.0, 100.0}},
       {.name = "--limit",
        .to = &options->limit_s,
