@@ -138,9 +138,10 @@ engine::FilterSpec specOf(const FiltersBenchRow& row) {
   spec.kind = row.kind;
   const engine::Filter& filter = engine::filterOf(row.kind);
   // The weights of a nesting index reach as far as a window of this side.
+  const int radius = row.window / 2;
   if (filter.nesting.exists())
     spec.nesting_mm =
-        kSpacing * std::max(filter.has_element ? row.window / 2 : 0.5 * row.window, filter.least_nesting);
+        kSpacing * std::max(filter.has_element ? 1.0 * radius : 0.5 * row.window, filter.least_nesting);
   else
     spec.window = row.window;
   spec.element = row.element;

@@ -134,6 +134,7 @@ void addBenchFilters(Command bench, Chosen& chosen) {
     for (const std::string& word : typed) options->grounds.push_back(ground_named.at(word));
   };
   std::vector<Word> elements;
+  elements.reserve(std::size(engine::kElementWords));
   for (const std::string_view word : engine::kElementWords) elements.emplace_back(std::string(word), "");
   const auto take_elements = [options](const std::vector<std::string>& typed) {
     options->elements.clear();
