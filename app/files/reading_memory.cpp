@@ -59,10 +59,8 @@ std::optional<ScanOptions> ReadingMemory::find(const std::string& path) const {
 
 void ReadingMemory::note(const std::string& path, const ScanOptions& reading) {
   const std::string absolute = absolutePath(path);
-  const auto removed = std::erase_if(said_, [&](const Said& s) { return s.path == absolute; });
-  const bool says = !scanOptionsText(reading).empty();
-  if (removed == 0 && !says) return;
-  if (says) said_.insert(said_.begin(), {absolute, ImportForm::of(reading)});
+  std::erase_if(said_, [&](const Said& s) { return s.path == absolute; });
+  said_.insert(said_.begin(), {absolute, ImportForm::of(reading)});
   if (said_.size() > kMost) said_.resize(kMost);
   save();
 }

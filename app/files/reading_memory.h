@@ -16,9 +16,9 @@ class ReadingMemory {
   /// `file` empty: for this run only. A file that cannot be read counts as empty.
   explicit ReadingMemory(std::string file);
 
-  /// What was said of a file; nothing where nothing was.
+  /// What was said of a file, which may be that it is as it says; nothing where nothing was said.
   [[nodiscard]] std::optional<ScanOptions> find(const std::string& path) const;
-  /// Keeps it; what says nothing is forgotten.
+  /// Keeps it; that a file is as it says, too: nobody is asked again.
   void note(const std::string& path, const ScanOptions& reading);
 
  private:

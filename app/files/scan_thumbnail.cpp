@@ -120,6 +120,8 @@ ScanThumbnail thumbnailOf(const engine::Version& field, int side) {
   const render::ValueSpan span = render::heightSpan(field);
   picture.low = static_cast<float>(span.robust.low);
   picture.high = static_cast<float>(span.robust.high);
+  picture.lowest = static_cast<float>(span.extreme.low);
+  picture.highest = static_cast<float>(span.extreme.high);
   colour(picture);
   return picture;
 }

@@ -18,7 +18,8 @@ struct ScanThumbnail {
       height = 0;  ///< pixels, each at most the asked side; 0: the file is too large for a quick look
   std::vector<float> heights;          ///< row by row, the top one first; NaN: hole [height unit of the grid]
   std::vector<std::uint32_t> colours;  ///< as heights: 0xAABBGGRR, sRGB; holes are transparent
-  float low = 0.0F, high = 0.0F;       ///< of nearly all heights; equal without any
+  float low = 0.0F, high = 0.0F;       ///< of nearly all heights, for the colours; equal without any
+  float lowest = 0.0F, highest = 0.0F;  ///< of what was read: of the file where all of it was
   std::optional<engine::Grid>
       grid;            ///< of the whole file as it would be opened, where its header or the picture tells
   std::string format;  ///< FormatInfo::name; empty where only a coarse picture was read
@@ -39,7 +40,7 @@ inline constexpr std::uint64_t kMostThumbnailBytes = std::uint64_t{64} << 20;
                                                           const engine::ImportOptions& options, int side,
                                                           engine::JobControl& job);
 
-/// The picture of a field in memory: what readThumbnail makes of it.
+/// The picture of a field in memory: what readThumbnail makes of it, without what reading said.
 [[nodiscard]] ScanThumbnail thumbnailOf(const engine::Version& field, int side);
 
 }  // namespace fettle::app

@@ -30,6 +30,15 @@ void ThumbnailShelf::begin() {
   wanted_.reset();
 }
 
+void ThumbnailShelf::keep(Kept kept) {
+  kept_.push_front(std::move(kept));
+  if (kept_.size() > kMost) kept_.pop_back();
+}
+
+void ThumbnailShelf::put(const std::string& path, const ScanOptions& reading, ScanThumbnail picture) {
+  keep({Key{path, scanOptionsText(reading)}, std::move(picture), std::nullopt});
+}
+
 bool ThumbnailShelf::poll() {
   auto done = job_.take();
   if (!done) return false;
@@ -40,8 +49,7 @@ bool ThumbnailShelf::poll() {
       kept.picture = std::move(**done);
     else
       kept.problem = done->error();
-    kept_.push_front(std::move(kept));
-    if (kept_.size() > kMost) kept_.pop_back();
+    keep(std::move(kept));
   }
   reading_.reset();
   begin();

@@ -28,6 +28,8 @@ class ThumbnailShelf {
   /// The picture of a scan as `reading` reads it; asks for it where it is not there, the newest request first.
   /// Valid until poll() or forget().
   [[nodiscard]] Shown find(const std::string& path, const ScanOptions& reading);
+  /// A picture that was made elsewhere.
+  void put(const std::string& path, const ScanOptions& reading, ScanThumbnail picture);
   /// True when something was read.
   bool poll();
   [[nodiscard]] bool busy() const noexcept { return job_.busy() || wanted_.has_value(); }
@@ -50,6 +52,7 @@ class ThumbnailShelf {
   };
 
   void begin();
+  void keep(Kept kept);
 
   std::list<Kept> kept_;           // most recently asked for first
   std::optional<Request> wanted_;  // next

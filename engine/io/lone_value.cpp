@@ -326,9 +326,11 @@ std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& r
     if (!isLone(one, tally, rule)) continue;
     const float stored = storedNumber(one.value, rule);
     warnings.push_back(fmt::format(
-        "{:.3g} % of the samples are exactly {} {}, {:.6g} away from every other height: if they are holes{}",
+        "{:.3g} % of the samples are exactly {} {}, and no other height is within {:.6g} {} of that: if they "
+        "are "
+        "holes{}",
         100.0 * static_cast<double>(one.samples) / static_cast<double>(tally.all), one.value,
-        field.grid().height_unit.name, one.distance(),
+        field.grid().height_unit.name, one.distance(), field.grid().height_unit.name,
         lone.empty()
             ? fmt::format(", give --no-data {}", stored)
             : fmt::format(" too, convert with the other number and read the result with --no-data {}, "

@@ -30,7 +30,9 @@ TEST(ReadingMemory, keeps_what_was_said_of_each_file_for_the_next_run) {
   EXPECT_EQ(scanOptionsText(memory.find("/b/two.tif").value()), " --spacing 20,20 --unit nm");
   EXPECT_FALSE(memory.find("/a/three.tif"));
   memory.note("/b/two.tif", {});
-  EXPECT_FALSE(ReadingMemory(file).find("/b/two.tif")) << "what says nothing is forgotten";
+  const auto as_it_is = ReadingMemory(file).find("/b/two.tif");
+  ASSERT_TRUE(as_it_is) << "that a file is as it says was said, too";
+  EXPECT_EQ(scanOptionsText(*as_it_is), "");
 }
 
 TEST(ReadingMemory, takes_no_more_than_so_many_and_forgets_the_oldest) {
