@@ -6,8 +6,9 @@
 
 namespace fettle::app {
 
-void FileBrowser::goTo(const std::string& folder, std::string chosen) {
+void FileBrowser::goTo(const std::string& folder, std::string chosen, std::string typed) {
   choose_next_ = std::move(chosen);
+  typed_next_ = std::move(typed);
   job_.start([folder](engine::JobControl& job) { return listFolder(folder, job); });
 }
 
@@ -21,7 +22,7 @@ bool FileBrowser::poll() {
   if (!listed) return false;
   problem_.reset();
   if (*listed) {
-    if ((*listed)->folder != listing_.folder) view_.typed.clear();
+    if ((*listed)->folder != listing_.folder) view_.typed = typed_next_;
     listing_ = std::move(**listed);
     update(choose_next_);
   } else if (listed->error().kind != engine::ErrorKind::kCancelled) {
@@ -38,6 +39,26 @@ void FileBrowser::setView(FolderView view) {
   const std::string chosen = chosenName();
   view_ = std::move(view);
   update(chosen);
+}
+
+void FileBrowser::narrow(const std::string& typed) {
+  choose_next_ = typed_next_ = typed;  // where a folder is being listed
+  view_.typed = typed;
+  update(typed);
+}
+
+std::string FileBrowser::completion(const std::string& begun) const {
+  std::optional<std::string> agreed;
+  bool only_folder = false;
+  for (const std::size_t i : shown_) {
+    const FolderEntry& entry = listing_.entries[i];
+    if (!entry.name.starts_with(begun)) continue;
+    only_folder = !agreed && entry.folder;
+    if (!agreed) agreed = entry.name;
+    const auto end = std::ranges::mismatch(*agreed, entry.name).in1;
+    agreed->erase(end, agreed->end());
+  }
+  return only_folder ? *agreed + "/" : agreed.value_or(begun);
 }
 
 void FileBrowser::move(std::ptrdiff_t by) {

@@ -14,8 +14,9 @@ namespace fettle::app {
 /// hundred thousand files hold nobody up. Threading: main.
 class FileBrowser {
  public:
-  /// Goes to a folder; what is typed to choose among names is dropped. `chosen`: the name to choose in it, if it is there.
-  void goTo(const std::string& folder, std::string chosen = {});
+  /// Goes to a folder. `chosen`: the name to choose in it, if it is there; `typed`: what its names are to contain, in place of
+  /// what was typed in another folder.
+  void goTo(const std::string& folder, std::string chosen = {}, std::string typed = {});
   /// To the folder that holds this one, which is then the chosen entry.
   void goUp();
   /// Lists the folder again.
@@ -37,6 +38,11 @@ class FileBrowser {
   [[nodiscard]] const FolderView& view() const noexcept { return view_; }
   /// The chosen entry stays chosen where it is still shown.
   void setView(FolderView view);
+  /// Shows the names that contain `typed`, and chooses the one that is it.
+  void narrow(const std::string& typed);
+  /// What the beginning of a name becomes by all shown names that begin so: as long as they agree, with a "/" after the only
+  /// one if it is a folder. `begun` itself where none does.
+  [[nodiscard]] std::string completion(const std::string& begun) const;
 
   [[nodiscard]] std::optional<std::size_t> chosen() const noexcept { return chosen_; }
   /// `i` < count().
@@ -54,6 +60,7 @@ class FileBrowser {
   std::vector<std::size_t> shown_;
   std::optional<std::size_t> chosen_;
   std::string choose_next_;  // in the folder that is being listed
+  std::string typed_next_;   // there, if it is another one
   std::optional<engine::Error> problem_;
   Background<FolderListing> job_;
 };

@@ -58,6 +58,20 @@ TEST_F(FileBrowserTest, goes_down_and_up_again_to_where_it_came_from) {
   EXPECT_EQ(chosenName(), "deep");
 }
 
+TEST_F(FileBrowserTest, narrows_to_what_is_typed_and_goes_on_with_it_as_far_as_names_agree) {
+  for (const char* name : {"tray_one.tif", "tray_two.tif"}) std::ofstream(folder.file(name)) << "x";
+  browser.goTo(folder.path().string(), "", "tray");
+  arrive();
+  EXPECT_EQ(browser.count(), 2U) << "typed for the folder that is gone to";
+  EXPECT_EQ(browser.completion("t"), "tray_");
+  EXPECT_EQ(browser.completion("tray_t"), "tray_two.tif");
+  EXPECT_EQ(browser.completion("x"), "x");
+  browser.narrow("tray_one.tif");
+  EXPECT_EQ(chosenName(), "tray_one.tif");
+  browser.narrow("de");
+  EXPECT_EQ(browser.completion("de"), "deep/");
+}
+
 TEST_F(FileBrowserTest, keeps_the_choice_while_the_view_changes_as_long_as_it_is_shown) {
   browser.goTo(folder.path().string(), "b.tif");
   arrive();
