@@ -12,6 +12,19 @@
 #include "engine/base/stopwatch.h"
 
 namespace fettle::app {
+
+void addNotice(std::vector<Notice>& notices, Notice notice) {
+  const auto same = std::ranges::find_if(notices, [&](const Notice& other) {
+    return !notice.several.empty() && other.several == notice.several;
+  });
+  if (same == notices.end()) {
+    notices.push_back(std::move(notice));
+    return;
+  }
+  ++same->times;
+  same->what = fmt::format("{} {}", same->times, same->several);
+  same->remedy.clear();
+}
 namespace {
 
 using haptic::CommandKind;

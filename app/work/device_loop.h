@@ -24,7 +24,14 @@ namespace fettle::app {
 struct Notice {
   std::string what;
   std::string remedy;
+  std::string several =
+      {};  ///< in place of `what`, after a number, where it happens again: one line for all of them
+  int times = 1;
+  bool of_reading = false;  ///< about how the scan was read: shown with a button for the page of that
 };
+
+/// Adds a notice; one with Notice::several is counted where it stands already.
+void addNotice(std::vector<Notice>& notices, Notice notice);
 
 struct LoopClientOptions {
   std::string device = "mouse";  ///< a word of haptic::openDevice

@@ -66,7 +66,8 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
                  return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },
-               {fmt::format("no edge was found along the stroke {}", middleOf(*stroke)), "it stays a mark"});
+               {fmt::format("no edge was found along the stroke {}", middleOf(*stroke)), "it stays a mark",
+                "strokes lie along no edge: they stay marks"});
     else if (client.newest().lines() || edit.busy())
       edit.ask("Erase edge line",
                [stroke, radius](const engine::Version& base,

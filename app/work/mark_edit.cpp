@@ -36,7 +36,7 @@ bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
       if (result->error().kind != engine::ErrorKind::kCancelled)
         notices.push_back({result->error().what, result->error().remedy});
     } else if ((*result)->base == (*result)->changed) {
-      if (!running_.unchanged.what.empty()) notices.push_back(running_.unchanged);
+      if (!running_.unchanged.what.empty()) addNotice(notices, running_.unchanged);
     } else {
       done_ = std::move(**result);
     }

@@ -31,6 +31,8 @@ class MarkEdit {
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy() || done_ || !waiting_.empty(); }
+  /// The name of the change that is worked out.
+  [[nodiscard]] const std::string& what() const noexcept { return running_.name; }
   [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
 
  private:

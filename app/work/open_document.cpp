@@ -128,6 +128,7 @@ engine::Result<Document> openDocument(const std::string& path, const ScanOptions
   document.path = path;
   document.scan = {path, *import, imported->format, stamp};
   document.warnings = std::move(imported->warnings);
+  document.lone_values = std::move(imported->lone_values);
   auto samples = engine::restored(imported->field, job);
   if (!samples) return tl::unexpected(samples.error());
   document.original = *std::move(samples);

@@ -37,7 +37,8 @@ struct Document {
   std::vector<std::string> warnings;
   /// Writes to the session the document came from; null for a scan, and for a session that can only be read.
   std::unique_ptr<engine::SessionWriter> writer;
-  bool recovered = false;  ///< the session is the scan's recovery
+  std::vector<engine::LoneValue> lone_values;  ///< Imported::lone_values, of a scan
+  bool recovered = false;                      ///< the session is the scan's recovery
 };
 
 /// Handling of unsaved work on a scan.

@@ -179,6 +179,13 @@ TEST_F(LineTool, AStrokeAwayFromEdgesSaysThatItStaysAMark) {
   EXPECT_TRUE(notices_[0].what.starts_with("no edge was found along the stroke at x ")) << notices_[0].what;
 }
 
+TEST_F(LineTool, StrokesAwayFromEdgesAreOneLineWithTheirNumber) {
+  for (const int column : {100, 104, 108}) stroke(Tool::kMark, {column, 30}, {column + 2, 100});
+  ASSERT_EQ(notices_.size(), 1U);
+  EXPECT_EQ(notices_[0].what, "3 strokes lie along no edge: they stay marks");
+  EXPECT_EQ(notices_[0].remedy, "");
+}
+
 TEST_F(LineTool, ALineIsChosenAndRemovedOrJoined) {
   stroke(Tool::kMark, {61.5, 30}, {59.5, 100});
   ASSERT_EQ(lines(), 1U);
