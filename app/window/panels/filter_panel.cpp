@@ -132,7 +132,7 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
   }
 }
 
-void previewList(const render::FieldUnits& units, FilterPreview& filters) {
+void previewList(const render::FieldUnits& units, bool anything_marked, FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -140,9 +140,13 @@ void previewList(const render::FieldUnits& units, FilterPreview& filters) {
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
     // Broken here, or a narrow panel would break a number at its point.
-    ImGui::TextUnformatted(fmt::format("{}\n{} changed, max {}", filterName(v.spec), v.result.report.changed,
-                                       lengthText(v.result.report.max_change, units.change, 3))
-                               .c_str());
+    const bool nothing_marked =
+        v.spec.scope == engine::FilterScope::kOnlyMarks && v.result.report.changed == 0 && !anything_marked;
+    const std::string came = nothing_marked
+                                 ? "nothing is marked: with \"only marks\" nothing changes"
+                                 : fmt::format("{} changed, max {}", v.result.report.changed,
+                                               lengthText(v.result.report.max_change, units.change, 3));
+    ImGui::TextUnformatted(fmt::format("{}\n{}", filterName(v.spec), came).c_str());
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);
@@ -172,7 +176,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);
-  previewList(context.units, filters);
+  previewList(context.units, context.client.field().reader().root().marked_children != 0, filters);
   if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
 }
 

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -23,9 +25,23 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
   const double mm =
       length.per_unit / context.client.field().grid().lateral_unit.mm;  // shown units in a millimetre
   const std::string off = "+- " + length.name, step = "step " + upward.name;
-  for (const char* title : {"line", length.name.c_str(), "found", off.c_str(), step.c_str()})
-    ImGui::TableSetupColumn(title);
-  ImGui::TableHeadersRow();
+  const std::array columns{
+      std::pair{std::string("line"), "A click chooses a line; Y goes to the next."},
+      std::pair{length.name, "How long the line is."},
+      std::pair{
+          std::string("found"),
+          "On how much of the line an edge was found in the heights. The rest, grey in the picture, lies "
+          "where the hand drew it."},
+      std::pair{off,
+                "How surely the found edge lies where the line is: a standard deviation, across the line."},
+      std::pair{step, "How high the edge is: the median along the line."}};
+  for (const auto& [title, meaning] : columns) ImGui::TableSetupColumn(title.c_str());
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const auto& [title, meaning] : columns) {
+    ImGui::TableNextColumn();
+    ImGui::TableHeader(title.c_str());
+    explain(meaning);
+  }
   const std::optional<std::int64_t> chosen = lines.chosen(context.client);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(figures.size()));
@@ -52,14 +68,19 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
 
 void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   actionTick("strokes become edge lines", draws, Action::kDrawLines, context.act);
+  constexpr const char* kHand =
+      "How far a hand usually strays from the edge that it follows. The edge is sought that far beside the "
+      "stroke: more finds it after a careless stroke, less keeps to the stroke where edges lie close "
+      "together.";
   beginFields();
+  fieldName("hand off by");
+  explain(kHand);
   auto hand = static_cast<float>(lines.options.hand_deviation);
-  if (field("hand off by", [&] {
-        return ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
-                                  static_cast<float>(engine::LocateOptions::kMostHand), "%.2f samples",
-                                  ImGuiSliderFlags_AlwaysClamp);
-      }))
+  if (ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
+                         static_cast<float>(engine::LocateOptions::kMostHand), "%.2f samples",
+                         ImGuiSliderFlags_AlwaysClamp))
     lines.options.hand_deviation = static_cast<double>(hand);
+  explain(kHand);
   endFields();
   const std::vector<LineFigures>& figures = lines.figures(context.client.upright());
   if (figures.empty()) {
@@ -69,6 +90,9 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
     return;
   }
   lineList(context, lines, figures);
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextDisabled("orange: a step; blue: a crease; grey: no edge found there; yellow: the chosen line");
+  ImGui::PopTextWrapPos();
   actionButton("Remove", Action::kRemoveLine, context.act);
   sameLineIfFits("Join");
   actionButton("Join", Action::kJoinLine, context.act);
