@@ -71,10 +71,10 @@ inline void save(Parts& p) {
   p.saving.save(p.document, p.feedback, {});
 }
 inline void saveAs(Parts& p) {
-  ask(p, Question::Kind::kSaveAs, p.document.suggestedPath(".fettle"));
+  ask(p, Question::Kind::kSaveAs, p.saving.suggestedPath(p.document, ".fettle"));
 }
 inline void exportField(Parts& p) {
-  ask(p, Question::Kind::kExport, p.document.suggestedPath("_fettled.tif"));
+  ask(p, Question::Kind::kExport, p.saving.suggestedPath(p.document, "_fettled.tif"));
 }
 // Whether a step is the line that took the place of the marks of the step before it.
 inline bool isLineOfStroke(const engine::History& history, std::int64_t number) {
@@ -399,9 +399,12 @@ inline void compareWithScan(Parts& p) {
 inline void compareAgain(Parts& p) {
   p.compare.again(clientOf(p));
 }
-// Until the key is released (Input).
+// By its key until that is released (Input), from the menu until it is chosen again.
 inline void showBefore(Parts& p) {
-  p.shows_before = true;
+  p.shows_before = !p.shows_before;
+}
+inline bool showsBefore(const Parts& p) {
+  return p.shows_before;
 }
 inline void deviation(Parts& p) {
   toggle<&Display::deviation>(p);

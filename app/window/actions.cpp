@@ -189,7 +189,7 @@ constexpr ActionRow kRows[] = {
     ActionRow{Action::kCompareAgain, "View", "Compare with the same scan again", letter('B'), kControlShift,
               kNoKey, kFirst, kField, compareAgain, nullptr, hasCompared},
     ActionRow{Action::kShowBefore, "View", "The scan as it was, while the key is held", Key::kBackspace,
-              kPlain, kNoKey, kNoMenu, kField, showBefore},
+              kPlain, kNoKey, kFirst, kField, showBefore, showsBefore},
     ActionRow{Action::kDeviation, "View", "Colours show the change since the scan", letter('D'), kPlain,
               kNoKey, kFirst, kField, deviation, isOn<&Display::deviation>},
     ActionRow{Action::kContours, "View", "Contour lines", letter('C'), kPlain, kNoKey, kFirst, kField,

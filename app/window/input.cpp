@@ -49,7 +49,9 @@ Input::Request handleKey(const InputEvent& event, Parts& parts) {
     const std::vector<std::string>& recent = parts.recent.paths();
     return n < recent.size() ? Input::Request{std::nullopt, recent[n]} : Input::Request{};
   }
-  return {actionOf(event.key, event.modifiers), std::nullopt};
+  const std::optional<Action> action = actionOf(event.key, event.modifiers);
+  if (event.repeat && action == Action::kShowBefore) return {};  // it is held
+  return {action, std::nullopt};
 }
 
 // The wheel sets the press depth of the stylus.

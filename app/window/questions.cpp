@@ -22,6 +22,7 @@ struct KindInfo {
   bool enter;
   bool of_field;  // about the open field
   ImGuiWindowFlags flags;
+  Key other_key = Key::kNone;  // that answers it
 };
 
 constexpr std::array kKinds{
@@ -30,8 +31,8 @@ constexpr std::array kKinds{
     KindInfo{Kind::kCompare, "compare", "Compare with a scan", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kSaveAs, "save as", "Save as", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kExport, "export", "Export", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kUnsaved, "unsaved", "Unsaved changes", "DN", true, true,
-             ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kUnsaved, "unsaved", "Unsaved changes", "N", true, true, ImGuiWindowFlags_AlwaysAutoResize,
+             Key::kDelete},
     KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kRecover, "recover", "Unsaved work", "S", true, false, ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kDevice, "device", "Set up the device", "RMT123C+-", true, true,
@@ -99,7 +100,8 @@ void Questions::press(const render::InputEvent& event) {
   const int code = static_cast<int>(key);
   const bool letter =
       code > 0 && code < 128 && info.letters.find(static_cast<char>(code)) != info.letters.npos;
-  if (letter || key == Key::kEscape || (info.enter && key == Key::kEnter)) key_ = key;
+  const bool other = key == info.other_key && key != Key::kNone;
+  if (letter || other || key == Key::kEscape || (info.enter && key == Key::kEnter)) key_ = key;
 }
 
 Question* Questions::next() {

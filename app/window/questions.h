@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/files/scan_thumbnail.h"
 #include "app/work/loop_client.h"
 #include "app/work/scan_reading.h"
 #include "render/window/window.h"
@@ -42,10 +44,13 @@ struct Question {
       {};  ///< kOpen, kCompare, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
   Afterwards afterwards = {};               ///< kSaveAs, kUnsaved, kReplace
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
-  bool stop_asking = false;                 ///< kUnsaved: ticked so far
-  Notice said = {};                         ///< kMessage
-  Kind from = Kind::kSaveAs;                ///< kReplace: the dialog of the path, kSaveAs or kExport
-  bool typed = false;  ///< kReplace: the path came from a dialog, to which the user can go back
+  /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.
+  std::shared_ptr<const ScanThumbnail> guessed = {};
+  std::string sought = {};    ///< kShortcuts: as typed so far
+  bool stop_asking = false;   ///< kUnsaved: ticked so far
+  Notice said = {};           ///< kMessage
+  Kind from = Kind::kSaveAs;  ///< kReplace: the dialog of the path, kSaveAs or kExport
+  bool typed = false;         ///< kReplace: the path came from a dialog, to which the user can go back
   std::vector<std::string> replaced = {};  ///< kReplace: a sentence for each file to be replaced
 };
 

@@ -1,9 +1,11 @@
 #include "app/window/saving.h"
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "app/work/outputs.h"
@@ -80,6 +82,7 @@ engine::Result<engine::Version> writeFiles(const std::string& path, const std::v
 
 void Saving::begin(std::int64_t samples) {
   path_.clear();
+  exported_.reset();
   embeds = samples <= kEmbedded;
 }
 
@@ -100,7 +103,7 @@ void Saving::save(ActiveDocument& document, Feedback& feedback, Afterwards after
   } else {
     // Never over the scan itself without a question.
     feedback.questions.ask({.kind = Question::Kind::kSaveAs,
-                            .path = document.suggestedPath(".fettle"),
+                            .path = suggestedPath(document, ".fettle"),
                             .afterwards = std::move(afterwards)});
   }
 }
@@ -178,6 +181,8 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
   }
   if (auto done = writing_.take()) {
     ended = *done ? engine::Status{} : tl::unexpected(done->error());
+    if (*done && keeping_ == Keeping::kCopy)
+      exported_ = Exported{**done, target_, fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr)))};
     if (*done && keeping_ == Keeping::kWorkThere) {
       path_ = target_;
       written_ = outputs_;
@@ -193,11 +198,24 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
   Afterwards afterwards = std::exchange(afterwards_, {});
   if (*ended) {
     feedback.status = fmt::format("written: {}", target_);
+    folder_ = fs::path(target_).parent_path().string();
     return Saved{std::move(afterwards), moved};
   }
   if (ended->error().kind != engine::ErrorKind::kCancelled)
     feedback.message(ended->error().line(), "the work is stored here; save it elsewhere");
   return std::nullopt;
+}
+
+std::string Saving::suggestedPath(const ActiveDocument& document, const char* ending) const {
+  const std::string beside = document.suggestedPath(ending);
+  return folder_.empty() ? beside : (fs::path(folder_) / fs::path(beside).filename()).string();
+}
+
+std::string Saving::exportText(const ActiveDocument& document) const {
+  if (!exported_ || !document.isOpen()) return {};
+  const bool same = document.client()->upright() == exported_->field;
+  return fmt::format("It was exported to {} at {}, {}.", exported_->path, exported_->at,
+                     same ? "as it is now" : "and changed since");
 }
 
 bool Saving::busy(const ActiveDocument& document) const {

@@ -49,6 +49,12 @@ class Saving {
   /// The path of Ctrl+S for the field, without a session of the user; empty until chosen.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
+  /// "/folder/scan" + `ending`, in the folder that was written to last, else in that of the scan.
+  [[nodiscard]] std::string suggestedPath(const ActiveDocument& document, const char* ending) const;
+  /// Whether a file that was exported holds the present state: "It was exported to out.tif at 14:03, as it is now."; empty
+  /// where nothing was exported since the document was opened.
+  [[nodiscard]] std::string exportText(const ActiveDocument& document) const;
+
   bool embeds = true;  ///< the scan is stored in a session saved as
 
  private:
@@ -56,6 +62,13 @@ class Saving {
 
   std::string path_;
   std::vector<std::string> written_;  // all files of path_
+  // The copy written last.
+  struct Exported {
+    engine::Version field;  // upright
+    std::string path, at;
+  };
+  std::optional<Exported> exported_;
+  std::string folder_;  // that was written to last
   // The current write.
   std::string target_;
   Keeping keeping_ = Keeping::kCopy;

@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
@@ -20,13 +23,35 @@ bool isPathKind(Kind kind) {
   return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport;
 }
 
-std::optional<Choice> unsavedDialog(Question& question, Questions& questions, const std::string& document) {
-  ImGui::Text("%s was changed and is not saved.", document.c_str());
-  const bool writes = dialogButton("Save (Enter)", questions, Key::kEnter);
-  ImGui::SameLine();
-  const bool drops = dialogButton("Discard (D)", questions, render::letter('D'));
+// A dialog that has just appeared goes aside where the cursor, left where it was, would lie on the last button.
+void goFromUnderCursor(const Questions& questions) {
+  constexpr int kSettled = 3;  // frames
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  if (questions.frames() > kSettled || !ImGui::IsMouseHoveringRect(low, high, false)) return;
+  const ImVec2 at = ImGui::GetWindowPos();
+  ImGui::SetWindowPos(ImVec2(at.x, at.y - 3.0F * (high.y - low.y)));
+}
+
+// What Enter does: the scan itself is never written over.
+std::string saveLabel(const Parts& parts) {
+  const SessionKeeper& keeper = *parts.document.keeper();
+  const std::string path = keeper.named() ? keeper.path() : parts.saving.path();
+  return path.empty() ? "Save session ... (Enter)"
+                      : fmt::format("Save to {} (Enter)", fs::path(path).filename().string());
+}
+
+// Discarding has a key that does nothing to the picture, and no letter.
+std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
+  Questions& questions = parts.feedback.questions;
+  ImGui::Text("%s was changed, and no session keeps the steps.", parts.document.fileName().c_str());
+  if (const std::string exported = parts.saving.exportText(parts.document); !exported.empty())
+    ImGui::TextUnformatted(exported.c_str());
+  const bool writes = dialogButton(saveLabel(parts).c_str(), questions, Key::kEnter);
   ImGui::SameLine();
   const bool stays = dialogButton("Go back (Esc)", questions, Key::kEscape);
+  ImGui::SameLine(0.0F, 3.0F * ImGui::GetFontSize());
+  const bool drops = dialogButton("Discard the steps (Delete)", questions, Key::kDelete);
+  goFromUnderCursor(questions);
   if (question.afterwards.what == Afterwards::What::kQuit) {
     ImGui::Checkbox("Do not ask again (N)", &question.stop_asking);
     if (questions.take(render::letter('N'))) question.stop_asking = !question.stop_asking;
@@ -52,9 +77,50 @@ std::optional<Choice> recoverDialog(const Question& question, Questions& questio
   return leaves ? std::optional(Choice::kOther) : std::nullopt;
 }
 
-std::optional<Choice> shortcutsDialog(Questions& questions, float scale) {
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
+  return result;
+}
+
+std::string keysOf(Action action) {
+  const ActionRow& row = rowOf(action);
+  return keyText(row.key, row.modifiers);
+}
+
+// What a person does who has a scan and wants a clean one, with the keys as they are.
+void howToClean() {
+  using enum Action;
+  const auto tool = [](haptic::Tool t) { return keysOf(actionOf(t)); };
+  ImGui::TextUnformatted("How to clean a scan");
+  for (const std::string& line :
+       {fmt::format("1. {} opens it, or drop it on the window; say its unit, and which number means a hole.",
+                    keysOf(kOpen)),
+        fmt::format("2. Drag and wheel turn and zoom it; {} shows all of it.", keysOf(kViewAll)),
+        fmt::format("3. {} suggests edges to keep and {} takes them; or {} and draw along one.",
+                    keysOf(kEdges), keysOf(kFilterApply), tool(haptic::Tool::kMark)),
+        fmt::format("4. Choose a filter at the right: {} previews it, {} applies it; {} smooths by hand.",
+                    keysOf(kFilterPreview), keysOf(kFilterApply), tool(haptic::Tool::kSmooth)),
+        fmt::format(
+            "5. Look at what changed: {} colours it, {} held shows the scan before; {} takes it back.",
+            keysOf(kDeviation), keysOf(kShowBefore), keysOf(kUndo)),
+        fmt::format("6. {} exports the part; {} keeps every step in a session.", keysOf(kExport),
+                    keysOf(kSave))})
+    ImGui::TextUnformatted(("  " + line).c_str());
+}
+
+std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, float scale) {
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(420.0F * scale);
+  ImGui::InputTextWithHint("##sought", "search: a word, or a key", &question.sought);
+  ImGui::SameLine();
+  const bool left = dialogButton("Close (Esc)", questions, Key::kEscape);
+  const std::string sought = lower(question.sought);
+  if (sought.empty()) howToClean();
   std::string_view section;
   for (const ActionRow& row : actions()) {
+    const std::string all = fmt::format("{} {} {}", row.section, row.name, keyText(row.key, row.modifiers));
+    if (lower(all).find(sought) == std::string::npos) continue;
     if (row.section != section) {
       section = row.section;
       ImGui::Separator();
@@ -66,6 +132,7 @@ std::optional<Choice> shortcutsDialog(Questions& questions, float scale) {
     ImGui::SameLine(220.0F * scale);
     ImGui::TextUnformatted(row.name.data(), row.name.data() + row.name.size());
   }
+  if (!sought.empty()) return left ? std::optional(Choice::kBack) : std::nullopt;
   ImGui::Separator();
   ImGui::TextUnformatted(
       "  Ctrl+1 .. Ctrl+9         recent files\n"
@@ -73,7 +140,7 @@ std::optional<Choice> shortcutsDialog(Questions& questions, float scale) {
       "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
       "  Alt + left button        turn the view\n"
       "  Ctrl + Shift + left      drag an edge line; a click chooses one where no tool is on");
-  return dialogButton("Close", questions, Key::kEscape) ? std::optional(Choice::kBack) : std::nullopt;
+  return left ? std::optional(Choice::kBack) : std::nullopt;
 }
 
 std::optional<Choice> messageDialog(const Question& question, Questions& questions, float scale) {
@@ -109,7 +176,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kImport:
       return importPage(question, parts);
     case Kind::kUnsaved:
-      return unsavedDialog(question, questions, parts.document.fileName());
+      return unsavedDialog(question, parts);
     case Kind::kReplace:
       return replaceDialog(question, questions, scale);
     case Kind::kRecover:
@@ -117,7 +184,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kDevice:
       return devicePage(parts);
     case Kind::kShortcuts:
-      return shortcutsDialog(questions, scale);
+      return shortcutsDialog(question, questions, scale);
     case Kind::kMessage:
       break;
   }
@@ -137,8 +204,15 @@ std::optional<Answer> dialog(Parts& parts) {
   if (question->kind == Kind::kImport)
     ImGui::SetNextWindowSize(ImVec2(740.0F * static_cast<float>(parts.window.scale()), 0.0F));
   if (question->kind == Kind::kShortcuts)
-    ImGui::SetNextWindowSize(ImVec2(0.0F, 0.8F * ImGui::GetIO().DisplaySize.y));
-  if (!questions.begin()) return std::nullopt;
+    ImGui::SetNextWindowSize(
+        ImVec2(720.0F * static_cast<float>(parts.window.scale()), 0.8F * ImGui::GetIO().DisplaySize.y));
+  // Nothing shines through what is read.
+  ImVec4 background = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
+  background.w = 1.0F;
+  ImGui::PushStyleColor(ImGuiCol_PopupBg, background);
+  const bool begun = questions.begin();
+  ImGui::PopStyleColor();
+  if (!begun) return std::nullopt;
   std::optional<Answer> answer;
   if (const auto choice = layOut(*question, parts)) answer = Answer{*choice, questions.close()};
   questions.end();

@@ -28,6 +28,20 @@ void drawLasso(const Lasso& lasso, float scale) {
   }
 }
 
+// Who looks at what was must know it.
+void beforeLabel(const Parts& parts, float scale) {
+  const render::Rectangle area = parts.window.pictureArea();
+  const float x = static_cast<float>(area.x) + 0.5F * static_cast<float>(area.width);
+  ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(area.y) + 12.0F * scale), ImGuiCond_Always,
+                          ImVec2(0.5F, 0.0F));
+  ImGui::Begin("##before", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::TextUnformatted("before: the scan as it was");
+  ImGui::End();
+}
+
 }  // namespace
 
 void pictureOverlay(const Parts& parts) {
@@ -42,6 +56,7 @@ void pictureOverlay(const Parts& parts) {
         at({plot.x + display.split_at * plot.width, plot.y + plot.height / 2}), 7.0F * scale,
         IM_COL32(255, 255, 255, 220));
   }
+  if (parts.shows_before && parts.document.isOpen()) beforeLabel(parts, scale);
   if (parts.marking.lasso().active()) drawLasso(parts.marking.lasso(), scale);
 }
 

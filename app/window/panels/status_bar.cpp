@@ -87,6 +87,11 @@ void content(Parts& parts) {
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
     if (cancelledBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+  } else if (parts.marking.edit.busy()) {
+    if (cancelledBar(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
+      parts.marking.edit.cancel();
+  } else if (parts.marking.edges.busy()) {
+    if (cancelledBar(parts.marking.edges.progress(), 240.0F, "looking for edges")) parts.marking.edges.drop();
   } else if (PlaceTool& places = parts.marking.places; places.busy()) {
     if (cancelledBar(places.progress(), 240.0F, "looking for places")) places.drop();
   } else {

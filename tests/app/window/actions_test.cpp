@@ -62,5 +62,12 @@ TEST(Actions, stand_in_menus_without_a_gap_between_groups) {
   for (const auto& [menu, found] : groups) EXPECT_EQ(*found.rbegin(), static_cast<int>(found.size())) << menu;
 }
 
+TEST(Actions, what_was_before_is_found_in_the_view_menu) {
+  const ActionRow& row = rowOf(Action::kShowBefore);
+  EXPECT_EQ(row.menuTitle(), "View");
+  EXPECT_GT(row.menu.group, 0);
+  ASSERT_NE(row.ticked, nullptr) << "from the menu it stays until it is chosen again";
+}
+
 }  // namespace
 }  // namespace fettle::app

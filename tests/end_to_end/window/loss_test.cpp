@@ -91,7 +91,7 @@ TEST_F(LossTest, a_lost_device_comes_back_with_everything_in_its_place) {
 
   (void)user.press("ctrl+q");
   program->until("a question", [](const State& s) { return s["dialog"] == "unsaved"; });
-  (void)user.press("d");
+  (void)user.press("Delete");
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_EQ(program->report()["steps"], 3);
   expectSilence(*program);

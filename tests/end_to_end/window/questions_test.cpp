@@ -70,7 +70,7 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
   (void)mark(user);
   (void)user.press("ctrl+q");
   program->until("a question", asks);
-  (void)user.press("d");
+  (void)user.press("Delete");
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_EQ(program->report()["unsaved_changes"], true);
   expectSilence(*program);
@@ -92,7 +92,7 @@ TEST_F(QuestionTest, the_question_at_quitting_is_turned_off_and_on_again_and_no_
     program->until("a question", asks);
     (void)user.click("Do not ask again (N)");
     user.at({20, 790});
-    (void)user.press("d");
+    (void)user.press("Delete");
     EXPECT_EQ(program->wait(), 0) << program->err();
     expectSilence(*program);
   }
@@ -118,7 +118,7 @@ TEST_F(QuestionTest, the_question_at_quitting_is_turned_off_and_on_again_and_no_
   (void)user.look("asks again");
   (void)user.press("ctrl+q");
   program->until("a question", asks);
-  (void)user.press("d");
+  (void)user.press("Delete");
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
 }
