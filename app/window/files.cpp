@@ -1,8 +1,11 @@
 #include "app/window/files.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/files/sample_part.h"
+#include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
 
 namespace fettle::app {
 namespace {
@@ -11,9 +14,19 @@ namespace {
 std::string folderOf(const std::string& typed) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path path = fs::absolute(typed.empty() ? "." : typed, error).lexically_normal();
+  fs::path path = fs::absolute(typed.empty() ? "." : typed, error).lexically_normal();
+  if (!path.has_filename() && path.has_relative_path()) path = path.parent_path();
   if (fs::is_directory(path, error)) return path.string();
   return fs::is_directory(path.parent_path(), error) ? path.parent_path().string() : std::string();
+}
+
+// The format of a file by its extension: what it seems to be before it is read.
+std::string formatByName(const std::string& path) {
+  const std::string extension = engine::extensionOf(path);
+  for (const engine::FormatInfo& format : engine::formats())
+    if (std::ranges::find(format.extensions, extension) != format.extensions.end())
+      return std::string(format.name);
+  return {};
 }
 
 }  // namespace
@@ -25,17 +38,42 @@ void Files::begin(const std::string& path, const std::vector<std::string>& recen
   browser.goTo(followed_, std::filesystem::path(path).filename().string());
 }
 
-void Files::begin(const ScanOptions& as) {
+void Files::begin(const std::string& path, const ScanOptions& as, const ScanThumbnail* known) {
   shelf.forget();
+  if (known != nullptr) shelf.put(path, as, *known);
   reading = as;
   form = ImportForm::of(as);
+  found_grid.reset();
+  found_warnings.clear();
+  apply = fieldsThatApply(formatByName(path), false);
 }
 
-void Files::follow(const std::string& typed) {
-  std::string folder = folderOf(typed);
-  if (folder.empty() || folder == followed_) return;
+void Files::noteFound(const std::string& path, const ScanThumbnail& picture) {
+  found_grid = picture.grid;
+  found_warnings = picture.warnings;
+  apply = fieldsThatApply(picture.format.empty() ? formatByName(path) : picture.format,
+                          picture.grid && picture.grid->height_per_count != 0.0);
+}
+
+void Files::follow(const std::string& typed, bool narrows) {
+  const std::string path = wholePath(typed);
+  std::string folder = folderOf(path);
+  if (folder.empty()) return;
+  // The name of a folder is nothing to look for in it.
+  const std::string last = std::filesystem::path(path).filename().string();
+  const bool in_it = std::filesystem::path(folder).filename() == last && folder.size() >= path.size();
+  const std::string name = narrows && !in_it ? last : std::string();
+  const bool other = folder != followed_;
   followed_ = std::move(folder);
-  if (followed_ != browser.folder()) browser.goTo(followed_);
+  if (other && followed_ != browser.folder())
+    browser.goTo(followed_, last, name);
+  else if (narrows)
+    browser.narrow(name);
+}
+
+std::string Files::wholePath(const std::string& typed) const {
+  const std::filesystem::path path(typed);
+  return typed.empty() || path.is_absolute() ? typed : (browser.folder() / path).string();
 }
 
 void Files::toggleBookmark(const std::vector<std::string>& recent) {

@@ -6,6 +6,7 @@
 #include "app/files/file_browser.h"
 #include "app/files/file_places.h"
 #include "app/files/import_form.h"
+#include "app/files/reading_fields.h"
 #include "app/files/reading_memory.h"
 #include "app/files/thumbnail_shelf.h"
 #include "app/work/background.h"
@@ -23,13 +24,21 @@ class Files {
   std::vector<FilePlace> shown_places;
   ImportForm form;      ///< as typed so far
   ScanOptions reading;  ///< the last of them that could be read
+  /// Of the page's file, as far as it was read: what stays while it is read anew.
+  std::optional<engine::Grid> found_grid;
+  std::vector<std::string> found_warnings;
+  FieldsThatApply apply;
 
   /// A dialog about paths appears: it begins in the folder of `path`, or in the working folder. `recent`: files opened last.
   void begin(const std::string& path, const std::vector<std::string>& recent);
-  /// The import page appears.
-  void begin(const ScanOptions& as);
-  /// Goes to the folder that a typed path lies in, where that is another one.
-  void follow(const std::string& typed);
+  /// The import page appears. `known`: what is known of the file read so; may be null.
+  void begin(const std::string& path, const ScanOptions& as, const ScanThumbnail* known);
+  /// The import page shows a picture of its file.
+  void noteFound(const std::string& path, const ScanThumbnail& picture);
+  /// Goes to the folder that a typed path lies in, where that is another one. `narrows`: the list shows what its name is in.
+  void follow(const std::string& typed, bool narrows);
+  /// A typed path as a whole one: what does not begin at the root lies in the folder on the screen.
+  [[nodiscard]] std::string wholePath(const std::string& typed) const;
   void toggleBookmark(const std::vector<std::string>& recent);
 
   /// Makes the sample scan where it is not there yet.

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "app/files/reading_fields.h"
+#include "app/files/thumbnail_shelf.h"
 #include "engine/formats/formats.h"
 
 namespace fettle::app {
@@ -16,10 +18,24 @@ constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
 // drawing the coarse picture would wait for it. So reading waits for that picture, at most this long.
 constexpr std::chrono::milliseconds kShownFirst{500};
 
-Background<Document>::Work Opening::work(const std::string& path, Recovery recovery,
-                                         const ScanOptions& reading, std::shared_ptr<CoarseSlot> slot,
-                                         bool coarse_first) {
-  return [path, recovery, coarse_first, slot = std::move(slot), reading](engine::JobControl& job) {
+namespace {
+
+// What the page shows of a scan that was read whole.
+ScanThumbnail pictureOf(const Document& document) {
+  ScanThumbnail picture = thumbnailOf(document.original, ThumbnailShelf::kSide);
+  picture.format = document.scan.format;
+  picture.warnings = document.warnings;
+  picture.lone_values = document.lone_values;
+  picture.whole = true;
+  return picture;
+}
+
+}  // namespace
+
+Background<Opened>::Work Opening::work(const std::string& path, Recovery recovery, const ScanOptions& reading,
+                                       Guesses guesses, std::shared_ptr<CoarseSlot> slot, bool coarse_first) {
+  return [path, recovery, guesses, coarse_first, slot = std::move(slot),
+          reading](engine::JobControl& job) -> engine::Result<Opened> {
     const auto import = importOptions(reading);
     if (coarse_first && import) {
       // Errors in the file are reported by the full import.
@@ -29,11 +45,17 @@ Background<Document>::Work Opening::work(const std::string& path, Recovery recov
         slot->waitShown(kShownFirst, job);
       }
     }
-    return openDocument(path, reading, recovery, kHistoryBytes, job);
+    auto document = openDocument(path, reading, recovery, kHistoryBytes, job);
+    if (!document) return tl::unexpected(document.error());
+    Opened opened{*std::move(document), nullptr};
+    if (guesses == Guesses::kAsk && anyGuess(opened.document.warnings))
+      opened.guessed = std::make_shared<const ScanThumbnail>(pictureOf(opened.document));
+    return opened;
   };
 }
 
-void Opening::start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead) {
+void Opening::start(const std::string& path, Recovery recovery, const ScanOptions& reading, Guesses guesses,
+                    bool instead) {
   path_ = path;
   since_asked_ = {};
   if (!instead) {
@@ -42,7 +64,7 @@ void Opening::start(const std::string& path, Recovery recovery, const ScanOption
   }
   slot_ = std::make_shared<CoarseSlot>();
   const bool coarse_first = !instead && recovery == Recovery::kLeave && !isSessionPath(path);
-  loading_.start(work(path, recovery, reading, slot_, coarse_first));
+  loading_.start(work(path, recovery, reading, guesses, slot_, coarse_first));
 }
 
 std::string Opening::fileName() const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/files/scan_thumbnail.h"
 #include "app/work/background.h"
 #include "app/work/coarse_slot.h"
 #include "app/work/open_document.h"
@@ -19,6 +20,16 @@ struct OpeningTimes {
   double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
 };
 
+/// A scan or session that was read.
+struct Opened {
+  Document document;
+  /// Its picture, where something about its numbers was guessed and nobody has said yet that it is right.
+  std::shared_ptr<const ScanThumbnail> guessed;
+};
+
+/// Whether a person is asked where something about a scan was guessed.
+enum class Guesses : std::uint8_t { kTake, kAsk };
+
 /// A scan or session that is being opened: read in the background, with a coarse picture shown until then if
 /// nothing else is open. The coarse picture can be viewed from all sides, nothing else: it is not a document,
 /// no loop runs, nothing can be touched, changed or saved. Threading: main.
@@ -26,10 +37,11 @@ class Opening {
  public:
   /// Begins to read; cancels a reading in progress. `instead`: a document is open and stays until this one is
   /// read. Requires dropCoarse() for the previous coarse picture.
-  void start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead);
+  void start(const std::string& path, Recovery recovery, const ScanOptions& reading, Guesses guesses,
+             bool instead);
   void cancel() { loading_.cancel(); }
   /// The result of reading, once.
-  [[nodiscard]] std::optional<engine::Result<Document>> take() { return loading_.take(); }
+  [[nodiscard]] std::optional<engine::Result<Opened>> take() { return loading_.take(); }
   [[nodiscard]] bool busy() const noexcept { return loading_.busy(); }
   [[nodiscard]] WorkProgress progress() const { return loading_.progress(); }
   [[nodiscard]] const char* stage() const noexcept { return loading_.stage(); }
@@ -55,9 +67,9 @@ class Opening {
   void noteFrame(Frame frame);
 
  private:
-  [[nodiscard]] static Background<Document>::Work work(const std::string& path, Recovery recovery,
-                                                       const ScanOptions& reading,
-                                                       std::shared_ptr<CoarseSlot> slot, bool coarse_first);
+  [[nodiscard]] static Background<Opened>::Work work(const std::string& path, Recovery recovery,
+                                                     const ScanOptions& reading, Guesses guesses,
+                                                     std::shared_ptr<CoarseSlot> slot, bool coarse_first);
 
   std::string path_;
   engine::Stopwatch since_asked_;
@@ -65,7 +77,7 @@ class Opening {
   std::optional<engine::Preview> coarse_;
   OpeningTimes times_;
   bool announced_ = false;
-  Background<Document> loading_;
+  Background<Opened> loading_;
 };
 
 }  // namespace fettle::app

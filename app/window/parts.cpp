@@ -1,5 +1,6 @@
 #include "app/window/parts.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -49,6 +50,21 @@ std::optional<Action> Parts::axisAt(const glm::dvec2& place) const {
   const AxesGizmo gizmo(view, picture.plot(view, settings.display), window.scale());
   const AxesGizmo::Ball* const ball = gizmo.under(place);
   return ball != nullptr ? ball->action : std::nullopt;
+}
+
+void Parts::showMarksMade() {
+  const LoopClient* const client = document.client();
+  if (client == nullptr) return;
+  const engine::History& history = client->history();
+  const std::int64_t now = history.number();
+  const bool stroke = stylus.held() && haptic::isMarkTool(client->tool());
+  const bool step =
+      now > std::max(steps_seen, history.first()) && (history.info(now).kind == engine::StepKind::kMark ||
+                                                      history.info(now).kind == engine::StepKind::kLines);
+  steps_seen = now;
+  if (!(stroke || step) || settings.display.marks) return;
+  settings.display.marks = true;
+  picture.requestRedraw();
 }
 
 void Parts::chooseTool(std::optional<haptic::Tool> tool) {

@@ -92,6 +92,7 @@ struct Parts {
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 
   std::optional<std::int64_t> pointed_step;  ///< in the list of steps: where it changed something is shown
+  std::int64_t steps_seen = 0;               ///< of showMarksMade()
   bool shows_before = false;                 ///< the scan as it was, while a key is held
   bool full_screen = false;                  ///< the picture and the status line alone, on all of the screen
   bool enter_panels = false;                 ///< the panels get the keyboard focus with the next frame
@@ -117,6 +118,8 @@ struct Parts {
   /// Whether a place of the window is one that can be clicked on in the axes, and what that does.
   [[nodiscard]] std::optional<Action> axisAt(const glm::dvec2& place) const;
 
+  /// Marks and lines that are hidden are shown again when one is made. Once per frame.
+  void showMarksMade();
   /// Switches a tool on, or all off.
   void chooseTool(std::optional<haptic::Tool> tool);
   /// Releases what is held and cancels what was not confirmed.

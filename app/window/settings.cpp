@@ -92,8 +92,7 @@ const char* wordOf(const RangeRule& rule) {
 
 std::string Settings::text() const {
   const Display& d = display;
-  return json{{"marks", d.marks},
-              {"deviation", d.deviation},
+  return json{{"deviation", d.deviation},
               {"contours", d.contours},
               {"split", d.split},
               {"split_at", d.split_at},
@@ -138,7 +137,6 @@ Settings Settings::load(const std::string& path) {
   const json file = json::parse(in, nullptr, false);
   if (!file.is_object()) return settings;
   Display& d = settings.display;
-  take(file, "marks", d.marks);
   take(file, "deviation", d.deviation);
   take(file, "contours", d.contours);
   take(file, "split", d.split);

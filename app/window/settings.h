@@ -34,7 +34,7 @@ struct StylusLook {
 
 /// Display settings, stored for the next start.
 struct Display {
-  bool marks = true;
+  bool marks = true;  ///< not stored, and shown in each scan: who does not see them marks blindly
   bool deviation = false;
   bool contours = false;
   bool split = true;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/files/reading_fields.h"
 #include "app/terminal.h"
 #include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
@@ -114,6 +115,7 @@ void Workstation::runFrame() {
   }
   releaseHandsWhenAsked();
   takeResults();
+  parts_.showMarksMade();
   followHeadset();
   releaseHandsWhenAsked();
   if (!parts_.picture.made() || window_->displayLost()) {
@@ -337,7 +339,13 @@ void Workstation::carryOut(Answer answer) {
       break;
     case Kind::kImport:
       p.files.readings.note(question.path, *question.reading);
-      askToOpen(question.path, std::move(question.reading));
+      if (question.guessed == nullptr)
+        askToOpen(question.path, std::move(question.reading));
+      else if (auto read = std::exchange(unconfirmed_, std::nullopt);
+               read && scanOptionsText(*question.reading).empty())
+        startDocument(*std::move(read));
+      else
+        load(question.path, Recovery::kLeave, question.reading);  // it was said where its work goes
       break;
     case Kind::kCompare:
       p.compare.compareWith(*p.document.client(), question.path, options_.reading);
@@ -398,15 +406,26 @@ void Workstation::open(const std::string& path, const std::optional<ScanOptions>
 void Workstation::load(const std::string& path, Recovery recovery,
                        const std::optional<ScanOptions>& reading) {
   parts_.dropCoarse();
-  parts_.opening.start(path, recovery, reading ? *reading : parts_.readingOf(path), parts_.document.isOpen());
+  unconfirmed_.reset();
+  // The command line says how its scan and all scans are to be read, work is what it was begun on, and of some scans it
+  // was said before.
+  const bool said = reading || recovery == Recovery::kTake || path == options_.scan ||
+                    !scanOptionsText(parts_.usual_reading).empty() || parts_.files.readings.find(path);
+  parts_.opening.start(path, recovery, reading ? *reading : parts_.readingOf(path),
+                       said ? Guesses::kTake : Guesses::kAsk, parts_.document.isOpen());
 }
 
 void Workstation::takeOpened() {
+  if (unconfirmed_ && !parts_.feedback.questions.pending()) unconfirmed_.reset();  // nobody wants it
   auto done = parts_.opening.take();
   if (!done) return;
   parts_.picture.requestRedraw();
   if (*done) {
-    startDocument(std::move(**done));
+    Opened& opened = **done;
+    if (opened.guessed == nullptr)
+      startDocument(std::move(opened.document));
+    else
+      askHowToRead(std::move(opened));
     return;
   }
   parts_.dropCoarse();
@@ -415,7 +434,17 @@ void Workstation::takeOpened() {
   if (!parts_.document.isOpen() && parts_.opening.path() == options_.scan)
     end_ = tl::unexpected(error);  // named on the command line: its errors are the command's
   else
-    parts_.feedback.message(error.line(), "");
+    parts_.feedback.message(inFieldWords(error.line()), "");
+}
+
+// It was read, and waits until somebody has said that what was guessed is right.
+void Workstation::askHowToRead(Opened opened) {
+  parts_.dropCoarse();
+  parts_.feedback.questions.ask({.kind = Question::Kind::kImport,
+                                 .path = opened.document.path,
+                                 .reading = ScanOptions(),
+                                 .guessed = std::move(opened.guessed)});
+  unconfirmed_ = std::move(opened.document);
 }
 
 void Workstation::startDocument(Document document) {
@@ -442,6 +471,8 @@ void Workstation::startDocument(Document document) {
   p.reading = scanOptionsOf(document.scan.import);
   p.saving.begin(grid.samples());
   p.change.begin(client.original());
+  p.settings.display.marks = true;
+  p.steps_seen = client.history().number();
   form_ = client.field().formOver();
   noteHeights();
   // A view that was changed in the coarse picture is kept.
@@ -464,19 +495,21 @@ void Workstation::startDocument(Document document) {
   window_->setTitle(p.document.fileName() + " - Fettle");
 }
 
-// What reading said, with the name of the file; where an option of the command line would say more, the page for it.
+// What reading said, with the name of the file; where a person can say more, with the page for it.
 void Workstation::noteWarnings(const std::vector<std::string>& warnings) {
   Parts& p = parts_;
   const bool scan = !isSessionPath(p.document.path());
-  if (const auto said = p.files.readings.find(p.document.path());
-      scan && said && scanOptionsText(*said) == scanOptionsText(p.reading))
+  const auto said = scan ? p.files.readings.find(p.document.path()) : std::nullopt;
+  const bool as_said = said && scanOptionsText(*said) == scanOptionsText(p.reading);
+  if (const std::string text = as_said ? readingText(*said) : ""; !text.empty())
     p.feedback.notices.push_back(
-        {fmt::format("{} is read as you said:{}", p.document.fileName(), scanOptionsText(*said)),
-         "Ctrl+Shift+O changes it"});
+        {fmt::format("{} is read as you said: {}", p.document.fileName(), text), "", "", 1, true});
   for (const std::string& warning : warnings) {
-    const bool can_be_said = scan && warning.find("--") != std::string::npos;
+    // Who has seen the page and left it so does not want to be asked again.
+    if (as_said && isGuess(warning)) continue;
+    const std::string text = inFieldWords(warning);
     p.feedback.notices.push_back(
-        {fmt::format("{}: {}", p.document.fileName(), warning), can_be_said ? "or Ctrl+Shift+O" : ""});
+        {fmt::format("{}: {}", p.document.fileName(), text), "", "", 1, scan && text != warning});
   }
 }
 

@@ -69,6 +69,7 @@ class Workstation {
   void open(const std::string& path, const std::optional<ScanOptions>& reading);
   void load(const std::string& path, Recovery recovery, const std::optional<ScanOptions>& reading);
   void takeOpened();
+  void askHowToRead(Opened opened);
   void startDocument(Document document);
   void noteWarnings(const std::vector<std::string>& warnings);
   void restoreSections(const Document& document);
@@ -94,7 +95,8 @@ class Workstation {
   Parts parts_;
   std::unique_ptr<HeadsetView> headset_;  // null without one
   HeadsetFigures headset_figures_;
-  std::uint64_t documents_ = 0;  // opened
+  std::uint64_t documents_ = 0;          // opened
+  std::optional<Document> unconfirmed_;  // while it is asked whether its reading is right
   Input input_;
   DeviceRenewal renewal_;
   EventLog events_;

@@ -41,6 +41,14 @@ std::string pathIn(const std::string& folder, const Question& question) {
   return reads(question) ? folder : (fs::path(folder) / fs::path(question.path).filename()).string();
 }
 
+// Where one looks for the first scan: beside those opened before, else in the working folder.
+std::string firstFolder(const RecentFiles& recent) {
+  std::error_code error;
+  const fs::path folder =
+      recent.paths().empty() ? fs::current_path(error) : fs::path(recent.paths().front()).parent_path();
+  return (folder / "").string();
+}
+
 void enter(const std::string& folder, Question& question, Files& files) {
   question.path = pathIn(folder, question);
   files.browser.goTo(folder);
@@ -52,16 +60,39 @@ void choose(std::size_t i, Question& question, FileBrowser& browser) {
   if (!keeps_name) question.path = browser.pathOf(i);
 }
 
+// Tab goes on with the name as far as the names in the list agree.
+void complete(ImGuiInputTextCallbackData* data, const FileBrowser& browser) {
+  const std::string typed(data->Buf, static_cast<std::size_t>(data->BufTextLen));
+  const std::size_t begin = typed.rfind('/') + 1;  // 0 without one
+  const std::string name = browser.completion(typed.substr(begin));
+  data->DeleteChars(static_cast<int>(begin), data->BufTextLen - static_cast<int>(begin));
+  data->InsertChars(data->BufTextLen, name.c_str());
+}
+
 // Up and Down in the field of the path go through the list.
 int moveByKeys(ImGuiInputTextCallbackData* data) {
-  if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
   auto& browser = *static_cast<FileBrowser*>(data->UserData);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) complete(data, browser);
+  if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
   browser.move(data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
   if (!browser.chosen()) return 0;
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, browser.pathOf(*browser.chosen()).c_str());
   data->SelectAll();
   return 0;
+}
+
+// What is typed while no field has the keyboard narrows the list.
+void narrowByKeys(FileBrowser& browser) {
+  if (ImGui::IsAnyItemActive()) return;
+  std::string typed = browser.view().typed;
+  for (const ImWchar letter : ImGui::GetIO().InputQueueCharacters)
+    if (letter > ' ' && letter < 0x7F) typed += static_cast<char>(letter);
+  if (!typed.empty() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Backspace))) typed.pop_back();
+  if (typed == browser.view().typed) return;
+  FolderView view = browser.view();
+  view.typed = typed;
+  browser.setView(std::move(view));
 }
 
 bool pressed(ImGuiKey key) {
@@ -183,10 +214,10 @@ void preview(const Question& question, Parts& parts, float scale) {
   if (ImGui::BeginChild("preview", ImVec2(kPreview * scale, kHeight * scale), true)) {
     const FileBrowser& browser = parts.files.browser;
     const bool scan = browser.chosen() && browser.entry(*browser.chosen()).scan &&
-                      browser.pathOf(*browser.chosen()) == question.path;
+                      browser.pathOf(*browser.chosen()) == parts.files.wholePath(question.path);
     if (scan) {
-      const ThumbnailShelf::Shown shown =
-          parts.files.shelf.find(question.path, parts.readingOf(question.path));
+      const std::string path = browser.pathOf(*browser.chosen());
+      const ThumbnailShelf::Shown shown = parts.files.shelf.find(path, parts.readingOf(path));
       ImGui::PushTextWrapPos(0.0F);
       if (shown.picture != nullptr) {
         const float side = ImGui::GetContentRegionAvail().x;
@@ -196,7 +227,8 @@ void preview(const Question& question, Parts& parts, float scale) {
         for (const std::string& text :
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
           if (!text.empty()) ImGui::TextUnformatted(text.c_str());
-        for (const std::string& warning : shown.picture->warnings) ImGui::TextDisabled("%s", warning.c_str());
+        for (const std::string& warning : shown.picture->warnings)
+          ImGui::TextDisabled("%s", inFieldWords(warning).c_str());
       } else if (shown.problem != nullptr) {
         ImGui::TextUnformatted(shown.problem->what.c_str());
       } else {
@@ -248,16 +280,20 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const auto scale = static_cast<float>(parts.window.scale());
   const bool appears = ImGui::IsWindowAppearing();
   if (appears) {
+    if (question.path.empty()) question.path = firstFolder(parts.recent);
     files.begin(question.path, parts.recent.paths());
     ImGui::SetKeyboardFocusHere();
   }
   const auto before = files.browser.chosen();
   ImGui::SetNextItemWidth(-1.0F);
-  bool confirmed = ImGui::InputText("##path", &question.path,
-                                    ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
-                                        ImGuiInputTextFlags_CallbackHistory,
-                                    moveByKeys, &files.browser);
-  if (!appears && ImGui::IsItemEdited() && files.browser.chosen() == before) files.follow(question.path);
+  bool confirmed =
+      ImGui::InputText("##path", &question.path,
+                       ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
+                           ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackCompletion,
+                       moveByKeys, &files.browser);
+  if (!appears && ImGui::IsItemEdited() && files.browser.chosen() == before)
+    files.follow(question.path, reads(question));
+  narrowByKeys(files.browser);
   const bool paged = pageByKeys(question, files);
   folderLine(question, parts);
   placesList(question, files, scale);
@@ -277,6 +313,10 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   std::error_code error;
   if (as && fs::is_regular_file(question.path, error) && !isSessionPath(question.path)) return Choice::kOther;
   if (!confirmed || question.path.empty()) return std::nullopt;
+  question.path = files.wholePath(question.path);
+  // Part of a name that only one file has is that file.
+  if (reads(question) && !fs::exists(question.path, error) && files.browser.count() == 1)
+    question.path = files.browser.pathOf(0);
   const auto& chosen = files.browser.chosen();
   const std::string folder =
       twice && chosen && files.browser.entry(*chosen).folder ? files.browser.pathOf(*chosen) : question.path;

@@ -1,4 +1,5 @@
 // How a file is read: what it says, what was guessed, and what a person says instead.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -17,95 +18,150 @@ namespace {
 using Choice = Answer::Choice;
 using render::Key;
 
-constexpr float kPicture = 340.0F, kFieldsWidth = 380.0F;  // at scale 1 [pixels]
+constexpr float kPicture = 340.0F, kFieldsWidth = 380.0F, kFoundHeight = 190.0F;  // at scale 1 [pixels]
 
-void text(const char* hint, const char* id, std::string& value, float width) {
-  ImGui::SetNextItemWidth(width);
-  (void)ImGui::InputTextWithHint(id, hint, &value);
+// Said where the cursor is on a field or on its name.
+void explainOption(std::string_view option) {
+  explain(readingField(option).tip);
 }
 
-void typed(const char* name, const char* hint, std::string& value) {
+void nameOf(std::string_view option) {
+  fieldName(std::string(readingField(option).name).c_str());
+  explainOption(option);
+}
+
+void typed(std::string_view option, const char* name, const std::string& hint, std::string& value) {
   fieldName(name);
-  text(hint, (std::string("##") + name).c_str(), value, -1.0F);
+  explainOption(option);
+  ImGui::SetNextItemWidth(-1.0F);
+  (void)ImGui::InputTextWithHint((std::string("##") + name).c_str(), hint.c_str(), &value);
+  explainOption(option);
 }
 
-void choice(const char* name, std::string& value,
+void typed(std::string_view option, const std::string& hint, std::string& value) {
+  typed(option, std::string(readingField(option).name).c_str(), hint, value);
+}
+
+void choice(std::string_view option, std::string& value,
             const std::vector<std::pair<std::string, std::string>>& words) {
-  fieldName(name);
+  nameOf(option);
   const auto now =
       std::find_if(words.begin(), words.end(), [&](const auto& word) { return word.first == value; });
   ImGui::SetNextItemWidth(-1.0F);
-  if (!ImGui::BeginCombo((std::string("##") + name).c_str(),
-                         now != words.end() ? now->second.c_str() : value.c_str()))
+  const bool opened = ImGui::BeginCombo((std::string("##") + std::string(option)).c_str(),
+                                        now != words.end() ? now->second.c_str() : value.c_str());
+  if (!opened) {
+    explainOption(option);
     return;
+  }
   for (const auto& [word, label] : words)
     if (ImGui::Selectable(label.c_str(), word == value)) value = word;
   ImGui::EndCombo();
 }
 
-void unitChoice(std::string& unit) {
-  std::vector<std::pair<std::string, std::string>> words{{"", "as in the file, else mm"}};
+void spacingFields(Files& files) {
+  ImportForm& form = files.form;
+  std::string across = "as in the file", up = across;
+  if (files.found_grid) {
+    const char* const whence = isAssumed(files.found_warnings, "--spacing") ? "guessed" : "in the file";
+    across = fmt::format("{:.6g} {}", files.found_grid->spacing_x, whence);
+    up = fmt::format("{:.6g} {}", files.found_grid->spacing_y, whence);
+  }
+  const bool square = files.found_grid && files.found_grid->spacing_x == files.found_grid->spacing_y;
+  if (square || !form.spacing_x.empty()) up = "as along a row";
+  typed("--spacing", across, form.spacing_x);
+  typed("--spacing", "of the rows", up, form.spacing_y);
+}
+
+void unitChoice(Files& files) {
+  std::string as_it_is = "as in the file, else mm";
+  if (files.found_grid && files.form.unit.empty())
+    as_it_is = fmt::format("{}, {}", files.found_grid->height_unit.name,
+                           isAssumed(files.found_warnings, "--unit") ? "guessed" : "as in the file");
+  std::vector<std::pair<std::string, std::string>> words{{"", as_it_is}};
   for (const std::string& name : engine::lengthUnitNames()) words.emplace_back(name, name);
-  choice("unit", unit, words);
+  choice("--unit", files.form.unit, words);
 }
 
 // Lone values of the scan, to be taken as holes by one click.
 void noData(std::string& value, const ScanThumbnail* picture) {
-  typed("no data", "as in the file", value);
+  typed("--no-data", "as in the file", value);
   if (picture == nullptr) return;
-  for (const engine::LoneValue& lone : picture->lone_values)
+  for (const engine::LoneValue& lone : picture->lone_values) {
     if (ImGui::Button(fmt::format("{} are holes", lone.number).c_str()))
       value = fmt::format("{}", lone.number);
+    explainOption("--no-data");
+  }
 }
 
-void fields(ImportForm& form, const ScanThumbnail* picture) {
-  std::string spacing = "as in the file", unit;
-  if (picture != nullptr && picture->grid) {
-    const engine::Grid& grid = *picture->grid;
-    spacing = fmt::format("{:.6g} now", grid.spacing_x);
-    unit = fmt::format("{} across, {} up", grid.lateral_unit.name, grid.height_unit.name);
-  }
-  beginFields();
-  fieldName("spacing");
-  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  text(spacing.c_str(), "##spacing x", form.spacing_x, half);
-  ImGui::SameLine();
-  text("rows the same", "##spacing y", form.spacing_y, half);
-  unitChoice(form.unit);
-  typed("z scale", "as in the file, else 1", form.z_scale);
-  noData(form.no_data, picture);
-  typed("cell size", "of a cloud of points: by its density", form.cell_size);
-  choice("cell height", form.cell_rule,
-         {{"", "median of its points"}, {"mean", "mean"}, {"highest", "highest"}});
-  fieldName("depth camera");
+// Few pictures are distances: folded unless it is one.
+void cameraFields(ImportForm& form) {
+  const bool said = std::ranges::any_of(form.camera, [](const std::string& text) { return !text.empty(); });
+  ImGui::SetNextItemOpen(said, ImGuiCond_Appearing);
+  const bool open = ImGui::TreeNode("distances from a depth camera");
+  explainOption("--depth-camera");
+  if (!open) return;
   const float quarter = 0.25F * (ImGui::GetContentRegionAvail().x - 3.0F * ImGui::GetStyle().ItemSpacing.x);
   static constexpr std::array kNames{"fx", "fy", "cx", "cy"};
   for (std::size_t i = 0; i < form.camera.size(); ++i) {
     if (i > 0) ImGui::SameLine();
-    text(kNames[i], (std::string("##camera ") + kNames[i]).c_str(), form.camera[i], quarter);
+    ImGui::SetNextItemWidth(quarter);
+    (void)ImGui::InputTextWithHint((std::string("##camera ") + kNames[i]).c_str(), kNames[i],
+                                   &form.camera[i]);
+    explainOption("--depth-camera");
   }
-  endFields();
-  if (!unit.empty()) ImGui::TextDisabled("units now: %s", unit.c_str());
+  ImGui::TreePop();
 }
 
-void found(const ThumbnailShelf::Shown& shown) {
+// Only what can apply to the file.
+void fields(Files& files, const ScanThumbnail* picture) {
+  ImportForm& form = files.form;
+  beginFields();
+  if (files.apply.spacing) spacingFields(files);
+  unitChoice(files);
+  typed("--z-scale", "as in the file, else 1", form.z_scale);
+  noData(form.no_data, picture);
+  if (files.apply.cells) {
+    typed("--cell-size", "by the density of the points", form.cell_size);
+    choice("--cell-rule", form.cell_rule,
+           {{"", "median of its points"}, {"mean", "mean"}, {"highest", "highest"}});
+  }
+  if (files.apply.camera) cameraFields(form);
+  endFields();
+  if (files.found_grid)
+    ImGui::TextDisabled("units now: %s across, %s up", files.found_grid->lateral_unit.name.c_str(),
+                        files.found_grid->height_unit.name.c_str());
+}
+
+void bullets(const std::vector<std::string>& warnings, bool guesses) {
+  for (const std::string& warning : warnings)
+    if (isGuess(warning) == guesses) {
+      ImGui::Bullet();
+      ImGui::TextWrapped("%s", inFieldWords(warning).c_str());
+    }
+}
+
+// What the file says, what a person says, what was guessed.
+void found(const ThumbnailShelf::Shown& shown, const Files& files) {
   ImGui::PushTextWrapPos(0.0F);
   if (shown.problem != nullptr) {
-    ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", shown.problem->line().c_str());
+    ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", inFieldWords(shown.problem->line()).c_str());
   } else if (shown.picture == nullptr) {
     ImGui::TextDisabled("reading");
   } else {
-    for (const std::string& line :
-         {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
+    const ScanThumbnail& picture = *shown.picture;
+    const ReadingSources sources = readingSources(files.reading, picture.warnings, files.apply);
+    for (const std::string& line : {sizeText(picture), extentText(picture), heightsText(picture),
+                                    picture.whole ? sources.file : std::string(), sources.person})
       if (!line.empty()) ImGui::TextUnformatted(line.c_str());
-    if (!shown.picture->whole)
+    if (!picture.whole)
       ImGui::TextDisabled("a coarse look: what is guessed is said when all of it is read");
-    for (const std::string& warning : shown.picture->warnings) {
-      ImGui::Bullet();
-      ImGui::TextWrapped("%s", warning.c_str());
-    }
-    if (shown.picture->whole && shown.picture->warnings.empty())
-      ImGui::TextDisabled("nothing was guessed: the file says it all");
+    else if (anyGuess(picture.warnings))
+      ImGui::TextUnformatted("guessed:");
+    else
+      ImGui::TextDisabled("nothing else was guessed");
+    bullets(picture.warnings, true);
+    bullets(picture.warnings, false);
   }
   ImGui::PopTextWrapPos();
 }
@@ -116,11 +172,16 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   Questions& questions = parts.feedback.questions;
   Files& files = parts.files;
   const auto scale = static_cast<float>(parts.window.scale());
-  if (ImGui::IsWindowAppearing()) files.begin(question.reading.value_or(ScanOptions()));
+  if (ImGui::IsWindowAppearing())
+    files.begin(question.path, question.reading.value_or(ScanOptions()), question.guessed.get());
   ImGui::TextUnformatted(std::filesystem::path(question.path).filename().c_str());
+  if (question.guessed != nullptr)
+    ImGui::TextUnformatted(
+        "It does not say all about its numbers. Say what you know; Enter opens it as it is read below.");
   const auto typed_so_far = files.form.read();
   if (typed_so_far) files.reading = *typed_so_far;
   const ThumbnailShelf::Shown shown = files.shelf.find(question.path, files.reading);
+  if (shown.picture != nullptr) files.noteFound(question.path, *shown.picture);
   ImGui::BeginGroup();
   const ImVec2 size(kPicture * scale, 0.75F * kPicture * scale);
   std::optional<PictureCursor> cursor;
@@ -132,12 +193,13 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   ImGui::EndGroup();
   ImGui::SameLine();
   if (ImGui::BeginChild("fields", ImVec2(kFieldsWidth * scale, 0.75F * kPicture * scale)))
-    fields(files.form, shown.picture);
+    fields(files, shown.picture);
   ImGui::EndChild();
-  if (ImGui::BeginChild("found", ImVec2(0.0F, 110.0F * scale), true)) {
+  if (ImGui::BeginChild("found", ImVec2(0.0F, kFoundHeight * scale), true)) {
     if (!typed_so_far)
-      ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", typed_so_far.error().line().c_str());
-    found(shown);
+      ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s",
+                         inFieldWords(typed_so_far.error().line()).c_str());
+    found(shown, files);
   }
   ImGui::EndChild();
   // What was typed in this frame is read from now on: the window is not at rest before.

@@ -28,9 +28,10 @@ std::string extentText(const ScanThumbnail& picture) {
 std::string heightsText(const ScanThumbnail& picture) {
   if (picture.empty() || !picture.grid) return {};
   const engine::LengthUnit& unit = picture.grid->height_unit;
-  const double low = static_cast<double>(picture.low), high = static_cast<double>(picture.high);
+  const double low = static_cast<double>(picture.lowest), high = static_cast<double>(picture.highest);
   const ReadAs as = readLengthAs(std::max(std::abs(low), std::abs(high)), unit.mm, unit.name);
-  return fmt::format("heights {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name);
+  return fmt::format("heights {}{:.4g} to {:.4g} {}", picture.whole ? "" : "about ", low / as.size,
+                     high / as.size, as.name);
 }
 
 std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {

@@ -11,7 +11,7 @@ namespace fettle::app {
 [[nodiscard]] std::string sizeText(const ScanThumbnail& picture);
 /// "81.9 x 81.9 mm, 20 x 20 um apart", in units that read well.
 [[nodiscard]] std::string extentText(const ScanThumbnail& picture);
-/// "heights -0.31 to 12.4 mm"; empty without heights.
+/// "heights -0.31 to 12.4 mm", "about" where not all was read; empty without heights.
 [[nodiscard]] std::string heightsText(const ScanThumbnail& picture);
 /// "x 12.3  y 4.5 mm  z 7.8 um", "hole" for the height of a hole.
 [[nodiscard]] std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <imgui.h>
@@ -16,14 +17,20 @@ bool section(Settings& settings, const char* name, bool open_at_first) {
   return open;
 }
 
-void noticeList(std::vector<Notice>& notices) {
+void noticeList(std::vector<Notice>& notices, const Act& act) {
   for (const Notice& notice : notices) {
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s%s%s", notice.what.c_str(),
                        notice.remedy.empty() ? "" : ": ", notice.remedy.c_str());
     ImGui::PopTextWrapPos();
   }
-  if (!notices.empty() && ImGui::SmallButton("Understood")) notices.clear();
+  if (notices.empty()) return;
+  if (std::ranges::any_of(notices, &Notice::of_reading)) {
+    if (ImGui::SmallButton("Read as ...")) act(Action::kReadAs);
+    tip(Action::kReadAs);
+    ImGui::SameLine();
+  }
+  if (ImGui::SmallButton("Understood")) notices.clear();
 }
 
 }  // namespace
@@ -39,7 +46,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     ImGui::SetWindowFocus();
     ImGui::SetKeyboardFocusHere();
   }
-  noticeList(parts.feedback.notices);
+  noticeList(parts.feedback.notices, act);
   const PanelContext context{*parts.document.client(), parts.feedback.notices, act, parts.units};
   if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
   if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);

@@ -13,7 +13,6 @@ TEST(Settings, come_back_as_they_were_saved) {
   const tests::TempFolder folder;
   const std::string path = (folder.path() / "window.json").string();
   Settings settings;
-  settings.display.marks = false;
   settings.display.split_at = 0.25;
   settings.display.map = render::ColourMap::kCividis;
   settings.display.heights = {RangeRule::Kind::kAll, 0.99};
@@ -41,6 +40,15 @@ TEST(Settings, come_back_as_they_were_saved) {
   EXPECT_EQ(Settings::load(path).devices, settings.devices);
 }
 
+TEST(Settings, marks_that_are_hidden_are_seen_again_in_the_next_start) {
+  const tests::TempFolder folder;
+  const std::string path = (folder.path() / "window.json").string();
+  Settings settings;
+  settings.display.marks = false;
+  settings.save(path);
+  EXPECT_TRUE(Settings::load(path).display.marks);
+}
+
 TEST(Settings, ends_of_colours_that_were_typed_belong_to_the_scan) {
   const tests::TempFolder folder;
   const std::string path = (folder.path() / "window.json").string();
@@ -56,7 +64,7 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   EXPECT_EQ(Settings::load(path), Settings());
   for (const char* text :
        {"", "no json", "[1, 2]",
-        "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
+        "{\"split_at\": 7, \"light_elevation\": -3, \"vertices\": 12, \"mouse\": \"cat\"}",
         "{\"change_range\": \"typed\", \"change_share\": 0, \"panels\": {\"Tool\": 5}, \"side_width\": "
         "\"wide\", \"colours\": 4}",
         "{\"volume\": 1.5, \"muted\": \"no\"}"}) {
