@@ -93,7 +93,7 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   EXPECT_TRUE(says(page, "9999 are holes"));
   (void)user.look("the page");
   write(user, "as in the file, else 1", "0.001");
-  write(user, "1 now", "0");
+  write(user, "1 in the file", "0");
   (void)user.press("Return");
   program->until("a spacing of 0 is refused",
                  [](const State& s) { return s["dialog"] == "import" && says(s, "give a number above 0"); });
@@ -127,6 +127,82 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   const State remembered = opened(*next);
   EXPECT_EQ(remembered["colours"], again["colours"]);
   quit(later);
+}
+
+TEST_F(WindowTest, what_had_to_be_guessed_is_asked_before_a_scan_is_opened_and_once) {
+  const auto asked = [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; };
+  const std::string counts = writeCounts(folder.file("counts.asc"));
+  const std::string other_counts = writeCounts(folder.file("other.asc"));
+  const auto program = start({});
+  User user(display, *program, "guessed");
+  program->until("an empty window", [](const State& s) { return says(s, "Drop a scan here"); });
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(counts);
+  (void)user.rest();
+  (void)user.press("Return");
+  const State page = program->until("the page by itself", asked);
+  (void)user.look("the page by itself");
+  EXPECT_EQ(page["path"], "") << "nothing is open before";
+  EXPECT_TRUE(says(page, "mm, guessed"));
+  EXPECT_TRUE(says(page, "from the file: spacing"));
+  EXPECT_TRUE(says(page, "heights 100 mm to 9.999 m") || says(page, "to 9.999 m")) << "the true highest";
+  EXPECT_FALSE(says(page, "--")) << "no words of the command line";
+  EXPECT_FALSE(says(page, "cell size")) << "it is no cloud of points";
+  EXPECT_FALSE(says(page, "depth camera"));
+  // Who goes back has opened nothing.
+  (void)user.press("Escape");
+  program->until("the start page",
+                 [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  EXPECT_EQ(program->now()["path"], "");
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(counts);
+  (void)user.rest();
+  (void)user.press("Return");
+  program->until("the page again", asked);
+  (void)user.click("9999 are holes");
+  const State said = user.rest();
+  EXPECT_TRUE(says(said, "as you say: no data 9999")) << said["texts"].dump();
+  EXPECT_TRUE(says(said, "guessed:")) << "the unit still is";
+  (void)user.press("Return");
+  const State read =
+      program->until("the scan", [&](const State& s) { return s["path"] == counts && s["settled"] == true; });
+  EXPECT_TRUE(says(read, "is read as you said: no data 9999"));
+  EXPECT_FALSE(says(read, "--"));
+  // Its button leads to the page.
+  (void)user.click("Read as ...");
+  program->until("the page from the notice", asked);
+  (void)user.press("Escape");
+  // As it was guessed, by Enter; it is not asked a second time.
+  const std::uint32_t window = other.windowOf("fettle");
+  EXPECT_EQ(other.drop(window, {other_counts}), "");
+  program->until("the page of the other", asked);
+  (void)user.press("Return");
+  program->until("the other",
+                 [&](const State& s) { return s["path"] == other_counts && s["settled"] == true; });
+  for (const std::string& path : {counts, other_counts}) {
+    EXPECT_EQ(other.drop(window, {path}), "");
+    program->until("opened at once", [&](const State& s) {
+      EXPECT_NE(s["dialog"], "import") << path;
+      return s["path"] == path && s["settled"] == true;
+    });
+  }
+  quit(user);
+}
+
+TEST_F(WindowTest, a_scan_of_the_command_line_is_opened_at_once_and_says_what_was_guessed) {
+  const std::string counts = writeCounts(folder.file("counts.asc"));
+  const auto program = start({counts});
+  User user(display, *program, "command line");
+  const State read = opened(*program);
+  const std::string notices = read["notices"].dump();
+  EXPECT_NE(notices.find("mm is assumed: set"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("to 9999\""), std::string::npos) << notices;
+  EXPECT_TRUE(says(read, "Read as ...")) << "a button for the page";
+  EXPECT_FALSE(says(read, "--"));
+  (void)user.look("opened");
+  quit(user);
 }
 
 TEST_F(WindowTest, the_start_page_shows_what_was_opened_last_and_has_a_sample) {
