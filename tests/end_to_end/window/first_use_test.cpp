@@ -132,7 +132,7 @@ TEST_F(FirstUseTest, a_filter_of_marks_alone_says_that_nothing_is_marked) {
   (void)user.key("p");
   program->until("the preview",
                  [](const State& s) { return !s["variants"].empty() && s["settled"] == true; });
-  EXPECT_TRUE(user.readsScrolled("nothing is marked")) << program->now()["texts"];
+  EXPECT_TRUE(hasWords(program->now(), "nothing is marked")) << program->now()["texts"];
   (void)user.look("nothing is marked");
   quit(user);
 }
