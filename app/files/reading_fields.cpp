@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
+
 namespace fettle::app {
 namespace {
 
@@ -114,6 +117,14 @@ std::string readingText(const ScanOptions& reading) {
   if (!reading.depth_camera.empty())
     say("--depth-camera", fmt::format("{}", fmt::join(reading.depth_camera, " ")));
   return fmt::format("{}", fmt::join(said, ", "));
+}
+
+std::string formatByName(const std::string& path) {
+  const std::string extension = engine::extensionOf(path);
+  for (const engine::FormatInfo& format : engine::formats())
+    if (std::ranges::find(format.extensions, extension) != format.extensions.end())
+      return std::string(format.name);
+  return {};
 }
 
 FieldsThatApply fieldsThatApply(std::string_view format, bool counts) {

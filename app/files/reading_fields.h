@@ -36,6 +36,9 @@ struct ReadingField {
 /// "unit mm, no data 0": what was said of a file, by the names of the fields; empty where nothing was.
 [[nodiscard]] std::string readingText(const ScanOptions& reading);
 
+/// The name of the format that a file seems to be of by its extension, before it is read; may be empty.
+[[nodiscard]] std::string formatByName(const std::string& path);
+
 /// Which fields can apply to a file of a format (FormatInfo::name).
 struct FieldsThatApply {
   bool spacing = true;  ///< samples in rows and columns

@@ -1,11 +1,8 @@
 #include "app/window/files.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "app/files/sample_part.h"
-#include "engine/formats/formats.h"
-#include "engine/io/files/input_file.h"
 
 namespace fettle::app {
 namespace {
@@ -18,15 +15,6 @@ std::string folderOf(const std::string& typed) {
   if (!path.has_filename() && path.has_relative_path()) path = path.parent_path();
   if (fs::is_directory(path, error)) return path.string();
   return fs::is_directory(path.parent_path(), error) ? path.parent_path().string() : std::string();
-}
-
-// The format of a file by its extension: what it seems to be before it is read.
-std::string formatByName(const std::string& path) {
-  const std::string extension = engine::extensionOf(path);
-  for (const engine::FormatInfo& format : engine::formats())
-    if (std::ranges::find(format.extensions, extension) != format.extensions.end())
-      return std::string(format.name);
-  return {};
 }
 
 }  // namespace
