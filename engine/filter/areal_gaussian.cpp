@@ -19,6 +19,7 @@
 #include "engine/field/tile.h"
 #include "engine/filter/filter_work.h"
 #include "engine/filter/gaussian_plane.h"
+#include "engine/filter/gaussian_strip.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/surface_pass.h"
 
@@ -34,7 +35,8 @@ class ArealGaussian {
         x_(gaussianAxis(spec.nesting_mm / reader_.grid().spacingXMm(), reader_.width())),
         y_(gaussianAxis(spec.nesting_mm / reader_.grid().spacingYMm(), reader_.height())),
         level_(level),
-        sums_(x_, y_, level) {}
+        sums_(x_, y_, level),
+        strips_(x_, y_, level) {}
 
   // Weights are those of `weights` from now on. False when cancelled.
   bool prepare(const SampleWeights& weights, const JobControl& job) {
@@ -45,6 +47,8 @@ class ArealGaussian {
   }
 
   bool fill(const SampleRect& rect, float* out, std::ptrdiff_t stride, const JobControl& job) {
+    if (x_.step == 1 && y_.step == 1)
+      return strips_.fill(reader_, weights_, rect, strip_scratches_.local(), out, stride, job);
     GaussianPlane::Scratch& scratch = scratches_.local();
     if (!inBlocks()) {
       sums_.fill(rect, scratch, out, stride);
@@ -63,7 +67,9 @@ class ArealGaussian {
   GaussianAxis x_, y_;
   CpuLevel level_;
   GaussianPlane sums_;
+  GaussianStrips strips_;
   SampleWeights weights_;
+  tbb::enumerable_thread_specific<GaussianStrips::Scratch> strip_scratches_;
   tbb::enumerable_thread_specific<GaussianPlane::Scratch> scratches_;
 };
 
