@@ -1,6 +1,7 @@
 #include "app/commands/command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -19,7 +20,11 @@ namespace {
 std::string text(const Report& value) {
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{:.9g}", value.get<double>());
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    // What could not be found; null in JSON.
+    return std::isfinite(number) ? fmt::format("{:.9g}", number) : "-";
+  }
   return value.dump();
 }
 

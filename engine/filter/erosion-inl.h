@@ -11,22 +11,6 @@ inline void lesserOf(const float* a, const float* b, float* out, int n) noexcept
   for (int i = 0; i < n; i += kLanes) store(out + i, lesser(load<Floats>(a + i), load<Floats>(b + i)));
 }
 
-// Lowers one[i] and other[i] to the lesser of a[i] and b[i].
-inline void lowerTwo(const float* a, const float* b, float* one, float* other, int n) noexcept {
-  for (int i = 0; i < n; i += kLanes) {
-    const Floats low = lesser(load<Floats>(a + i), load<Floats>(b + i));
-    store(one + i, lesser(load<Floats>(one + i), low));
-    store(other + i, lesser(load<Floats>(other + i), low));
-  }
-}
-
-inline void lowerOne(const float* a, const float* b, float* one, int n) noexcept {
-  for (int i = 0; i < n; i += kLanes) {
-    const Floats low = lesser(load<Floats>(a + i), load<Floats>(b + i));
-    store(one + i, lesser(load<Floats>(one + i), low));
-  }
-}
-
 // 64 columns: out[r] = least of rows first + r .. first + r + window - 1 of `in`, r in 0 .. out_rows; rows outside 0 .. rows
 // have no sample. Blocks of `window` rows: each result is the least of the end of one and the beginning of the next
 // (M. van Herk, A fast algorithm for local minimum and maximum filters, 1992; J. Gil, M. Werman, 1993). `ends`: 64 times the

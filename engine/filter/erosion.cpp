@@ -16,6 +16,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/filter/disk_erosion.h"
+#include "engine/filter/erosion_rows.h"
 #include "engine/simd/kernel.h"
 
 namespace fettle::engine {
@@ -25,7 +27,6 @@ namespace {
 #define FETTLE_KERNEL "engine/filter/erosion-inl.h"
 #include "engine/simd/each_cpu-inl.h"
 
-constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr double kNoDepth = std::numeric_limits<double>::infinity();
 // A radius of three spacings reaches three samples, though 3 * 0.1 / 0.1 is less.
 constexpr double kRoundUp = 1.0 + 1e-9;
@@ -35,28 +36,8 @@ constexpr std::int32_t kStrip = 64;            // columns of leastDown
 constexpr std::int32_t kWide = 16, kHigh = 8;  // results of lowerToBlock
 constexpr std::int32_t kBlock = 8, kMany = 8;  // samples of a block's side, blocks of a larger one's
 
-// f(begin, end) for parts of [0, count), on all workers or on this thread alone.
-void inParts(std::int32_t count, std::int32_t part, bool parallel, const auto& f) {
-  if (!parallel) return f(0, count);
-  tbb::parallel_for(tbb::blocked_range<std::int32_t>(0, (count + part - 1) / part, 1),
-                    [&](const tbb::blocked_range<std::int32_t>& range) {
-                      for (std::int32_t i = range.begin(); i != range.end(); ++i)
-                        f(i * part, std::min((i + 1) * part, count));
-                    });
-}
-
 std::int32_t reachIn(double length, double spacing, std::int32_t samples) {
   return static_cast<std::int32_t>(std::min(std::floor(length / spacing * kRoundUp), samples - 1.0));
-}
-
-// The samples of a row that elements around columns [c0, c0 + n) reach, in `line` from c0 - reach on.
-void takeRow(const Patch<float>& from, std::int32_t row, std::int32_t c0, std::int32_t n, std::int32_t reach,
-             float* line) {
-  const std::int32_t begin = std::max(c0 - reach, from.rect.column);
-  const std::int32_t end = std::min(c0 + n + reach, from.rect.column + from.rect.columns);
-  std::fill_n(line, begin - (c0 - reach), kNone);
-  std::copy_n(from.row(row) + (begin - from.rect.column), end - begin, line + (begin - (c0 - reach)));
-  std::fill_n(line + (end - (c0 - reach)), c0 + n + reach - end + 64, kNone);
 }
 
 bool erodeRectangle(const FlatElement& element, const Patch<float>& from, Patch<float>& to, bool parallel,
@@ -92,66 +73,6 @@ bool erodeRectangle(const FlatElement& element, const Patch<float>& from, Patch<
            ends.data(), out.data(), kStrip, to.rect.rows);
       for (std::int32_t r = 0; r < to.rect.rows; ++r)
         std::copy_n(out.data() + r * kStrip, wide, to.row(to.rect.row + r) + c);
-    }
-  });
-  return !job.cancelled();
-}
-
-// Where the least of a row's samples within `half` of each column lies in the rows of least of 1, 2, 4 ... samples.
-struct Chord {
-  int power = 0;
-  std::ptrdiff_t begin = 0, other = 0;
-};
-
-bool erodeDisk(const FlatElement& element, const Patch<float>& from, Patch<float>& to, bool parallel,
-               CpuLevel level, ErosionScratch& scratch, const JobControl& job) {
-  const auto lesserRow = FETTLE_AT_LEVEL(level, lesserOf);
-  const auto two = FETTLE_AT_LEVEL(level, lowerTwo);
-  const auto one = FETTLE_AT_LEVEL(level, lowerOne);
-  std::vector<Chord> chords;
-  for (const std::int32_t half : element.half) {
-    const int power = std::max(static_cast<int>(std::bit_width(static_cast<unsigned>(2 * half + 1))) - 1, 0);
-    chords.push_back({power, element.columns - half, element.columns + half + 1 - (1 << power)});
-  }
-  const int powers = std::bit_width(static_cast<unsigned>(2 * element.columns + 1));
-  // Strips of columns and rows whose results stay near the core.
-  constexpr std::int32_t kColumnsAtOnce = 128;
-  const std::int32_t n = to.rect.columns, bands = (n + kColumnsAtOnce - 1) / kColumnsAtOnce;
-  const std::int32_t rows_at_once = std::max(kRowsAtOnce, 2 * element.rows);
-  const std::int32_t parts = (to.rect.rows + rows_at_once - 1) / rows_at_once;
-  inParts(bands * parts, 1, parallel, [&](std::int32_t begin, std::int32_t stop) {
-    std::vector<float> own, results;
-    std::vector<float>& line = parallel ? own : scratch.line;
-    for (std::int32_t i = begin; i < stop; ++i) {
-      const std::int32_t c0 = to.rect.column + i % bands * kColumnsAtOnce;
-      const std::int32_t wide = std::min(kColumnsAtOnce, to.rect.column + n - c0);
-      const std::int32_t r0 = to.rect.row + i / bands * rows_at_once;
-      const std::int32_t r1 = std::min(r0 + rows_at_once, to.rect.row + to.rect.rows);
-      const std::ptrdiff_t length = wide + 2 * element.columns + 128, room = (wide + 31) / 16 * 16;
-      line.resize(static_cast<std::size_t>(length * powers));
-      results.assign(static_cast<std::size_t>(room * (r1 - r0)), kNone);
-      const std::int32_t last = std::min(r1 + element.rows, from.rect.row + from.rect.rows);
-      for (std::int32_t r = std::max(r0 - element.rows, from.rect.row); r < last; ++r) {
-        if (job.cancelled()) return;
-        takeRow(from, r, c0, wide, element.columns, line.data());
-        for (int k = 1; k < powers; ++k)
-          lesserRow(line.data() + (k - 1) * length, line.data() + (k - 1) * length + (1 << (k - 1)),
-                    line.data() + k * length, wide + 2 * element.columns + 1 - (1 << k));
-        for (std::int32_t d = 0; d <= element.rows; ++d) {
-          const Chord& chord = chords[static_cast<std::size_t>(d)];
-          const float* const a = line.data() + chord.power * length + chord.begin;
-          const float* const b = line.data() + chord.power * length + chord.other;
-          float* const above = r + d >= r0 && r + d < r1 ? results.data() + (r + d - r0) * room : nullptr;
-          float* const below =
-              d > 0 && r - d >= r0 && r - d < r1 ? results.data() + (r - d - r0) * room : nullptr;
-          if (above != nullptr && below != nullptr)
-            two(a, b, above, below, wide);
-          else if (above != nullptr || below != nullptr)
-            one(a, b, above != nullptr ? above : below, wide);
-        }
-      }
-      for (std::int32_t r = r0; r < r1; ++r)
-        std::copy_n(results.data() + (r - r0) * room, wide, to.row(r) + (c0 - to.rect.column));
     }
   });
   return !job.cancelled();
@@ -374,7 +295,7 @@ const double* BallElement::tableRow(std::int64_t row) const noexcept {
 bool erode(const FlatElement& element, const Patch<float>& from, Patch<float>& to, bool parallel,
            CpuLevel level, ErosionScratch& scratch, const JobControl& job) {
   return element.half.empty() ? erodeRectangle(element, from, to, parallel, level, scratch, job)
-                              : erodeDisk(element, from, to, parallel, level, scratch, job);
+                              : erodeDisk(element, from, to, parallel, level, job);
 }
 
 bool erode(const BallElement& element, const Patch<double>& from, Patch<double>& to, bool parallel,

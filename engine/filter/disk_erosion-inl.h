@@ -1,0 +1,58 @@
+// The kernels of disk_erosion.cpp; see each_cpu-inl.h.
+
+// out[i] = the lesser of a[i] and b[i], i in 0 .. n rounded up to 16.
+inline void lesserOf(const float* a, const float* b, float* out, int n) noexcept {
+  for (int i = 0; i < n; i += kLanes) store(out + i, lesser(load<Floats>(a + i), load<Floats>(b + i)));
+}
+
+// Lowers one[i] and other[i] to the lesser of a[i] and b[i].
+inline void lowerTwo(const float* a, const float* b, float* one, float* other, int n) noexcept {
+  for (int i = 0; i < n; i += kLanes) {
+    const Floats low = lesser(load<Floats>(a + i), load<Floats>(b + i));
+    store(one + i, lesser(load<Floats>(one + i), low));
+    store(other + i, lesser(load<Floats>(other + i), low));
+  }
+}
+
+inline void lowerOne(const float* a, const float* b, float* one, int n) noexcept {
+  for (int i = 0; i < n; i += kLanes) {
+    const Floats low = lesser(load<Floats>(a + i), load<Floats>(b + i));
+    store(one + i, lesser(load<Floats>(one + i), low));
+  }
+}
+
+// Four rows of 64 results from `column` on: of each the least of `count` rows' chords, the lesser of what lies at two places of its
+// row; those of the j-th begin at rows[j]. Together, because a row lies nearer than the second time. count at least 1.
+inline void leastOfChords(const float* const* rows, std::ptrdiff_t column, const std::ptrdiff_t* one,
+                          const std::ptrdiff_t* other, int count, float* out) noexcept {
+  constexpr int kRows = 4, kWide = FETTLE_LEVEL == 2 ? 4 : 1;
+  for (int c = 0; c < 4 * kLanes; c += kWide * kLanes) {
+    Floats low[kRows][kWide];
+#pragma GCC unroll 4
+    for (int j = 0; j < kRows; ++j)
+#pragma GCC unroll 4
+      for (int k = 0; k < kWide; ++k) low[j][k] = Floats{} + __builtin_inff();
+    const auto take = [&](int i, int j) __attribute__((always_inline)) {
+      const float* const a = rows[i] + column + c + one[i - j];
+      const float* const b = rows[i] + column + c + other[i - j];
+#pragma GCC unroll 4
+      for (int k = 0; k < kWide; ++k) {
+        const Floats chord = lesser(load<Floats>(a + k * kLanes), load<Floats>(b + k * kLanes));
+        low[j][k] = lesser(low[j][k], chord);
+      }
+    };
+#pragma GCC unroll 4
+    for (int j = 0; j < kRows; ++j) {
+      for (int i = j; i < kRows - 1 && i < j + count; ++i) take(i, j);
+      for (int i = count > kRows - 1 ? count : kRows - 1; i < j + count; ++i) take(i, j);
+    }
+    for (int i = kRows - 1; i < count; ++i) {
+#pragma GCC unroll 4
+      for (int j = 0; j < kRows; ++j) take(i, j);
+    }
+#pragma GCC unroll 4
+    for (int j = 0; j < kRows; ++j)
+#pragma GCC unroll 4
+      for (int k = 0; k < kWide; ++k) store(out + j * 4 * kLanes + c + k * kLanes, low[j][k]);
+  }
+}
