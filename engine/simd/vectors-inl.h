@@ -62,6 +62,49 @@ FETTLE_INLINE Vector greater(const Vector& a, const Vector& b) noexcept {
   return a > b ? a : b;
 }
 
+// Of floats register by register where one does not hold all: GCC takes a comparison of wider vectors apart to single numbers.
+// The instructions are the expressions above, NaNs and zeros of both signs included.
+#if defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL < 2
+#if FETTLE_LEVEL == 1
+using Register = __m256;
+FETTLE_INLINE Register lesserOne(const Register& a, const Register& b) noexcept {
+  return _mm256_min_ps(a, b);
+}
+FETTLE_INLINE Register greaterOne(const Register& a, const Register& b) noexcept {
+  return _mm256_max_ps(a, b);
+}
+#else
+using Register = __m128;
+FETTLE_INLINE Register lesserOne(const Register& a, const Register& b) noexcept {
+  return _mm_min_ps(a, b);
+}
+FETTLE_INLINE Register greaterOne(const Register& a, const Register& b) noexcept {
+  return _mm_max_ps(a, b);
+}
+#endif
+FETTLE_INLINE Register registerOf(const Floats& v, std::size_t at) noexcept {
+  Register part;
+  std::memcpy(&part, reinterpret_cast<const char*>(&v) + at, sizeof part);
+  return part;
+}
+FETTLE_INLINE Floats lesser(const Floats& a, const Floats& b) noexcept {
+  Floats all;
+  for (std::size_t at = 0; at < sizeof all; at += sizeof(Register)) {
+    const Register one = lesserOne(registerOf(a, at), registerOf(b, at));
+    std::memcpy(reinterpret_cast<char*>(&all) + at, &one, sizeof one);
+  }
+  return all;
+}
+FETTLE_INLINE Floats greater(const Floats& a, const Floats& b) noexcept {
+  Floats all;
+  for (std::size_t at = 0; at < sizeof all; at += sizeof(Register)) {
+    const Register one = greaterOne(registerOf(a, at), registerOf(b, at));
+    std::memcpy(reinterpret_cast<char*>(&all) + at, &one, sizeof one);
+  }
+  return all;
+}
+#endif
+
 FETTLE_INLINE Doubles widened(const HalfFloats& v) noexcept {
 #if FETTLE_LEVEL == 2
   return _mm512_cvtps_pd(v);
