@@ -50,7 +50,7 @@ inline void alongStrip(const double* in, const double* weights, int taps, double
 // Four rows of 64 sums: to[64 * j + i] = sum over t of weights[t] * rows[j + t][i]. taps at least 4.
 inline void downStrip(const double* const* rows, const double* weights, int taps, double* to) noexcept {
   constexpr int kRows = 4;
-  constexpr int kTogether = FETTLE_LEVEL == 2 ? 4 : FETTLE_LEVEL == 1 ? 1 : 1;
+  constexpr int kTogether = FETTLE_LEVEL == 2 ? 4 : 1;
   for (int i = 0; i < 64; i += 8 * kTogether) {
     Doubles sum[kRows][kTogether] = {};
     // The sums of rows [from, to) that row t of those read is in, constants after unrolling.

@@ -8,11 +8,14 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "engine/filter/gaussian_plane.h"
+#include "engine/filter/gaussian_strip.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/region.h"
 #include "tests/engine/filter/reference.h"
@@ -202,6 +205,42 @@ TEST(ArealGaussian, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
           }
       ASSERT_EQ(contentHash(applyFilter(field.inverted(), field, spec, job)->field.inverted()), one)
           << cut_off;
+    }
+}
+
+// Short cut-offs go by strips, whose sums are those of planes.
+TEST(ArealGaussian, HasTheBitsOfPlanesInStrips) {
+  JobControl job;
+  for (const bool holes : {false, true})
+    for (const auto& [width, height] : {std::pair{150, 130}, {70, 3}, {1, 90}, {65, 66}}) {
+      const Standard scan{"rough", width, height, 1.0, 1.0, 0.0, [holes](int c, int r) {
+                            return holes && c > 20 && c < 40 && r > 60 && r < 75
+                                       ? std::nan("")
+                                       : std::sin(3.1 * c + 1.7 * r * r) + 0.01 * c;
+                          }};
+      const Version field = versionOf(scan);
+      const FieldReader reader = field.reader();
+      const SampleRect all{0, 0, width, height};
+      for (const double cut_off : {0.5, 2.0, 6.5, 17.0}) {
+        const GaussianAxis x = gaussianAxis(cut_off, width), y = gaussianAxis(1.3 * cut_off, height);
+        if (x.step != 1 || y.step != 1) continue;
+        const std::ptrdiff_t stride = (width + 31) / 16 * 16;
+        std::vector<float> of_plane(static_cast<std::size_t>(stride * height + 16)), of_strips = of_plane;
+        GaussianPlane plane(x, y, CpuLevel::kPlain);
+        ASSERT_TRUE(plane.make(reader, {}, all, false, job));
+        GaussianPlane::Scratch scratch;
+        plane.fill(all, scratch, of_plane.data(), stride);
+        GaussianStrips::Scratch strip_scratch;
+        ASSERT_TRUE(GaussianStrips(x, y, bestCpuLevel())
+                        .fill(reader, {}, all, strip_scratch, of_strips.data(), stride, job));
+        for (int r = 0; r < height; ++r)
+          for (int c = 0; c < width; ++c) {
+            const auto at = static_cast<std::size_t>(r * stride + c);
+            ASSERT_TRUE(sameBits(of_strips[at], of_plane[at]) ||
+                        (std::isnan(of_strips[at]) && std::isnan(of_plane[at])))
+                << cut_off << ", " << c << ", " << r;
+          }
+      }
     }
 }
 
