@@ -1,4 +1,5 @@
 #include "render/live/live_frame.h"
+#include "render/live/panel_pass.h"
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/descriptor_writes.h"
 
@@ -11,25 +12,9 @@ namespace {
 
 constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
 
-vk::Rect2D rectOf(const Rectangle& r) {
-  return {
-      {r.x, r.y},
-      {static_cast<std::uint32_t>(std::max(0, r.width)), static_cast<std::uint32_t>(std::max(0, r.height))}};
-}
-
 vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
   return redraw == LiveFrame::Redraw::kParts ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear;
 }
-
-constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
-constexpr auto kDepth = vk::ImageAspectFlagBits::eDepth;
-constexpr auto kDepthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
-constexpr auto kDepthAccess = Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite;
-constexpr auto kColourAccess = Access::eColorAttachmentRead | Access::eColorAttachmentWrite;
-const Barriers::Access kColourWritten{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
-                                      Access::eColorAttachmentWrite};
-const Barriers::Access kColourUsed{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
-                                   kColourAccess};
 
 // The same bytes, read as code values and not as amounts of light.
 vk::Format codesOf(vk::Format colour) {
@@ -51,28 +36,6 @@ vk::Extent2D halfOf(vk::Extent2D extent) {
   return everyNth(extent, 2);
 }
 
-// The pixels of a layer that a part of the picture touches.
-Rectangle scaled(const Rectangle& r, float scale) {
-  if (scale >= 1.0F) {
-    const int rays = static_cast<int>(scale);
-    return {rays * r.x, rays * r.y, rays * r.width, rays * r.height};
-  }
-  const int step = static_cast<int>(std::lround(1.0F / scale));
-  const int x = r.x / step, y = r.y / step;
-  return {x, y, (r.x + r.width + step - 1) / step - x, (r.y + r.height + step - 1) / step - y};
-}
-
-vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, vk::AttachmentLoadOp load,
-                                       vk::ClearValue clear = {}) {
-  vk::RenderingAttachmentInfo info;
-  info.setImageView(view)
-      .setImageLayout(layout)
-      .setLoadOp(load)
-      .setStoreOp(vk::AttachmentStoreOp::eStore)
-      .setClearValue(clear);
-  return info;
-}
-
 Pipelines::Paged pagedOf(const LivePanel& p) {
   return p.variant.on_demand ? Pipelines::Paged::kByNeed
          : p.variant.paged   ? Pipelines::Paged::kYes
@@ -84,10 +47,6 @@ Pipelines::Holes holesOf(const LivePanel& p) {
 
 const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
   return redraw == LiveFrame::Redraw::kAll ? p.visible : p.redraw;
-}
-
-bool hasStylus(std::span<const LivePanel> panels) {
-  return std::ranges::any_of(panels, [](const LivePanel& p) { return p.stylus && !empty(p.visible); });
 }
 
 // Clears a part of the attachment of the current rendering.
@@ -103,7 +62,8 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
       colour_(colour),
       layers_(views == Pipelines::Views::kBoth ? 2 : 1),
       view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
-      pipelines_(context, colour, views) {
+      pipelines_(context, colour, views),
+      stylus_(pipelines_, view_mask_) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
   constexpr std::uint32_t kSets = kSlots * (6 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
@@ -126,6 +86,12 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
         *set = setOf(pipelines_.sceneSet());
     slot.picture = setOf(pipelines_.pictureSet());
   }
+}
+
+std::array<vk::DescriptorSet, kMostPanels> LiveFrame::Slot::styluses() const {
+  std::array<vk::DescriptorSet, kMostPanels> sets;
+  std::ranges::transform(panels, sets.begin(), [](const PanelSets& p) { return *p.stylus; });
+  return sets;
 }
 
 void LiveFrame::uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging,
@@ -294,29 +260,9 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
   writes.apply(context_.device());
 }
 
-// Shaders count pixels of the whole picture, whatever the scale.
-void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel,
-                           const Rectangle& part, float scale) {
-  const vk::Rect2D plot = rectOf(panel.plot);
-  commands.setViewport(
-      0, vk::Viewport{scale * static_cast<float>(plot.offset.x), scale * static_cast<float>(plot.offset.y),
-                      scale * static_cast<float>(plot.extent.width),
-                      scale * static_cast<float>(plot.extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, rectOf(scaled(part, scale)));
-  const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
-  commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
-}
-
-void LiveFrame::instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline,
-                          vk::DescriptorSet set, std::uint32_t vertices, std::size_t first,
-                          std::size_t count) const {
-  commands.bindPipeline(kGraphics, pipeline);
-  commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
-  commands.draw(vertices, static_cast<std::uint32_t>(count), 0, static_cast<std::uint32_t>(first));
-}
-
 void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
                             std::span<const LivePanel> panels, const Layers& layers, Redraw redraw) {
+  const PanelDraws draws(commands, pipelines_.sceneLayout());
   using Geometry = Pipelines::Geometry;
   const vk::RenderingAttachmentInfo depth =
       attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(redraw),
@@ -331,21 +277,21 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    beginPanel(commands, p, part, layers.scale);
+    draws.begin(p, part, layers.scale);
     if (redraw == Redraw::kParts)
       clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, scaled(part, layers.scale));
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
     const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
     if (whole > 0)
-      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
-                *sets.surface, gpu::kPatchVertices, 0, whole);
+      draws.instances(pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
+                      *sets.surface, gpu::kPatchVertices, 0, whole);
     if (whole < all)
-      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
-                *sets.surface, gpu::kPatchVertices, whole, all - whole);
+      draws.instances(pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
+                      *sets.surface, gpu::kPatchVertices, whole, all - whole);
     if (!p.choice->seams.empty())
-      instances(commands, pipelines_.depth({Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
-                gpu::kSeamStripVertices, 0, 2 * p.choice->seams.size());
+      draws.instances(pipelines_.depth({Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
+                      gpu::kSeamStripVertices, 0, 2 * p.choice->seams.size());
   }
   commands.endRendering();
 }
@@ -353,6 +299,7 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
 void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                            std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
                            Redraw redraw, HiddenLines lines) {
+  const PanelDraws draws(commands, pipelines_.sceneLayout());
   const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
   const vk::RenderingAttachmentInfo cleared =
       attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
@@ -368,9 +315,9 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Rectangle& part = partOf(panels[i], redraw);
     if (empty(part)) continue;
-    beginPanel(commands, panels[i], part, layers.scale);
+    draws.begin(panels[i], part, layers.scale);
     if (redraw == Redraw::kParts) clear(commands, kColour, nothing, scaled(part, layers.scale));
-    instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
+    draws.instances(pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
 
@@ -390,70 +337,33 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    beginPanel(commands, p, part, layers.scale);
+    draws.begin(p, part, layers.scale);
     // The plate is only visible through holes.
-    if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
+    if (p.variant.holes) draws.instances(pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
     if (!p.choice->walls.empty())
-      instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
-                0, p.choice->walls.size());
+      draws.instances(pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices, 0,
+                      p.choice->walls.size());
   }
   // Over the copy they move without shading the surface again.
   if (lines == HiddenLines::kInBase)
     recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
   commands.endRendering();
-  if (lines == HiddenLines::kInBase && hasStylus(panels))
-    recordStylus(commands, slot, panels, layers.depth, layers.base.view(), layers.base.image(), layers.scale);
-}
-
-void LiveFrame::recordStylus(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                             std::span<const LivePanel> panels, const GpuImage& depth, vk::ImageView colour,
-                             vk::Image colour_image, float scale) {
-  const Barriers::Access tested{ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess};
-  const Barriers::Access read{ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
-                              Access::eDepthStencilAttachmentRead | Access::eShaderRead};
-  Barriers before;
-  before.add(depth.image(), kDepth, tested, read);
-  before.add(colour_image, kColour, kColourWritten, kColourUsed);
-  before.record(commands);
-  const vk::RenderingAttachmentInfo over =
-      attachment(colour, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
-  const vk::RenderingAttachmentInfo against =
-      attachment(depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
-  vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, depth.extent()})
-      .setLayerCount(1)
-      .setViewMask(view_mask_)
-      .setColorAttachments(over)
-      .setPDepthAttachment(&against);
-  commands.beginRendering(rendering);
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const LivePanel& p = panels[i];
-    if (empty(p.visible) || !p.stylus) continue;
-    beginPanel(commands, p, p.visible, scale);
-    const vk::DescriptorSet set = *slot.panels[i].stylus;
-    if (p.stylus->shadow.x > 0.0F)
-      instances(commands, pipelines_.stylus(Pipelines::Stylus::kShadow), set, 4, 0, 1);
-    const std::size_t bodies = p.stylus->shadow.w > 0.0F ? 2 : 1;
-    for (const auto pass : {Pipelines::Stylus::kHidden, Pipelines::Stylus::kSeen})
-      instances(commands, pipelines_.stylus(pass), set, gpu::kStylusVertices, 0, bodies);
-  }
-  commands.endRendering();
-  Barriers after;
-  after.add(depth.image(), kDepth, read, tested);
-  after.add(colour_image, kColour, kColourWritten, kColourUsed);
-  after.record(commands);
+  if (lines == HiddenLines::kInBase && StylusPass::neededBy(panels))
+    stylus_.record(commands, panels, slot.styluses(),
+                   {layers.depth, layers.base.view(), layers.base.image(), layers.scale});
 }
 
 void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                             std::span<const LivePanel> panels, Pipelines::Lines depth, float scale) {
+  const PanelDraws draws(commands, pipelines_.sceneLayout());
   const bool in_scene = depth == Pipelines::Lines::kInScene;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
     const std::vector<gpu::Line>& lines = in_scene ? p.in_scene : p.on_top;
     if (empty(p.visible) || lines.empty()) continue;
-    beginPanel(commands, p, p.visible, scale);
-    instances(commands, pipelines_.lines(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top,
-              4, 0, lines.size());
+    draws.begin(p, p.visible, scale);
+    draws.instances(pipelines_.lines(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top, 4,
+                    0, lines.size());
   }
 }
 
@@ -519,7 +429,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
   const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
   const auto reads = copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{};
-  const bool stylus = in_scene && hasStylus(panels);
+  const bool stylus = in_scene && StylusPass::neededBy(panels);
   if (!lines && !stylus && !target.over) {
     change(commands, target.image, ImageLayout::eTransferDstOptimal, target.leaves_as, Stage::eCopy,
            Access::eTransferWrite, next, reads);
@@ -547,7 +457,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
     if (in_scene) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, 1.0F);
     if (stylus) {
       commands.endRendering();
-      recordStylus(commands, slot, panels, whole_.depth, target.view, target.image, 1.0F);
+      stylus_.record(commands, panels, slot.styluses(), {whole_.depth, target.view, target.image});
       commands.beginRendering(rendering);
     }
     recordLines(commands, slot, panels, Pipelines::Lines::kOnTop, 1.0F);

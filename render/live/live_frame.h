@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "render/config.h"
-#include "render/detail/patches.h"
+#include "render/live/live_panel.h"
 #include "render/live/live_picture.h"
 #include "render/live/resize.h"
+#include "render/live/stylus_pass.h"
 #include "render/plan/glyphs.h"
 #include "render/plan/plan.h"
 #include "render/residency/live_texture.h"
@@ -18,23 +19,6 @@
 #include "render/vulkan/submissions.h"
 
 namespace fettle::render {
-
-/// One panel of a live frame.
-struct LivePanel {
-  Rectangle plot;     ///< where the camera's picture lies [px]
-  Rectangle visible;  ///< the part of it that is drawn
-  Rectangle redraw;   ///< the part of that which is drawn again; `choice` needs to cover only this
-  gpu::PanelUniforms uniforms{};
-  const PatchChoice* choice = nullptr;
-  const LiveTexture* field = nullptr;
-  const LiveTexture* original = nullptr;  ///< null for heights
-  int shade_level = 0;                    ///< of LiveTexture
-  int reach = 2;  ///< so many samples before its cell a colour may read, and one more after it
-  SurfaceVariant variant;
-  std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless on demand
-  std::vector<gpu::Line> in_scene, on_top;
-  std::optional<gpu::Stylus> stylus{};
-};
 
 /// Records a frame in three layers, each of which is reused while nothing in it changes:
 ///
@@ -102,6 +86,7 @@ class LiveFrame {
     Buffer arena;
     std::array<PanelSets, kMostPanels> panels;
     vk::raii::DescriptorSet picture = nullptr;
+    [[nodiscard]] std::array<vk::DescriptorSet, kMostPanels> styluses() const;
   };
   // The images that the surface is drawn to.
   struct Layers {
@@ -115,10 +100,6 @@ class LiveFrame {
   // `under_stylus`: depth of the surface over which the stylus is drawn.
   void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
             const Layers& layers, const GpuImage& under_stylus);
-  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part,
-                  float scale = 1.0F);
-  void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,
-                 std::uint32_t vertices, std::size_t first, std::size_t count) const;
   void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, const Layers& layers, Redraw redraw);
   enum class HiddenLines : std::uint8_t { kInBase, kOverCopy };
@@ -136,10 +117,6 @@ class LiveFrame {
                      Redraw redraw, const Before& before);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
-  /// After everything that writes `depth`, outside of a rendering; `colour` is of the depth's size.
-  void recordStylus(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                    std::span<const LivePanel> panels, const GpuImage& depth, vk::ImageView colour,
-                    vk::Image colour_image, float scale);
   void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                          std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
                          const GpuImage& base, Redraw redraw);
@@ -159,6 +136,7 @@ class LiveFrame {
   std::uint32_t layers_;     // of depth_, base_ and targets
   std::uint32_t view_mask_;  // 0: there is one
   Pipelines pipelines_;
+  StylusPass stylus_;  // draws with those
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // bound where the shader reads no pages
