@@ -4,8 +4,6 @@
 #include "render/vulkan/descriptor_writes.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
 namespace fettle::render {
 namespace {
@@ -63,7 +61,8 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
       layers_(views == Pipelines::Views::kBoth ? 2 : 1),
       view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
       pipelines_(context, colour, views),
-      stylus_(pipelines_, view_mask_) {
+      stylus_(pipelines_, view_mask_),
+      glyphs_(context) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
   constexpr std::uint32_t kSets = kSlots * (6 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
@@ -92,35 +91,6 @@ std::array<vk::DescriptorSet, kMostPanels> LiveFrame::Slot::styluses() const {
   std::array<vk::DescriptorSet, kMostPanels> sets;
   std::ranges::transform(panels, sets.begin(), [](const PanelSets& p) { return *p.stylus; });
   return sets;
-}
-
-void LiveFrame::uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging,
-                             std::uint64_t submission, const Glyphs& glyphs) {
-  if (glyph_generation_ == glyphs.generation()) return;
-  constexpr std::uint32_t kSide = Glyphs::kSide;
-  const bool first = glyph_generation_ == 0;
-  if (first)
-    glyphs_ = GpuImage(context_, vk::Format::eR8Unorm, {kSide, kSide}, 1, GpuImage::Kind::kPlane,
-                       vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst,
-                       vk::ImageAspectFlagBits::eColor);
-  const std::optional<vk::DeviceSize> at = staging.take(glyphs.image().size(), submission);
-  // No room: the glyphs are uploaded with a later frame.
-  if (!at && !first) return;
-  if (at) std::memcpy(staging.buffer().data() + *at, glyphs.image().data(), glyphs.image().size());
-  change(commands, glyphs_, first ? ImageLayout::eUndefined : ImageLayout::eShaderReadOnlyOptimal,
-         ImageLayout::eTransferDstOptimal, Stage::eFragmentShader, Access::eShaderRead, Stage::eCopy,
-         Access::eTransferWrite);
-  if (at) {
-    vk::BufferImageCopy copy;
-    copy.setBufferOffset(*at)
-        .setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-        .setImageExtent({kSide, kSide, 1});
-    commands.copyBufferToImage(*staging.buffer().handle(), glyphs_.image(), ImageLayout::eTransferDstOptimal,
-                               copy);
-    glyph_generation_ = glyphs.generation();
-  }
-  change(commands, glyphs_, ImageLayout::eTransferDstOptimal, ImageLayout::eShaderReadOnlyOptimal,
-         Stage::eCopy, Access::eTransferWrite, Stage::eFragmentShader, Access::eShaderRead);
 }
 
 GpuImage LiveFrame::baseOf(vk::Extent2D extent) const {
@@ -504,7 +474,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
                        const Glyphs& glyphs, const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
-  if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
+  if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
   makeLayers(submissions, target.extent, sharpness);
   const Layers& layers = sharpness == Sharpness::kHalf      ? half_
                          : sharpness == Sharpness::kQuarter ? quarter_
@@ -548,7 +518,7 @@ void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::
                            const Glyphs& glyphs, const LiveTarget& target, const Rest& rest) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
-  if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
+  if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
   makeRest(submissions, target.extent);
   fill(slot, panels, decorations, fine_, whole_.depth);  // recordTarget() draws the stylus
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/config.h"
+#include "render/live/glyph_image.h"
 #include "render/live/live_panel.h"
 #include "render/live/live_picture.h"
 #include "render/live/resize.h"
@@ -48,9 +49,7 @@ class LiveFrame {
   /// Whether the layers hold a picture of full sharpness in this size, and whether decorations would be drawn
   /// with the same glyph image.
   [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return whole_.extent == extent; }
-  [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept {
-    return glyph_generation_ == glyphs.generation();
-  }
+  [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept { return glyphs_.holds(glyphs); }
   enum class Redraw {
     kAll,  ///< every layer, whatever LivePanel::redraw says
     kParts,  ///< of depth and base only LivePanel::redraw; the rest stays as it is. Only at kFull, after a frame of kFull
@@ -94,8 +93,6 @@ class LiveFrame {
     float scale = 1.0F;   // their pixels per pixel of that picture
     GpuImage depth, base;
   };
-  void uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
-                    const Glyphs& glyphs);
   void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
   // `under_stylus`: depth of the surface over which the stylus is drawn.
   void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
@@ -146,8 +143,7 @@ class LiveFrame {
   GpuImage rest_;  // of recordRest, as whole_.base; created on first use
   vk::Extent2D rest_extent_;
   std::unique_ptr<Resize> reduce_to_rest_;
-  GpuImage glyphs_;
-  std::uint64_t glyph_generation_ = 0;
+  GlyphImage glyphs_;
 };
 
 }  // namespace fettle::render
