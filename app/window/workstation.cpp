@@ -17,7 +17,6 @@
 #include "app/window/scene_edits.h"
 #include "engine/base/stopwatch.h"
 #include "render/plan/number_text.h"
-#include "render/plan/value_range.h"
 
 namespace fettle::app {
 namespace {
@@ -212,45 +211,8 @@ void Workstation::takeResults() {
   }
   if (!p.document.isOpen()) return;
   p.document.poll(p.view, p.feedback);
-  LoopClient& client = *p.document.client();
-  std::vector<Notice>& notices = p.feedback.notices;
   followButtons(p);
-  followForm();
-  if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
-  bool changed = p.filters.poll(client, notices);
-  // An adoption ends first: its result belongs to the form under which it was computed.
-  if (!p.filters.applying()) {
-    changed |= p.form.poll(client, notices);
-    changed |= p.heights.poll(client, notices);
-  }
-  changed |= p.measure.poll(client, notices);
-  if (p.compare.poll(client, notices)) {
-    p.picture.refreshRanges();
-    changed = true;
-  }
-  if (const auto written = p.transform.poll(notices)) askToOpen(*written);
-  changed |= p.section.poll(client, notices);
-  if (auto kept = p.section.takeKept()) p.document.keepSections(*std::move(kept));
-  changed |= p.marking.poll(client, p.settings.draw_lines, notices);
-  // Under a hand that presses, and behind a question, the view stays where it is.
-  const bool busy_hand =
-      p.held() || p.line_drag.active() || p.brush.active() || p.feedback.questions.pending();
-  if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
-    if (const auto framing = p.picture.framing())
-      p.flyTo(viewOfPlace(p.viewToCome(), *framing, client.field().reader(),
-                          p.marking.places.found()->places[*place]));
-    changed = true;
-  }
-  for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
-  while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
-  const bool stroke = p.stylus.held() || p.marking.held();
-  changed |= p.change.poll(client, stroke);
-  const render::Shown& shown = p.picture.shown();
-  const bool counted = p.settings.side_panel && p.settings.panels["Colours"];
-  changed |= p.colours.poll(shown, counted || ColourRange::needsSample(p.settings.display, shown),
-                            stroke || p.filters.computing() || p.filters.applying());
-  for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
-  if (changed) p.picture.requestRedraw();
+  if (const auto written = tool_results_.take(p)) askToOpen(*written);
 }
 
 void Workstation::showFrame() {
@@ -473,8 +435,7 @@ void Workstation::startDocument(Document document) {
   p.change.begin(client.original());
   p.settings.display.marks = true;
   p.steps_seen = client.history().number();
-  form_ = client.field().formOver();
-  noteHeights();
+  tool_results_.begin(p);
   // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
@@ -521,29 +482,6 @@ void Workstation::restoreSections(const Document& document) {
     parts_.section.restore(*std::move(sections));
   else
     parts_.feedback.notices.push_back({sections.error().what, "the session is as it was otherwise"});
-}
-
-// Units and limits that fit the heights that are seen.
-void Workstation::noteHeights() {
-  Parts& p = parts_;
-  const engine::Version& original = p.document.client()->original();
-  const render::ValueRange heights = render::heightSpan(original).robust;
-  p.colours.clear(p.settings.display);
-  p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
-  if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
-}
-
-// Under another form heights are others: what was found in them is found again.
-void Workstation::followForm() {
-  Parts& p = parts_;
-  const engine::FieldForm& form = p.document.client()->field().formOver();
-  if (form == form_) return;
-  form_ = form;
-  p.marking.edges.drop();
-  p.marking.places.drop();
-  p.measure.clear();
-  noteHeights();
-  p.picture.requestRedraw();
 }
 
 // For this device from now on, and when it is opened again.

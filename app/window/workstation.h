@@ -12,6 +12,7 @@
 #include "app/window/input.h"
 #include "app/window/panels/panels.h"
 #include "app/window/parts.h"
+#include "app/window/tool_results.h"
 #include "app/window/window_state.h"
 #include "app/xr/headset_view.h"
 
@@ -73,8 +74,6 @@ class Workstation {
   void startDocument(Document document);
   void noteWarnings(const std::vector<std::string>& warnings);
   void restoreSections(const Document& document);
-  void noteHeights();
-  void followForm();
   void resumeAfterSave(const Afterwards& afterwards);
 
   void carryOut(PanelRequests requests);
@@ -97,11 +96,11 @@ class Workstation {
   HeadsetFigures headset_figures_;
   std::uint64_t documents_ = 0;          // opened
   std::optional<Document> unconfirmed_;  // while it is asked whether its reading is right
+  ToolResults tool_results_;
   Input input_;
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as in the file
-  engine::FieldForm form_;   // over the field of the last frame
   std::uint64_t frames_ = 0;
   std::int64_t shown_ns_ = 0;  // the last one
   engine::Status end_;

@@ -1,0 +1,80 @@
+#include "app/window/tool_results.h"
+
+#include "app/window/overlays.h"
+#include "render/plan/number_text.h"
+#include "render/plan/value_range.h"
+
+namespace fettle::app {
+namespace {
+
+// Units and limits that fit the heights that are seen.
+void noteHeights(Parts& p) {
+  const engine::Version& original = p.document.client()->original();
+  const render::ValueRange heights = render::heightSpan(original).robust;
+  p.colours.clear(p.settings.display);
+  p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
+  if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
+}
+
+}  // namespace
+
+void ToolResults::begin(Parts& parts) {
+  form_ = parts.document.client()->field().formOver();
+  noteHeights(parts);
+}
+
+// Under another form heights are others: what was found in them is found again.
+void ToolResults::followForm(Parts& p) {
+  const engine::FieldForm& form = p.document.client()->field().formOver();
+  if (form == form_) return;
+  form_ = form;
+  p.marking.edges.drop();
+  p.marking.places.drop();
+  p.measure.clear();
+  noteHeights(p);
+  p.picture.requestRedraw();
+}
+
+std::optional<std::string> ToolResults::take(Parts& p) {
+  LoopClient& client = *p.document.client();
+  std::vector<Notice>& notices = p.feedback.notices;
+  followForm(p);
+  if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
+  bool changed = p.filters.poll(client, notices);
+  // An adoption ends first: its result belongs to the form under which it was computed.
+  if (!p.filters.applying()) {
+    changed |= p.form.poll(client, notices);
+    changed |= p.heights.poll(client, notices);
+  }
+  changed |= p.measure.poll(client, notices);
+  if (p.compare.poll(client, notices)) {
+    p.picture.refreshRanges();
+    changed = true;
+  }
+  std::optional<std::string> written = p.transform.poll(notices);
+  changed |= p.section.poll(client, notices);
+  if (auto kept = p.section.takeKept()) p.document.keepSections(*std::move(kept));
+  changed |= p.marking.poll(client, p.settings.draw_lines, notices);
+  // Under a hand that presses, and behind a question, the view stays where it is.
+  const bool busy_hand =
+      p.held() || p.line_drag.active() || p.brush.active() || p.feedback.questions.pending();
+  if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
+    if (const auto framing = p.picture.framing())
+      p.flyTo(viewOfPlace(p.viewToCome(), *framing, client.field().reader(),
+                          p.marking.places.found()->places[*place]));
+    changed = true;
+  }
+  for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
+  while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
+  const bool stroke = p.stylus.held() || p.marking.held();
+  changed |= p.change.poll(client, stroke);
+  const render::Shown& shown = p.picture.shown();
+  const bool counted = p.settings.side_panel && p.settings.panels["Colours"];
+  changed |= p.colours.poll(shown, counted || ColourRange::needsSample(p.settings.display, shown),
+                            stroke || p.filters.computing() || p.filters.applying());
+  for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
+  if (changed) p.picture.requestRedraw();
+  return written;
+}
+
+}  // namespace fettle::app
