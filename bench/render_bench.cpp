@@ -320,7 +320,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (11 * options.sides.size() + 15));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (11 * options.sides.size() + 16));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
@@ -359,7 +359,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     for (const std::size_t k : {2, 3, 4, 5, 6, 7, 8}) scenes[k].input.form = render::kShownForm;
     if (i == 0) {
       const std::size_t first = scenes.size();
-      scenes.insert(scenes.end(), 7, all_round);
+      scenes.insert(scenes.end(), 8, all_round);
       scenes[first].name = "contours";
       scenes[first].input.contours = render::Contours::kShow;
       scenes[first + 1].name = "deviation";
@@ -374,15 +374,17 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       scenes[first + 5].input.form.occlusion = 0.8;
       scenes[first + 6].name = "cavity";
       scenes[first + 6].input.form.cavity = 0.5;
+      scenes[first + 7].name = "material";
+      scenes[first + 7].input.form.material = render::Material::kPorcelain;
       // What is seen under a form is drawn as any field; when a form comes or goes, all tiles are others.
       const auto seen = bentAndSeen(*field, benchSphere(field->grid()), job);
       if (!seen) return tl::unexpected(seen.error());
       scenes.insert(scenes.end(), 2, all_round);
-      scenes[first + 7].name = "under a sphere";
-      scenes[first + 7].shown.versions = {*seen};
-      scenes[first + 8].name = "sphere in, out";
-      scenes[first + 8].shown.versions = {*seen->seenOf()};
-      scenes[first + 8].other = *seen;
+      scenes[first + 8].name = "under a sphere";
+      scenes[first + 8].shown.versions = {*seen};
+      scenes[first + 9].name = "sphere in, out";
+      scenes[first + 9].shown.versions = {*seen->seenOf()};
+      scenes[first + 9].other = *seen;
       for (const auto& [name, stylus] : {std::pair{"pen, still", Stylus::kPen},
                                          {"pen, shadow, still", Stylus::kPenAndShadow},
                                          {"trail, still", Stylus::kTrail}}) {

@@ -84,7 +84,8 @@ FETTLE_CONST kSpecFootprint = 10;
 FETTLE_CONST kSpecOcclusion = 11;
 FETTLE_CONST kSpecCavity = 12;
 FETTLE_CONST kSpecFaint = 13;  // of the stylus: what the surface hides
-FETTLE_CONST kSpecCount = 14;
+FETTLE_CONST kSpecMaterial = 14;  // shaded as a material (material.glsl)
+FETTLE_CONST kSpecCount = 15;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -116,6 +117,14 @@ struct ViewUniforms {
   ivec4 origin;           // 128: virtual sample; -; -
 };
 
+// What the surface looks like to be made of (material.glsl). Colours are linear red, green, blue.
+struct Material {
+  vec4 body;    // its colour in full light; how far the light reaches behind the edge of its shadow, 0 .. 1
+  vec4 shadow;  // factor of that in the shadow; share of a mirror, 0 .. 1
+  vec4 gloss;   // strength and exponent of a small highlight; of a broad one
+  vec4 rim;     // added where the surface turns away from the viewer; exponent
+};
+
 // Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up,
 // exaggeration included. "Virtual" samples: a field of one row or column is drawn as two equal ones.
 struct PanelUniforms {
@@ -142,7 +151,12 @@ struct PanelUniforms {
   // Distances of the samples that surroundings are taken from [steps]: along x, along y; on the lines between: x, y.
   vec4 around;             // 528
   vec4 form;               // 544: strength of occlusion, of cavity, 0 .. 1; -; -
-  vec4 colours[kColours];  // 560: linear red, green, blue
+  // Unit vectors in the scene to the picture's right, its top, the viewer; share of the colours of values in that of the
+  // material, 0 .. 1; -; strength of its light, 0 .. 1.
+  vec4 to_right, to_top, to_viewer;  // 560
+  Material material;                 // 608
+  vec4 of_level;                     // 672: 1 / the light on its body where the surface is level; -
+  vec4 colours[kColours];            // 688: linear red, green, blue
   PageHead pages;          // where samples are on the device on demand
 };
 
@@ -195,7 +209,7 @@ struct Quad {
 static_assert(sizeof(ViewUniforms) == 144);
 static_assert(offsetof(ViewUniforms, field_from_pixel) == 64);
 static_assert(offsetof(ViewUniforms, origin) == 128);
-static_assert(sizeof(PanelUniforms) == 560 + 16 * kColours + sizeof(PageHead));
+static_assert(sizeof(PanelUniforms) == 688 + 16 * kColours + sizeof(PageHead));
 static_assert(offsetof(PanelUniforms, placing) == 288);
 static_assert(offsetof(PanelUniforms, limits) == 320);
 static_assert(offsetof(PanelUniforms, size) == 432);
@@ -203,7 +217,8 @@ static_assert(offsetof(PanelUniforms, shade) == 464);
 static_assert(offsetof(PanelUniforms, suggested_tint) == 496);
 static_assert(offsetof(PanelUniforms, footprint) == 512);
 static_assert(offsetof(PanelUniforms, around) == 528);
-static_assert(offsetof(PanelUniforms, colours) == 560);
+static_assert(offsetof(PanelUniforms, material) == 608);
+static_assert(offsetof(PanelUniforms, colours) == 688);
 static_assert(sizeof(Patch) == 16);
 static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);

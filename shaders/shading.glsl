@@ -10,6 +10,7 @@ layout(constant_id = kSpecCell) const bool kCell = false;
 layout(constant_id = kSpecFootprint) const bool kFootprint = false;
 layout(constant_id = kSpecOcclusion) const bool kOcclusion = false;
 layout(constant_id = kSpecCavity) const bool kCavity = false;
+layout(constant_id = kSpecMaterial) const bool kMaterial = false;
 
 layout(set = 0, binding = kBindMarks) uniform utexture2DArray marks_image;
 layout(set = 0, binding = kBindOriginal) uniform utexture2DArray original_image;
@@ -19,6 +20,7 @@ bool inField(ivec2 s) { return all(greaterThanEqual(s, ivec2(0))) && all(lessTha
 
 #include "footprint.glsl"
 #include "surroundings.glsl"
+#include "material.glsl"
 #include "contours.glsl"
 
 // Half the difference between the neighbours of `s` along `d`, or the difference to one neighbour where the other is a
@@ -147,13 +149,17 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
   if (p.displaced && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
 
   vec3 c = p.compared ? mapped(p.value) : panel.no_data.rgb;
+  if (kMaterial && p.compared) c = mix(panel.material.body.rgb, c, panel.to_right.w);
   if (kMarks) {
     const uint mark = texelFetch(marks_image, shadeTexelOf(nearest), 0).x;
     const vec4 tint = mark == uint(kSuggested) ? panel.suggested_tint : panel.marks_tint;
     if (mark != 0u) c = mix(c, tint.rgb, tint.a);
   }
   // A level surface has exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
-  c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
+  if (kMaterial)
+    c = asMaterial(c, normal);
+  else
+    c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
   if (kOcclusion || kCavity) {
     const Surroundings s = surroundings(p.cell, p.f, p.displaced ? p.drawn : clippedBetween(p.h, p.f));
     // Of the sky above: a steep wall sees half of it at best, and what stands around its foot says nothing of how it is

@@ -17,6 +17,7 @@
 #include "engine/field/seen_field.h"
 #include "render/live/live_plan.h"
 #include "render/live/picture_rows.h"
+#include "render/plan/material.h"
 
 namespace fettle::app {
 
@@ -34,6 +35,7 @@ struct RenderArguments {
   std::string lines;
   std::string map = "auto";
   std::string normals = "footprint";
+  std::string material = "none";
   render::FormShading form = render::kShownForm;
   std::string title;
   std::string compare_title;
@@ -77,6 +79,11 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   w.input.colouring = options.colouring;
   w.input.form = options.form;
   w.input.form.filtered_normals = options.normals == "footprint";
+  if (options.form.value_colours > 0.0 && options.material == "none")
+    return engine::inputError("there is no material to have colours", "--material-colours",
+                              "also give --material NAME");
+  w.input.form.material =
+      std::ranges::find(render::materials(), options.material, &render::MaterialRow::word)->material;
   if (options.dark) w.input.theme = render::Theme::kDark;
   if (options.bare) w.input.decoration = render::Decoration::kNone;
   if (!options.range.empty()) w.input.range = render::ValueRange{options.range[0], options.range[1]};
@@ -175,6 +182,13 @@ engine::Result<Report> render(const RenderArguments& options, engine::JobControl
                 {"vertical_exaggeration", frame.vertical_exaggeration}};
   if (options.stereo != "off") report["stereo"] = options.stereo;
   return report;
+}
+
+std::vector<Word> materialWords() {
+  std::vector<Word> words;
+  for (const render::MaterialRow& row : render::materials())
+    words.push_back({std::string(row.word), std::string(row.shows)});
+  return words;
 }
 
 }  // namespace
@@ -300,6 +314,14 @@ void addRender(Command root, Chosen& chosen) {
       {.name = "--cavity",
        .to = &options->form.cavity,
        .text = "How much darker hollows and brighter ridges are at most",
+       .range = Range{0.0, 1.0}},
+      {.name = "--material",
+       .to = &options->material,
+       .text = "What the surface looks like to be made of",
+       .words = materialWords()},
+      {.name = "--material-colours",
+       .to = &options->form.value_colours,
+       .text = "Share of the colours of heights in that of the material; deviations keep theirs",
        .range = Range{0.0, 1.0}},
       {.name = "--dark", .to = &options->dark, .text = "Light text on a dark background"},
       {.name = "--bare",

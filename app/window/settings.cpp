@@ -1,5 +1,6 @@
 #include "app/window/settings.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/work/device_check.h"
+#include "render/plan/material.h"
 
 namespace fettle::app {
 namespace {
@@ -24,6 +26,12 @@ constexpr auto kHabits = [] {
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = kMousePresets[i].word;
   return words;
 }();
+
+std::array<std::string_view, render::kMaterials> materialWordsOfFile() {
+  std::array<std::string_view, render::kMaterials> words;
+  std::ranges::transform(render::materials(), words.begin(), &render::MaterialRow::word);
+  return words;
+}
 
 void take(const json& from, const char* name, bool& value) {
   if (const auto it = from.find(name); it != from.end() && it->is_boolean()) value = it->get<bool>();
@@ -114,6 +122,8 @@ std::string Settings::text() const {
               {"filtered_normals", d.form.filtered_normals},
               {"occlusion", d.form.occlusion},
               {"cavity", d.form.cavity},
+              {"material", render::rowOf(d.form.material).word},
+              {"material_colours", d.form.value_colours},
               {"stylus_pen", d.stylus.pen},
               {"stylus_shadow", d.stylus.shadow},
               {"stylus_force", d.stylus.force},
@@ -161,6 +171,8 @@ Settings Settings::load(const std::string& path) {
   take(file, "filtered_normals", d.form.filtered_normals);
   take(file, "occlusion", 0.0, 1.0, d.form.occlusion);
   take(file, "cavity", 0.0, 1.0, d.form.cavity);
+  take(file, "material", materialWordsOfFile(), d.form.material);
+  take(file, "material_colours", 0.0, 1.0, d.form.value_colours);
   take(file, "stylus_pen", d.stylus.pen);
   take(file, "stylus_shadow", d.stylus.shadow);
   take(file, "stylus_force", d.stylus.force);

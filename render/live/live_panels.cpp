@@ -6,6 +6,7 @@
 
 #include "render/config.h"
 #include "render/live/live_plan.h"
+#include "render/plan/material.h"
 #include "render/plan/placing.h"
 
 namespace fettle::render {
@@ -33,6 +34,8 @@ bool holed(const engine::Version& v) {
 
 // Colours of a deviation are read as numbers: shading may indicate the shape, but not darken them.
 constexpr double kFormOfDeviation = 0.3;
+constexpr float kMaterialOfDeviation = 0.5F;
+constexpr double kDarkestLevel = 0.05;  // light that is brightened no more
 
 // How far the outer samples of a footprint lie outside its cell [steps]: it reaches 1.25 rays to each side
 // where a step is half a ray, with the smaller distance 1.5 where it is one.
@@ -65,6 +68,20 @@ glm::vec3 towardsLight(const FrameInput& input) {
   const glm::dvec3 away{-right.y, right.x, 0.0};
   const glm::dvec3 level = std::cos(azimuth) * right + std::sin(azimuth) * away;
   return std::sqrt(std::max(0.0, 1.0 - up * up)) * level + glm::dvec3(0.0, 0.0, up);
+}
+
+// The light of a material and the directions of the picture, of a panel's camera.
+void shadeAs(const FormShading& form, const Camera& camera, bool deviation, gpu::PanelUniforms& u) {
+  const double values = deviation ? 1.0 : form.value_colours;
+  gpu::Material look = rowOf(form.material).look;
+  // What a mirror shows is not its own: it would not have the colours of values.
+  look.shadow.w *= static_cast<float>(1.0 - values);
+  const glm::dvec3 level = materialLight(look, {camera.right().z, camera.up().z, camera.toViewer().z});
+  u.to_right = glm::vec4(glm::vec3(camera.right()), static_cast<float>(values));
+  u.to_top = glm::vec4(glm::vec3(camera.up()), 0.0F);
+  u.to_viewer = glm::vec4(glm::vec3(camera.toViewer()), deviation ? kMaterialOfDeviation : 1.0F);
+  u.material = look;
+  u.of_level = glm::vec4(glm::vec3(1.0 / glm::max(level, kDarkestLevel)), 0.0F);
 }
 
 }  // namespace
@@ -207,6 +224,8 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
     const float most = std::max(std::max(u.around.x, u.around.y), std::max(u.around.z, u.around.w));
     panel.reach = std::max(panel.reach, static_cast<int>(std::ceil(most)));
   }
+  const bool material = input.form.material != Material::kNone;
+  if (material) shadeAs(input.form, p.camera, panel.original != nullptr, u);
   if (input.contours == Contours::kShow) {
     const glm::vec2 square = contourSquareOf(p, shift);
     u.seam.z = square.x;
@@ -227,7 +246,8 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
       input.view.projection == Projection::kPerspective,
       input.form.filtered_normals && !smooth,
       input.form.occlusion > 0.0,
-      input.form.cavity > 0.0};
+      input.form.cavity > 0.0,
+      material};
   panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
   panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
   return panel;

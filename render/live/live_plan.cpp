@@ -139,9 +139,11 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
     return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
                               "see FrameInput");
   const auto share = [](double s) { return s >= 0.0 && s <= 1.0; };
-  if (!share(input.form.occlusion) || !share(input.form.cavity))
-    return engine::inputError("the strength of the occlusion or of the cavity is out of range", "picture",
-                              "give 0 to 1");
+  if (!share(input.form.occlusion) || !share(input.form.cavity) || !share(input.form.value_colours))
+    return engine::inputError(
+        "the strength of the occlusion or of the cavity, or the share of colours on a material, is out of "
+        "range",
+        "picture", "give 0 to 1");
   const std::size_t panels = input.arrangement == Arrangement::kSplit
                                  ? std::min<std::size_t>(2, shown.versions.size())
                                  : shown.versions.size();
@@ -165,6 +167,8 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
       planPicture(spec, shown.versions, spans, arranged(input, static_cast<int>(shown.versions.size())));
   if (plan) {
     plan->decorations.titles = input.titles;
+    plan->decorations.colours = input.form.material == Material::kNone || input.form.value_colours > 0.0 ||
+                                shown.original.has_value();
     const auto anyMark = [](const engine::Version& v) { return v.reader().root().marked_children != 0; };
     // The plan counts suggested marks as marks.
     if (shown.accepted)

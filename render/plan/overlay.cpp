@@ -277,7 +277,7 @@ std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
     pen.text(plot.x, plot.y - 14 * layout.scale, pen.fitted(decorations.titles[i], plot.width, px, kBold), px,
              kBold, palette.ink);
   }
-  colourBar(pen, layout, view, decorations, palette, warnings);
+  if (decorations.colours) colourBar(pen, layout, view, decorations, palette, warnings);
   bottomLine(pen, layout, view, decorations, palette, warnings);
   if (glyphs.lost() != lost) warnings.emplace_back("some letters had no room in the glyph image");
   return quads;

@@ -35,6 +35,7 @@ enum class Titles { kNone, kAbove };
 /// The content of the decorations.
 struct DecorationContent {
   ValueRange range;                   ///< of the colours [the field's height unit]
+  bool colours = true;                ///< the picture has them: it gets the bar
   bool below = false, above = false;  ///< values outside it exist: the bar gets a pointed end
   std::string quantity;               ///< "height" or "deviation"
   std::string note;                   ///< small, under the bar; may be empty

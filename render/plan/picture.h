@@ -61,6 +61,15 @@ enum class Contours {
   kShow,  ///< lines of equal height, or deviation
 };
 
+/// What the surface looks like to be made of.
+enum class Material {
+  kNone,  ///< matt and in the colours of its values
+  kClay,
+  kPorcelain,
+  kMetal,
+  kWax,
+};
+
 /// How shading shows the form of the surface. What is off is not in the shader.
 struct FormShading {
   /// Normals over the footprint of a pixel (shaders/footprint.glsl) where cells are smaller than one and a
@@ -71,6 +80,10 @@ struct FormShading {
   double occlusion = 0.0;
   /// How much darker hollows and brighter ridges are at most, of a few pixels, 0 .. 1; 0: off.
   double cavity = 0.0;
+  /// Lit from beside the viewer (shaders/material.glsl), whatever the direction of FrameInput's light.
+  Material material = Material::kNone;
+  /// Share of the colours of values in that of the material, 0 .. 1. Deviations keep theirs.
+  double value_colours = 0.0;
   friend bool operator==(const FormShading&, const FormShading&) = default;
 };
 /// What the window and pictures for files use unless told otherwise.

@@ -26,6 +26,7 @@ struct SurfaceVariant {
   bool footprint = false;    ///< used by shade() only
   bool occlusion = false;    ///< used by shade() only
   bool cavity = false;       ///< used by shade() only
+  bool material = false;     ///< used by shade() only
   // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads the zero of a comparison as a pointer
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };

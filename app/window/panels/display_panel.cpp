@@ -1,10 +1,18 @@
+#include <string>
+
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
+#include "render/plan/material.h"
 
 namespace fettle::app {
 
 namespace {
+
+void hoverTip(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
 
 // A share of 0 to 1; 0 reads "off".
 void shareSlider(const char* label, const char* id, double& share, const char* tip) {
@@ -15,6 +23,29 @@ void shareSlider(const char* label, const char* id, double& share, const char* t
       }))
     share = static_cast<double>(value);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+}
+
+void materialFields(render::FormShading& form) {
+  const render::MaterialRow& chosen = render::rowOf(form.material);
+  if (field("material", [&] { return ImGui::BeginCombo("##material", std::string(chosen.word).c_str()); })) {
+    for (const render::MaterialRow& row : render::materials()) {
+      const bool is = row.material == form.material;
+      if (ImGui::Selectable(fmt::format("{}: {}", row.word, row.shows).c_str(), is))
+        form.material = row.material;
+      if (is) ImGui::SetItemDefaultFocus();
+    }
+    ImGui::EndCombo();
+  }
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "What the surface looks like to be made of. A material is lit from beside you, however the view is "
+        "turned, "
+        "and shows form better than colours do.");
+  ImGui::BeginDisabled(form.material == render::Material::kNone);
+  shareSlider(
+      "colours on it", "##material_colours", form.value_colours,
+      "Share of the colours of heights in that of the material. Colours of changes are always there.");
+  ImGui::EndDisabled();
 }
 
 void stylusTicks(StylusLook& look) {
@@ -74,29 +105,41 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   int mode = static_cast<int>(display.stereo);
   if (field("eyes", [&] { return ImGui::Combo("##eyes", &mode, eyes, 3); }))
     display.stereo = static_cast<render::StereoMode>(mode);
+  hoverTip("A picture for each eye: in two halves of the window, or in one for glasses of two colours.");
   constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
   (void)field("marks", [&] {
     return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, "opacity %.2f", kClamp);
   });
+  hoverTip("How strongly marked samples are tinted; 0 leaves the colours of the values.");
   (void)field("light from", [&] {
     return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, "%.0f deg", kClamp);
   });
+  hoverTip(
+      "Where the light comes from, counted from the picture's right over its top. A material has light of "
+      "its own.");
   (void)field("light above", [&] {
     return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F, "%.0f deg", kClamp);
   });
+  hoverTip("How high the light stands: low light shows faint slopes. A material has light of its own.");
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
   shareSlider("hollows", "##cavity", display.form.cavity,
               "How much darker hollows and how much brighter ridges are at most.");
+  materialFields(display.form);
   if (display.stereo != render::StereoMode::kOff)
     (void)field("depth", [&] {
       return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
                                 kClamp);
     });
+  if (display.stereo != render::StereoMode::kOff)
+    hoverTip("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
   (void)field("heights", [&] {
     return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
                       view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");
   });
+  hoverTip(
+      "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "
+      "readable.");
   endFields();
 }
 

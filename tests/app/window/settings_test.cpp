@@ -20,6 +20,8 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.colour_steps = true;
   settings.display.theme = render::Theme::kLight;
   settings.display.light_azimuth_deg = 20.0F;
+  settings.display.form.material = render::Material::kWax;
+  settings.display.form.value_colours = 0.4;
   settings.display.half_in_motion = false;
   settings.display.smooth_at_rest = false;
   settings.display.stylus = {.pen = false, .shadow = false, .force = false, .trail = true};
@@ -67,7 +69,7 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
         "{\"split_at\": 7, \"light_elevation\": -3, \"vertices\": 12, \"mouse\": \"cat\"}",
         "{\"change_range\": \"typed\", \"change_share\": 0, \"panels\": {\"Tool\": 5}, \"side_width\": "
         "\"wide\", \"colours\": 4}",
-        "{\"volume\": 1.5, \"muted\": \"no\"}"}) {
+        "{\"volume\": 1.5, \"muted\": \"no\"}", "{\"material\": \"gold\", \"material_colours\": 2}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }

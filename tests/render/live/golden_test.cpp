@@ -145,6 +145,20 @@ TEST(Golden, GreyWithContourLines) {
   compareWithGolden("grey_contours", still);
 }
 
+TEST(Golden, PorcelainWithHoles) {
+  Still still = small(part(0.02));
+  still.input.form.material = Material::kPorcelain;
+  compareWithGolden("material_porcelain", still);
+}
+
+TEST(Golden, MetalUnderColoursAndMarks) {
+  Still still = small(part(0.02));
+  still.shown.marks = MarksOverlay::kShow;
+  still.input.form.material = Material::kMetal;
+  still.input.form.value_colours = 0.5;
+  compareWithGolden("material_colours", still);
+}
+
 TEST(Golden, LiveWithMarksHolesAndAStylus) {
   Shown shown;
   shown.versions = {part(0.05)};
