@@ -163,8 +163,10 @@ void soundControls(LoopClient& client, Loudness& loudness) {
   fieldName("volume");
   if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
     loudness.volume = 0.01F * static_cast<float>(percent);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("How loud the surface is; kept for the next start.");
   endFields();
   ImGui::Checkbox("mute", &loudness.muted);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Silent without changing the scene or the volume.");
   if (loudness != before) client.setLoudness(loudness);
 }
 
