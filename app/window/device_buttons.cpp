@@ -9,10 +9,36 @@
 
 namespace fettle::app {
 
+namespace {
+
+// The tools around the tip: `asked` times since the last frame.
+void followTools(Parts& parts, std::uint64_t asked) {
+  RadialMenu& menu = parts.radial;
+  if (asked == 0 && !menu.ofDevice()) return;
+  LoopClient& client = *parts.document.client();
+  const haptic::LoopState state = client.state();
+  const auto tip = parts.picture.placeOf(state.contact ? state.proxy_mm : state.endpoint_mm);
+  const auto pointed = menu.pointed();
+  RadialMenu::Outcome outcome;
+  if (menu.ofDevice()) {
+    if (tip) menu.follow(*tip);
+    if (asked > 0) outcome = menu.pressAgain();
+  } else if (tip && !menu.active()) {
+    menu.open(*tip, parts.window.pictureArea(), parts.window.scale(), RadialMenu::By::kDevice);
+  }
+  const bool held = (state.buttons & client.deviceSetup().menu_buttons) != 0;
+  if (menu.ofDevice() && !held) outcome = menu.letGo();
+  if (asked > 0 || outcome.used || menu.pointed() != pointed) parts.picture.requestRedraw();
+  if (outcome.chosen) carryOut(*outcome.chosen, parts);
+}
+
+}  // namespace
+
 void followButtons(Parts& parts) {
   LoopClient& client = *parts.document.client();
   const DeviceChoices chosen = client.takeDeviceChoices();
   if (parts.feedback.questions.pending()) return;
+  followTools(parts, chosen.menus);
   for (std::uint64_t i = 0; i < chosen.tools; ++i) {
     carryOut(actionOf(static_cast<haptic::Tool>((static_cast<int>(client.tool()) + 1) % haptic::kTools)),
              parts);

@@ -35,7 +35,7 @@ constexpr std::array kKinds{
              Key::kDelete},
     KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kRecover, "recover", "Unsaved work", "S", true, false, ImGuiWindowFlags_AlwaysAutoResize},
-    KindInfo{Kind::kDevice, "device", "Set up the device", "RMT123C+-", true, true,
+    KindInfo{Kind::kDevice, "device", "Set up the device", "RMT123CU+-", true, true,
              ImGuiWindowFlags_AlwaysAutoResize},
     KindInfo{Kind::kShortcuts, "shortcuts", "Shortcuts", "", false, false, ImGuiWindowFlags_None},
     KindInfo{Kind::kMessage, "message", "Fettle", "", true, false, ImGuiWindowFlags_AlwaysAutoResize},

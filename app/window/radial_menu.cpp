@@ -25,6 +25,7 @@ double inside(double at, int low, int length, double margin) {
 void RadialMenu::open(const glm::dvec2& cursor, const render::Rectangle& picture, double scale, By by) {
   active_ = true;
   held_ = by;
+  of_device_ = by == By::kDevice;
   was_pointed_ = false;
   pointed_.reset();
   scale_ = scale;
@@ -100,7 +101,7 @@ RadialMenu::Outcome RadialMenu::handle(const render::InputEvent& event) {
   if (!active_) return {};
   switch (event.kind) {
     case InputKind::kMove:
-      point({event.x, event.y});
+      if (!of_device_) point({event.x, event.y});
       return {true};
     case InputKind::kKeyDown:
       return press(event);

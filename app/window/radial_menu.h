@@ -37,7 +37,11 @@ class RadialMenu {
   /// At scale 1 [pixels]: within which nothing is chosen; of the names.
   static constexpr double kMiddle_px = 24.0, kNames_px = 92.0;
 
-  enum class By : std::uint8_t { kKey, kButton };
+  enum class By : std::uint8_t {
+    kKey,
+    kButton,
+    kDevice,  ///< the tip of a device points, by follow(), and not the cursor
+  };
   /// Opens at the cursor, brought into the picture.
   void open(const glm::dvec2& cursor, const render::Rectangle& picture, double scale, By by);
   void close() noexcept { active_ = false; }
@@ -47,6 +51,12 @@ class RadialMenu {
     std::optional<Action> chosen{};
   };
   [[nodiscard]] Outcome handle(const render::InputEvent& event);
+
+  /// Opened by a device: where its tip is in the picture, and its button, which was pressed again or is not held.
+  void follow(const glm::dvec2& tip) noexcept { point(tip); }
+  [[nodiscard]] Outcome pressAgain() noexcept { return choose(); }
+  [[nodiscard]] Outcome letGo() noexcept { return held_ == By::kDevice ? release() : Outcome{}; }
+  [[nodiscard]] bool ofDevice() const noexcept { return active_ && of_device_; }
 
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// The item in whose direction the cursor is, or that an arrow key chose.
@@ -62,7 +72,8 @@ class RadialMenu {
   [[nodiscard]] Outcome release() noexcept;
 
   bool active_ = false;
-  std::optional<By> held_;    // what opened it, until it is released
+  std::optional<By> held_;  // what opened it, until it is released
+  bool of_device_ = false;
   bool was_pointed_ = false;  // at an item, since it was opened
   std::optional<std::size_t> pointed_;
   glm::dvec2 middle_{0.0}, drawn_at_{0.0};

@@ -59,7 +59,9 @@ json numbers(const glm::dvec3& v) {
 json jsonOf(const DeviceSetups& devices) {
   json all = json::object();
   for (const auto& [key, setup] : devices) {
-    json one{{"motion", setup.motion}, {"clutch_buttons", setup.clutch_buttons}};
+    json one{{"motion", setup.motion},
+             {"clutch_buttons", setup.clutch_buttons},
+             {"menu_buttons", setup.menu_buttons}};
     if (setup.reach) {
       one["low_mm"] = numbers(setup.reach->low_mm);
       one["high_mm"] = numbers(setup.reach->high_mm);
@@ -84,6 +86,7 @@ DeviceSetup setupOf(const json& from) {
   DeviceSetup setup;
   take(from, "motion", DeviceSetup::kLeastMotion, 1.0, setup.motion);
   take(from, "clutch_buttons", std::uint32_t{0}, std::uint32_t{0xFFFF}, setup.clutch_buttons);
+  take(from, "menu_buttons", std::uint32_t{0}, std::uint32_t{0xFFFF}, setup.menu_buttons);
   DeviceReach reach;
   if (take(from, "low_mm", reach.low_mm) && take(from, "high_mm", reach.high_mm) &&
       2.0 * reach.radius() >= DeviceCheck::kLeastReach_mm)

@@ -214,6 +214,12 @@ std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const 
   return plane ? plane->fieldAt(pixel) : std::nullopt;
 }
 
+std::optional<glm::dvec2> WindowPicture::placeOf(const glm::dvec3& field_mm) const {
+  const auto seen = live_ ? live_->pixelOf(0, field_mm) : std::nullopt;
+  if (!seen) return std::nullopt;
+  return glm::dvec2(seen->first + window_.pictureArea().x, seen->second + window_.pictureArea().y);
+}
+
 std::vector<Seen> WindowPicture::seenPlaces(const engine::Grid& grid) const {
   const render::Rectangle& area = window_.pictureArea();
   std::vector<Seen> seen;

@@ -100,6 +100,8 @@ class WindowPicture {
   /// The same; where there is no surface, the plane at half the height of `field` [mm].
   [[nodiscard]] std::optional<glm::dvec2> fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                   const render::View& view) const;
+  /// Where a place of the field [mm] is seen in the first plot; nothing while there is no picture.
+  [[nodiscard]] std::optional<glm::dvec2> placeOf(const glm::dvec3& field_mm) const;
   /// What a hand takes hold of at that position (LivePicture::grip); nothing while there is no picture.
   [[nodiscard]] std::optional<render::Grip> grip(double x, double y) const;
   /// The same in the middle of the first plot.

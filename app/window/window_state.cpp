@@ -208,6 +208,7 @@ Report deviceCheck(const Parts& p) {
   Report r{{"running", check.running() != DeviceCheck::Running::kNothing},
            {"motion", setup.motion},
            {"clutch_buttons", setup.clutch_buttons},
+           {"menu_buttons", setup.menu_buttons},
            {"reach_used", setup.reach.has_value()}};
   if (check.reach()) r["reach_mm"] = {triple(check.reach()->low_mm), triple(check.reach()->high_mm)};
   if (const auto& rest = check.rest())

@@ -140,6 +140,7 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     const glm::dvec3 hand = setup_.reach ? setup_.reach->middle() : glm::dvec3(0.0);
     settings.options.workspace = haptic::Workspace(scale_at_start_, middle - scale_at_start_ * hand);
     settings.options.clutch_buttons = setup_.clutch_buttons;
+    settings.options.menu_buttons = setup_.menu_buttons;
   }
   if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
     haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);
@@ -269,6 +270,7 @@ void DeviceLoop::watch(const LoopState& state, std::vector<Notice>& notices) {
     notices.push_back({"memory for edits was not available in time", "part of a stroke was not done"});
   choices_.tools += state.tool_choices - seen_.tool_choices;
   choices_.tips += state.tip_choices - seen_.tip_choices;
+  choices_.menus += state.menu_choices - seen_.menu_choices;
   seen_ = state;
 }
 

@@ -49,6 +49,7 @@ struct LoopClientOptions {
 struct DeviceChoices {
   std::uint64_t tools = 0;
   std::uint64_t tips = 0;
+  std::uint64_t menus = 0;  ///< the tools around the tip
 };
 
 /// A device and its haptic loop: a new loop for each change of the rate. Arms devices without force

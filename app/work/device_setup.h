@@ -42,6 +42,18 @@ struct DeviceSetup {
     if (reach) profile.workspace_radius_mm = reach->radius();
     return profile;
   }
+  std::uint32_t menu_buttons = 0;  ///< haptic::LoopOptions::menu_buttons: of the tools around the tip
+
+  /// What a button is given to has it alone.
+  void giveClutch(std::uint32_t buttons) noexcept {
+    clutch_buttons = buttons;
+    menu_buttons &= ~buttons;
+  }
+  void giveMenu(std::uint32_t buttons) noexcept {
+    menu_buttons = buttons;
+    clutch_buttons &= ~buttons;
+  }
+
   friend bool operator==(const DeviceSetup&, const DeviceSetup&) = default;
 };
 

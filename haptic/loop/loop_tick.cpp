@@ -300,7 +300,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   motion_.note(input);
   const bool in_field = device_.profile().space == DeviceSpace::kField;
   const std::uint32_t clutch_buttons = in_field ? 0U : options_.clutch_buttons;
-  buttons_.note(input, clutch_buttons, now_ns);
+  buttons_.note(input, {clutch_buttons, options_.menu_buttons}, now_ns);
   const bool clutched = (input.buttons & clutch_buttons) != 0;
   if (clutched != clutched_) disturbance_ = Disturbance::kSurfaceReplaced;
   clutched_ = clutched;
@@ -345,6 +345,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   state_.buttons = input.buttons;
   state_.tool_choices = buttons_.tools();
   state_.tip_choices = buttons_.tips();
+  state_.menu_choices = buttons_.menus();
   state_.link = input.link;
   state_.safety = guard_.state();
   state_.cause = guard_.cause();

@@ -39,6 +39,8 @@ struct LoopOptions {
   EditRule edit_rule = EditRule::kAnytime;
   /// Buttons that hold the clutch (see Workspace); 0 = none.
   std::uint32_t clutch_buttons = kSecondaryButton;
+  /// Buttons that open a menu (see StylusButtons); 0 = none.
+  std::uint32_t menu_buttons = 0;
   Workspace workspace;  ///< ignored by devices whose positions are in the field already
   SafetyLimits limits;
   /// Ticks between two publications of edits: at 1 kHz a little faster than a display's frame.

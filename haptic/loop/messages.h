@@ -123,6 +123,7 @@ struct LoopState {
   std::uint32_t buttons = 0;       ///< of the device that are held: DeviceInput::buttons
   std::uint64_t tool_choices = 0;  ///< times the next tool was chosen by a button of the device, so far
   std::uint64_t tip_choices = 0;   ///< the next tip, likewise (StylusButtons)
+  std::uint64_t menu_choices = 0;  ///< times a menu was asked for, likewise
   LinkState link = LinkState::kDisconnected;
   SafetyState safety = SafetyState::kDisconnected;
   FaultCause cause = FaultCause::kNone;

@@ -26,21 +26,21 @@ const ImVec4 kAsExpected{0.35F, 0.75F, 0.40F, 1.0F}, kNotExpected{1.0F, 0.6F, 0.
 
 constexpr std::array<const char*, 3> kReachAxes{"x, right", "y, away", "z, up"};
 
-// What holds the clutch, in the order in which the page offers it.
-struct ClutchChoice {
+// What holds the clutch and what opens the tools around the tip, in the order in which the page offers it.
+struct ButtonOffer {
   std::uint32_t buttons;
   const char* name;
 };
-constexpr std::array kClutches{
-    ClutchChoice{haptic::kSecondaryButton, "second button"},
-    ClutchChoice{1U << 2U, "third button"},
-    ClutchChoice{1U << 3U, "fourth button"},
-    ClutchChoice{0, "none"},
+constexpr std::array kOffers{
+    ButtonOffer{haptic::kSecondaryButton, "second button"},
+    ButtonOffer{1U << 2U, "third button"},
+    ButtonOffer{1U << 3U, "fourth button"},
+    ButtonOffer{0, "none"},
 };
 
-std::size_t clutchOf(std::uint32_t buttons) {
-  const auto it = std::ranges::find(kClutches, buttons, &ClutchChoice::buttons);
-  return it == kClutches.end() ? 0 : static_cast<std::size_t>(it - kClutches.begin());
+std::size_t offerOf(std::uint32_t buttons) {
+  const auto it = std::ranges::find(kOffers, buttons, &ButtonOffer::buttons);
+  return it == kOffers.end() ? 0 : static_cast<std::size_t>(it - kOffers.begin());
 }
 
 // One axis: the measured part, and where the stylus is now.
@@ -158,11 +158,20 @@ void motionPart(Parts& parts) {
   if (dialogButton("Wider (+)", questions, Key::kPlus)) move(kMotionStep);
   ImGui::SameLine();
   ImGui::Text("%.0f %% of what reaches all of the scan", 100.0 * setup.motion);
-  const std::size_t clutch = clutchOf(setup.clutch_buttons);
-  if (dialogButton("Clutch (C)", questions, letter('C')))
-    setup.clutch_buttons = kClutches[(clutch + 1) % kClutches.size()].buttons;
+  const auto after = [](std::uint32_t buttons) {
+    return kOffers[(offerOf(buttons) + 1) % kOffers.size()].buttons;
+  };
+  if (dialogButton("Clutch (C)", questions, letter('C'))) setup.giveClutch(after(setup.clutch_buttons));
   ImGui::SameLine();
-  ImGui::Text("held by: %s", kClutches[clutchOf(setup.clutch_buttons)].name);
+  ImGui::Text("held by: %s", kOffers[offerOf(setup.clutch_buttons)].name);
+  if (dialogButton("Tools around the tip (U)", questions, letter('U')))
+    setup.giveMenu(after(setup.menu_buttons));
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "While the button is held, a movement of the stylus points at a tool or a tip; letting go chooses "
+        "it.");
+  ImGui::SameLine();
+  ImGui::Text("opened by: %s", kOffers[offerOf(setup.menu_buttons)].name);
 }
 
 }  // namespace

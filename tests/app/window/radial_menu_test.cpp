@@ -158,5 +158,28 @@ TEST(RadialMenu, it_is_drawn_whole_and_directions_count_from_the_cursor) {
   EXPECT_EQ(menu.drawnAt(), glm::dvec2(50, 30));
 }
 
+TEST(RadialMenu, of_a_device_is_pointed_at_by_its_tip_and_chosen_by_its_button) {
+  RadialMenu menu = opened(By::kDevice);
+  EXPECT_TRUE(menu.ofDevice());
+  // The cursor is elsewhere, and does not point.
+  EXPECT_TRUE(menu.handle(moveTo(towards(4, 90.0))).used);
+  EXPECT_FALSE(menu.pointed());
+  menu.follow(towards(2, 90.0));
+  EXPECT_EQ(menu.pointed(), 2U);
+  EXPECT_EQ(menu.letGo().chosen, RadialMenu::kItems[2].action);
+  EXPECT_FALSE(menu.active());
+  // A tap leaves it open, and the next press chooses.
+  menu = opened(By::kDevice);
+  EXPECT_FALSE(menu.letGo().chosen);
+  EXPECT_TRUE(menu.ofDevice());
+  menu.follow(towards(6, 90.0));
+  EXPECT_FALSE(menu.letGo().chosen) << "the button is not held";
+  EXPECT_EQ(menu.pressAgain().chosen, RadialMenu::kItems[6].action);
+  // One that a key opened is not the device's.
+  menu = opened(By::kKey);
+  EXPECT_FALSE(menu.ofDevice());
+  EXPECT_FALSE(menu.letGo().used);
+}
+
 }  // namespace
 }  // namespace fettle::app

@@ -35,7 +35,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.loudness = {0.25F, true};
   settings.ask_before_quitting = false;
   settings.devices["omega.3, 10406"] = {DeviceReach{{-60.5, -70.0, -50.0}, {61.0, 72.0, 53.0}}, 0.4, 0};
-  settings.devices["Touch"] = {};
+  settings.devices["Touch"].giveMenu(2);
   settings.save(path);
   EXPECT_EQ(Settings::load(path), settings);
   EXPECT_FALSE(Settings() == settings);
@@ -75,7 +75,7 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   }
   // A box in which no hand fits, numbers that are none, a motion out of range.
   std::ofstream(path)
-      << R"({"devices": {"A": {"low_mm": [0, 0, 0], "high_mm": [100, 100, 5], "motion": 7, "clutch_buttons": -1},
+      << R"({"devices": {"A": {"low_mm": [0, 0, 0], "high_mm": [100, 100, 5], "motion": 7, "clutch_buttons": -1, "menu_buttons": "x"},
                          "B": {"low_mm": [0, 0], "high_mm": [1e9, 1, 1]}, "C": 5}})";
   EXPECT_EQ(Settings::load(path).devices, (DeviceSetups{{"A", {}}, {"B", {}}}));
   std::ofstream(path) << "{\"mouse\": \"meshlab\", \"split_at\": 7e9}";

@@ -129,6 +129,46 @@ TEST_P(DeviceButtons, choose_tools_and_tips_and_neither_begin_nor_lose_a_stroke)
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(log), {}), "");
 }
 
+TEST_P(DeviceButtons, the_second_opens_the_tools_around_the_tip_where_the_device_is_set_up_so) {
+  User user(display, *program_, "tools around the tip");
+  (void)user.press("ctrl+shift+d");
+  program_->until("the page", [](const State& s) { return s["dialog"] == "device"; });
+  (void)user.press("u");
+  (void)user.press("Return");
+  const State set = program_->until("it is used", [](const State& s) {
+    return s["dialog"] == "none" && s["connected"] == true && s["device_check"]["menu_buttons"] == 2;
+  });
+  EXPECT_EQ(set["device_check"]["clutch_buttons"], 0) << "a button has one duty";
+
+  const auto radial = [&](const State& is) {
+    return program_->until("the menu at " + is.dump(), [&](const State& s) { return s["radial"] == is; });
+  };
+  (void)hold({2});
+  (void)radial("");
+  // The first button is no stroke meanwhile.
+  (void)hold({1, 2});
+  (void)hold({2});
+  for (int i = 0; i < 200; ++i) {
+    page_->right_mm = page_->right_mm + 0.1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  (void)radial("Unmark");
+  (void)user.look("the tip points at a tool");
+  (void)hold({});
+  (void)program_->until("unmark",
+                        [](const State& s) { return s["tool"] == "unmark" && s["radial"].is_null(); });
+  // A tap leaves it open; Escape ends it, and nothing was chosen.
+  (void)hold({2});
+  (void)radial("");
+  (void)hold({});
+  (void)user.press("Escape");
+  EXPECT_EQ(radial(nullptr)["tool"], "unmark");
+  expectSteps(0);
+  program_->signal(SIGTERM);
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectSilence(*program_);
+}
+
 INSTANTIATE_TEST_SUITE_P(Makers, DeviceButtons,
                          testing::Values(ButtonMaker{"touch", "FETTLE_LIBHD", FETTLE_FAKE_HD},
                                          ButtonMaker{"forcedimension", "FETTLE_LIBDHD", FETTLE_FAKE_DHD}),
