@@ -83,7 +83,7 @@ FETTLE_CONST kSpecFootprint = 10;
 // Light that is hidden by what stands around; brighter ridges and darker hollows (surroundings.glsl).
 FETTLE_CONST kSpecOcclusion = 11;
 FETTLE_CONST kSpecCavity = 12;
-FETTLE_CONST kSpecFaint = 13;  // of the stylus: what the surface hides
+FETTLE_CONST kSpecFaint = 13;     // of the stylus: what the surface hides
 FETTLE_CONST kSpecMaterial = 14;  // shaded as a material (material.glsl)
 FETTLE_CONST kSpecCount = 15;
 
@@ -149,15 +149,15 @@ struct PanelUniforms {
   // samples lie that its colour may depend on, and one more after it; -.
   ivec4 footprint;  // 512
   // Distances of the samples that surroundings are taken from [steps]: along x, along y; on the lines between: x, y.
-  vec4 around;             // 528
-  vec4 form;               // 544: strength of occlusion, of cavity, 0 .. 1; -; -
+  vec4 around;  // 528
+  vec4 form;    // 544: strength of occlusion, of cavity, 0 .. 1; -; -
   // Unit vectors in the scene to the picture's right, its top, the viewer; share of the colours of values in that of the
   // material, 0 .. 1; -; strength of its light, 0 .. 1.
   vec4 to_right, to_top, to_viewer;  // 560
   Material material;                 // 608
   vec4 of_level;                     // 672: 1 / the light on its body where the surface is level; -
   vec4 colours[kColours];            // 688: linear red, green, blue
-  PageHead pages;          // where samples are on the device on demand
+  PageHead pages;                    // where samples are on the device on demand
 };
 
 // Values of the image of marks per sample; 0 is no mark.

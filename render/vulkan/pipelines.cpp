@@ -125,8 +125,8 @@ std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
                 gpu::kSpecCell == 6 && gpu::kSpecOnDemand == 7 && gpu::kSpecGather == 8 &&
                 gpu::kSpecPerspective == 9 && gpu::kSpecFootprint == 10 && gpu::kSpecOcclusion == 11 &&
                 gpu::kSpecCavity == 12 && gpu::kSpecFaint == 13 && gpu::kSpecMaterial == 14);
-  return {v.paged,     v.marks,  v.deviation,   v.contours,  v.smooth,    v.holes, v.cell_slopes,
-          v.on_demand, v.gather, v.perspective, v.footprint, v.occlusion, v.cavity, false, v.material};
+  return {v.paged,  v.marks,       v.deviation, v.contours,  v.smooth, v.holes, v.cell_slopes, v.on_demand,
+          v.gather, v.perspective, v.footprint, v.occlusion, v.cavity, false,   v.material};
 }
 
 }  // namespace
