@@ -5,14 +5,30 @@
 # compiled together, some fifteen to a translation unit, so names in anonymous namespaces are unique within a folder.
 # APART: each by itself, for kernels whose code must not depend on their neighbours and for -inl.h files that are
 # included once per instruction set. With FETTLE_TOGETHER=OFF every file is apart (what clang-tidy reads).
+# Sources with planted errors (scripts/mutate) are compiled once and run for less than that takes.
+function(fettle_planted target unit)
+  foreach(file ${ARGN})
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${file}.planted)
+      set_source_files_properties(${unit} TARGET_DIRECTORY ${target} PROPERTIES
+        COMPILE_OPTIONS "-O1;-finline-small-functions")
+    endif()
+  endforeach()
+endfunction()
+
 option(FETTLE_TOGETHER "Compile the files of a folder together" ON)
 function(fettle_sources target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   set(together ${ARG_UNPARSED_ARGUMENTS})
   target_sources(${target} PRIVATE ${ARG_APART})
+  foreach(file ${ARG_APART})
+    fettle_planted(${target} ${file} ${file})
+  endforeach()
   list(LENGTH together count)
   if(NOT FETTLE_TOGETHER OR count LESS 2)
     target_sources(${target} PRIVATE ${together})
+    foreach(file ${together})
+      fettle_planted(${target} ${file} ${file})
+    endforeach()
     return()
   endif()
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -22,6 +38,7 @@ function(fettle_sources target)
     math(EXPR length "${count} * ${unit} / ${units} - ${begin}")
     list(SUBLIST together ${begin} ${length} files)
     list(GET files 0 first)
+    set(planted ${files})
     string(REGEX REPLACE "[./]" "_" first ${first})
     # Paths within the tree, not of this machine: the compiler cache then serves every checkout.
     list(TRANSFORM files REPLACE "(.+)" "#include \"${folder}/\\1\"\n")
@@ -29,6 +46,7 @@ function(fettle_sources target)
     set(path ${CMAKE_CURRENT_BINARY_DIR}/together/${target}_${first}.cpp)
     file(CONFIGURE OUTPUT ${path} CONTENT "${text}" @ONLY)
     target_sources(${target} PRIVATE ${path})
+    fettle_planted(${target} ${path} ${planted})
   endforeach()
 endfunction()
 

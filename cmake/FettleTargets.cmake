@@ -32,6 +32,9 @@ if(FETTLE_FUZZ)
   target_link_options(fettle_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# For scripts/mutate alone: tests tell which planted errors they come past.
+option(FETTLE_PLANTED "Some sources have planted errors" OFF)
+
 # fettle_room(name LINKS targets...): a room's library; its folders add sources with target_sources.
 function(fettle_room name)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
@@ -76,6 +79,9 @@ function(fettle_test name)
   add_executable(${name})
   fettle_sources(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gtest_main)
+  if(FETTLE_PLANTED)
+    target_link_libraries(${name} PRIVATE fettle_map_cases)
+  endif()
   fettle_test_options(${name})
   # What scripts/test builds of a preset that does not run everything.
   if(ARG_LABELS MATCHES "^(concurrency|live)$")

@@ -2,12 +2,13 @@
 
 // Included before everything else in a build with planted errors (scripts/mutate): each is there, and the environment's
 // FETTLE_PLANT chooses the one that is at work. With FETTLE_PLANT_MAP, a file, the process appends the numbers of the
-// plants that it came past.
+// plants that it came past: a test program after each case (map_cases.cpp), another when it ends.
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <type_traits>
 
 namespace fettle_planted {
@@ -21,23 +22,30 @@ inline int chosenNow() {
 
 inline const int chosen = chosenNow();
 inline unsigned char passed[kMost];
+inline const char* const mapPath = std::getenv("FETTLE_PLANT_MAP");
+inline bool caseByCase = false;
 
-// Writes what was passed when the process ends, one whole line for each.
-struct Map {
-  const char* path = std::getenv("FETTLE_PLANT_MAP");
-  ~Map() {
-    if (path == nullptr) return;
-    const int file = ::open(path, O_WRONLY | O_APPEND | O_CREAT, 0644);
-    for (int k = 0; file >= 0 && k < kMost; ++k) {
-      if (passed[k] == 0) continue;
-      char line[16];
-      const int length = std::snprintf(line, sizeof line, "%d\n", k);
-      if (::write(file, line, static_cast<unsigned>(length)) != length) break;
-    }
-    if (file >= 0) ::close(file);
+// Appends "NAME n n n...\n" in one write, which no other process's comes amid of, and forgets what was passed.
+inline void tell(const char* name) {
+  static char line[6 * kMost + 1024];
+  int length = std::snprintf(line, 1000, "%s", name);
+  for (int k = 0; k < kMost; ++k) {
+    if (passed[k] != 0) length += std::snprintf(line + length, 8, " %d", k);
+  }
+  line[length++] = '\n';
+  std::memset(passed, 0, sizeof passed);
+  const int file = ::open(mapPath, O_WRONLY | O_APPEND | O_CREAT, 0644);
+  if (file < 0) return;
+  if (::write(file, line, static_cast<unsigned>(length)) != length) std::abort();
+  ::close(file);
+}
+
+struct AtEnd {
+  ~AtEnd() {
+    if (mapPath != nullptr && !caseByCase) tell("-");
   }
 };
-inline const Map map;
+inline const AtEnd atEnd;
 
 // Whether the plant is at work. What is computed while compiling has no plants.
 constexpr bool at(int plant) noexcept {
