@@ -296,6 +296,20 @@ TEST(ForceGuard, TipAboveTheSpeedLimitIsBrakedAndNotDriven) {
   EXPECT_FALSE(w.problem()) << *w.problem();
 }
 
+// The brake adds to a force across the motion: its length is held again behind it, by the limit of warmth, which never is
+// above the peak, and by the last clamp behind that.
+TEST(ForceGuard, BrakeAcrossTheFullForceStaysWithinThePeak) {
+  GuardWitness w = active();
+  SafetyInput fast = pressing(5.0);
+  fast.velocity_mm_per_s = {3000.0, 0.0, 0.0};
+  run(w, fast, 50);
+  EXPECT_LT(w.guard().force().x, -3.0);  // braked
+  EXPECT_GT(w.guard().force().z, 3.0);   // and pressed
+  EXPECT_LE(w.peakForce(), 5.0 + 1e-12);
+  EXPECT_GT(w.guard().counters().thermal, 0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
 TEST(ForceGuard, FaultWhileBrakingFadesFromWhatTheHandHas) {
   GuardWitness w = active();
   SafetyInput fast = pressing(4.0);
