@@ -374,6 +374,9 @@ TEST(MovedOnto, ThroughNoMotionEveryBitStays) {
   JobControl job;
   const auto moved = movedOnto(field, {}, grid, job);
   ASSERT_TRUE(moved);
+  EXPECT_STREQ(job.stage(), "moving the field");
+  EXPECT_EQ(job.total(), 4U);
+  EXPECT_EQ(job.done(), job.total());
   for (int r = 0; r < grid.height; ++r)
     for (int c = 0; c < grid.width; ++c) {
       const float was = field.reader().heightAt(c, r), is = moved->reader().heightAt(c, r);

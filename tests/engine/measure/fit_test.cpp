@@ -75,6 +75,14 @@ Result<ShapeFit> fitOf(const Version& field, ShapeKind kind, const FitOptions& o
   return fitShape(FitSamples(field, wholeOf(field)), kind, options, job);
 }
 
+TEST(Fit, SaysWhatItIsDoing) {
+  const Version field = fieldWith({}, [](double x, double y) { return 0.1 * x - 0.2 * y; });
+  const FitRegion region = wholeOf(field);
+  JobControl job;
+  ASSERT_TRUE(fitShape(FitSamples(field, region), ShapeKind::kPlane, {}, job));
+  EXPECT_STREQ(job.stage(), "fitting");
+}
+
 // A part of each shape as seen from above, 6 x 5 mm around (3, 2.5); the bounds of z for heightOn.
 struct SeenShape {
   std::string name;

@@ -119,6 +119,16 @@ TEST(NominalDeviation, OfASphereIsThatOfTheSphere) {
   EXPECT_GT(vertical->max, 0.09);
 }
 
+TEST(NominalHeights, AreSeenToComeTileByTile) {
+  const NominalMesh mesh = meshOf(surfaceOver(5, 5, 5, 5, [](double, double) { return 1.0; }));
+  JobControl job;
+  const auto heights = nominalHeights(NominalSurface(mesh, {}, 0.0), partGrid(130, 70, 0.03, 0.05), job);
+  ASSERT_TRUE(heights);
+  EXPECT_STREQ(job.stage(), "sampling the nominal");
+  EXPECT_EQ(job.total(), 6U);
+  EXPECT_EQ(job.done(), job.total());
+}
+
 TEST(NominalDeviation, CountsWhatHasNoNominal) {
   // The nominal covers the lower left quarter; a ring with nothing in its middle.
   Triangles triangles = surfaceOver(5, 5, 5, 5, [](double, double) { return 1.0; });

@@ -42,6 +42,16 @@ RC_GTEST_PROP(Session, WhateverWasDoneComesBackBitForBit, ()) {
   RC_ASSERT(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
+TEST(Session, SavingIsSeenToAdvanceTileByTile) {
+  const TempFolder folder;
+  const Play play(3, 300, 200);
+  JobControl job;
+  ASSERT_TRUE(saveSession(play.session, folder.file("a.fettle"), job));
+  EXPECT_STREQ(job.stage(), "writing the session");
+  EXPECT_EQ(job.total(), 20U);
+  EXPECT_EQ(job.done(), job.total());
+}
+
 TEST(Session, StatesShareInMemoryWhatTheySharedBefore) {
   const TempFolder folder;
   Play play(7, 700, 500);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/io/mesh/stl_file.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 
@@ -50,6 +51,17 @@ std::string textStl(const std::string& first = "0", const std::string& end = "en
 Result<NominalMesh> nominalOf(const std::string& path, const LengthUnit& unit = {}) {
   JobControl job;
   return readNominal(path, unit, job);
+}
+
+TEST(NominalFile, TrianglesAreCountedBeforeTheyAreRead) {
+  const TempFolder folder;
+  writeBytes(folder.file("b.stl"), binaryStl(2));
+  const auto file = InputFile::open(folder.file("b.stl"));
+  ASSERT_TRUE(file);
+  JobControl job;
+  ASSERT_TRUE(readStlMesh(*file, job));
+  EXPECT_STREQ(job.stage(), "reading");
+  EXPECT_EQ(job.total(), 2U);
 }
 
 TEST(NominalFile, ReadsBytesAndTextAlike) {

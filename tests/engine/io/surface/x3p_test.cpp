@@ -152,6 +152,16 @@ TEST_F(X3p, AMatrixOfTextIsRead) {
   EXPECT_NE(refused({{"main.xml", xml.text()}}).find("row 1 of 2"), std::string::npos);
   xml.heights = "<DataList><Datum>1</Datum><Datum>0,5</Datum></DataList>";
   EXPECT_NE(refused({{"main.xml", xml.text()}}).find("column 2"), std::string::npos);
+  // A height of 512 characters is read, a longer one is none.
+  const auto long_one = [](std::size_t characters) {
+    return "<DataList><Datum>1." + std::string(characters - 5, '0') +
+           "e-6</Datum><Datum>2e-6</Datum><Datum/><Datum>-3e-6</Datum>"
+           "<Datum>4.5e-6</Datum><Datum>0</Datum></DataList>";
+  };
+  xml.heights = long_one(512);
+  expectHeights(load({{"main.xml", xml.text()}}));
+  xml.heights = long_one(513);
+  EXPECT_NE(refused({{"main.xml", xml.text()}}).find("row 1 of 2"), std::string::npos);
   // Far more than the parser of the rest would be given.
   xml.width = "700";
   xml.height = "500";
