@@ -70,6 +70,25 @@ TEST(Detail, LevelsAboveTheTileAreBoundedByWhatLiesBelow) {
   expectBound(field, 1e9);
 }
 
+TEST(Detail, KinkOfACellCutShortIsBoundedAboveTheTilesToo) {
+  // The surface of level 6 of a twisted field, at every sample: level 6 draws it as it is. Its vertices lie on what level 7
+  // draws, but for the row in the middle, where the diagonals of cells that are 65 rows high part from each other.
+  const auto twist = [](double c, double r) { return 1e-3 * c * r; };
+  const engine::Version field = fieldOf(gridOf(1100, 66), [&](int c, int r) {
+    const int c0 = c / 64 * 64, r0 = std::min(r / 64 * 64, 64), c1 = std::min(c0 + 64, 1099),
+              r1 = r0 == 0 ? 64 : 65;
+    if (c1 == c0) return twist(c, r);
+    const double u = static_cast<double>(c - c0) / (c1 - c0), v = static_cast<double>(r - r0) / (r1 - r0);
+    const double z10 = twist(c1, r0), z01 = twist(c0, r1);
+    return u + v <= 1.0 ? (1.0 - u - v) * twist(c0, r0) + u * z10 + v * z01
+                        : (u + v - 1.0) * twist(c1, r1) + (1.0 - u) * z01 + (1.0 - v) * z10;
+  });
+  DetailMeasure measure;
+  measure.measure(field.reader());
+  ASSERT_EQ(measure.topLevel(), DetailMeasure::kTileLevels + 1);
+  expectBound(field, 1e9);
+}
+
 TEST(Detail, ExcessIsHowFarSamplesReachBeyondTheVerticesOfTheirCell) {
   // A step has none; a spike between vertices has all of its height; a hole makes it unbounded.
   DetailMeasure measure;
