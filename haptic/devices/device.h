@@ -87,11 +87,19 @@ struct DeviceCounters {
   std::int64_t longest_output_ns = 0;  ///< longest single write; 5 s when the device stops taking reports
 };
 
+/// What the tip meets in a tick: for a device that shows it otherwise than by a force.
+struct Touched {
+  bool contact = false;
+  glm::dvec3 proxy_mm{0.0};  ///< field coordinates; of a tick with contact
+  glm::dvec3 force_n{0.0};   ///< the scene's, field frame
+  double strength = 0.0;     ///< 0 .. 1 of the scene's largest force; 0 while the device is disarmed
+};
+
 /// One haptic or input device.
 ///
 /// Life: construct, start(), any number of read()/write(), stop(); start() may follow again. The destructor
 /// stops.
-/// Threading: one loop thread calls read() and write(); one other thread owns start(), stop() and calibrate()
+/// Threading: one loop thread calls read(), write() and show(); one other thread owns start(), stop() and calibrate()
 /// (the loop thread must not be running yet at start() nor still at stop()); counters() from any thread;
 /// profile() from any thread, constant between start() and stop().
 class Device {
@@ -110,6 +118,9 @@ class Device {
   /// but the caller clamps to max_force_n: only the safety stage clamps. A force that is not renewed for 10
   /// ms is replaced by zero.
   virtual void write(const glm::dvec3& force_n) noexcept = 0;
+
+  /// What the tick met, after each write(). Wait-free like read().
+  virtual void show(const Touched&) noexcept {}
 
   /// Allocates, starts threads. A device that is not plugged in is no error: its link stays kDisconnected
   /// until it is plugged in. Errors: kFailed when threads or system libraries are not available.

@@ -91,7 +91,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// code:
 ///
 ///   commands --> device.read --> workspace --> Tick::run (the tick of replay) --> ForceGuard
-///            --> device.write --> sound --> dirty rectangle --> publish (every n ticks) --> state slot
+///            --> device.write, device.show --> sound --> dirty rectangle --> publish (every n ticks) --> state slot
 ///
 /// Edits. The loop keeps one dirty rectangle. Every publish_ticks ticks it sends {rectangle, snapshot} if the
 /// field's root changed since. A snapshot is O(1); its later cost is one tile copy (17 KB, about 1 us) for
@@ -163,6 +163,7 @@ class LoopTick {
 
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
   [[nodiscard]] std::optional<glm::dvec3> stylusAxis(const DeviceInput& input) const noexcept;
+  [[nodiscard]] Touched touched(const ForceSample& force) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void sound(std::int64_t since_ns) noexcept;
   [[nodiscard]] bool samplesArePrefetched(const glm::dvec3& tip_mm) noexcept;

@@ -34,6 +34,7 @@ class HandDevice : public Device {
     return input;
   }
   void write(const glm::dvec3& force_n) noexcept override { force = force_n; }
+  void show(const Touched& touched) noexcept override { shown = touched; }
   engine::Status start() override { return {}; }
   void stop() noexcept override {}
 
@@ -41,6 +42,7 @@ class HandDevice : public Device {
   bool speaking = true;     ///< false: no new input
   std::int64_t now_ns = 0;  ///< set by whoever ticks
   glm::dvec3 force{0.0};    ///< the newest written
+  Touched shown;            ///< the newest
 
  protected:
   DeviceProfile profile_;

@@ -121,6 +121,32 @@ TEST(LoopTick, StrokeEndsWithTheButtonAndReportsTheCommittedVersion) {
   EXPECT_FALSE(event.version.reader().markedAt(73, 30));
 }
 
+TEST(LoopTick, WhatIsTouchedIsShownToTheDeviceWithAStrengthWhileItIsArmed) {
+  const engine::Version flat = fettle::tests::fieldOf(kSide, kSide, [](int, int) { return 0.0; });
+  reserve(flat);
+  const Scene scene = sceneWithBrush(0.0);
+  LoopBench bench(flat, flat, scene, testOptions(Tool::kFeel));
+  const auto press = [&](double depth_mm, int ticks) {
+    for (int i = 0; i < ticks; ++i) bench.tickAt({20.0, 30.0, -depth_mm});
+    return bench.device.shown;
+  };
+  press(-5.0, 50);
+  EXPECT_FALSE(press(-5.0, 1).contact);
+  EXPECT_TRUE(press(0.5, 20).contact);
+  EXPECT_EQ(press(0.5, 1).strength, 0.0) << "not armed";
+  EXPECT_NEAR(bench.device.shown.proxy_mm.z, 0.0, 1e-6);
+  press(-5.0, 50);
+  ASSERT_TRUE(bench.send(CommandKind::kArm));
+  press(-5.0, 1200);
+  EXPECT_NEAR(press(0.5, 20).strength, 0.5 * scene.stiffness_n_per_mm / scene.force_limit_n, 1e-3);
+  EXPECT_NEAR(bench.device.shown.force_n.z, 0.5 * scene.stiffness_n_per_mm, 0.02);
+  EXPECT_EQ(press(100.0, 20).strength, 1.0);
+  bench.channels.disarm();
+  EXPECT_EQ(press(100.0, 50).strength, 0.0);
+  bench.loop.stop();
+  EXPECT_FALSE(bench.device.shown.contact);
+}
+
 TEST(LoopTick, UnplugMidStrokeKeepsTheStrokeAndGivesNoForce) {
   const engine::Version start = bumpy();
   reserve(start);

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "haptic/base/latest_slot.h"
+#include "haptic/devices/device.h"
+#include "haptic/devices/virtual/mouse_stylus.h"
+
+namespace fettle::haptic {
+
+/// The hand with the tip, as one frame of a headset has it; field coordinates.
+struct ControllerHand {
+  bool tip = false;  ///< false: no hand may be the tip: it points at panels, holds the field, or is not seen
+  bool pressed = false;      ///< its trigger
+  std::int64_t when_ns = 0;  ///< engine::steadyNs() when it was read
+  glm::dvec3 position_mm{0.0};
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  ///< as DeviceInput::orientation
+};
+
+/// Between the thread of a headset and the loop; neither waits for the other. It outlives loops and devices, which end and begin
+/// with each document, while the headset's thread goes on.
+struct ControllerLink {
+  LatestSlot<ControllerHand> hand;  ///< headset's thread to loop
+  LatestSlot<Touched> touched;      ///< loop to headset's thread: what the hand meets while it is the tip
+  /// Whether the hand is the tip. Relaxed everywhere: it stands for itself.
+  std::atomic<bool> leads{false};
+};
+
+/// The mouse, and in its place a headset's controller: from the first press of a trigger over the field until the mouse draws
+/// a stroke. A stroke has one hand: what the other presses meanwhile begins none. Where one takes over, the tip lifts off for
+/// one input (NaN), so that nothing is drawn on the way from one to the other.
+///
+/// Poses come with the headset's frames, the tip moves with the loop's ticks: it follows with a time constant. Frames that stay
+/// away for two seconds lift it.
+///
+/// Threading: as MouseStylus; the headset's thread uses the link alone.
+class ControllerStylus final : public Device {
+ public:
+  ControllerStylus(const MouseFeel& feel, std::shared_ptr<ControllerLink> link);
+
+  [[nodiscard]] const DeviceProfile& profile() const noexcept override { return profile_; }
+  [[nodiscard]] DeviceInput read() noexcept override;
+  void write(const glm::dvec3&) noexcept override {}
+  void show(const Touched& touched) noexcept override;
+  [[nodiscard]] engine::Status start() override { return {}; }
+  /// Nothing is touched, and no hand is the tip, from here on.
+  void stop() noexcept override;
+
+  [[nodiscard]] MouseStylus& mouse() noexcept { return mouse_; }
+
+  /// read() at a time given by the caller [ns]; read() takes the steady clock. For tests.
+  [[nodiscard]] DeviceInput readAt(std::int64_t now_ns) noexcept;
+
+ private:
+  void lead(bool leads) noexcept;
+  [[nodiscard]] DeviceInput numbered(DeviceInput input) noexcept;
+
+  MouseStylus mouse_;
+  std::shared_ptr<ControllerLink> link_;
+  DeviceProfile profile_;
+  // Used by the loop's thread only.
+  bool chosen_ = false;  // over the mouse
+  bool leads_ = false;
+  std::optional<glm::dvec3> tip_mm_;  // nothing: not placed yet
+  std::int64_t last_read_ns_ = 0;
+  std::uint64_t sequence_ = 0, mouse_sequence_ = 0;
+};
+
+}  // namespace fettle::haptic
