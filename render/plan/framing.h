@@ -24,6 +24,9 @@ struct Framing {
   [[nodiscard]] glm::dvec3 sceneOf(const glm::dvec3& field_mm) const noexcept {
     return {first + glm::dvec2(field_mm), (field_mm.z - reference_mm) * exaggeration};
   }
+  [[nodiscard]] glm::dvec3 fieldOf(const glm::dvec3& scene) const noexcept {
+    return {glm::dvec2(scene) - first, scene.z / exaggeration + reference_mm};
+  }
   /// The middle of what is shown, and its longer horizontal side [mm].
   [[nodiscard]] glm::dvec3 middle() const noexcept { return 0.5 * (shown.low + shown.high); }
   [[nodiscard]] double longerSide() const noexcept;

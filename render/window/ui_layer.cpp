@@ -238,6 +238,30 @@ void UiLayer::holdClick() {
   std::copy(down_.begin(), down_.end(), std::begin(io.MouseDown));
 }
 
+// After ImGui's back end, which sets position and buttons from the window's cursor.
+void UiLayer::followPointer() {
+  ImGuiIO& io = ImGui::GetIO();
+  const bool was_down = pointer_ && pointer_->down.value_or(false);
+  bool edge = false;
+  while (!pointed_.empty() && !edge) {
+    const std::optional<Pointed> next = pointed_.front();
+    pointed_.pop_front();
+    if (!next) {
+      pointer_.reset();
+      // A button that was down goes up in a frame of its own.
+      edge = was_down;
+      continue;
+    }
+    const bool down = next->down.value_or(pointer_ && pointer_->down.value_or(false));
+    edge = down != was_down;
+    io.MouseWheel += static_cast<float>(next->wheel);
+    pointer_ = Pointed{next->x, next->y, down, 0.0};
+  }
+  if (!pointer_) return;
+  io.MousePos = ImVec2(static_cast<float>(pointer_->x), static_cast<float>(pointer_->y));
+  io.MouseDown[0] = io.MouseDown[0] || pointer_->down.value_or(false);
+}
+
 void UiLayer::beginFrame() {
   // In dialogs and menus the arrow keys move between fields; elsewhere they turn the view, and must not
   // navigate in the panels.
@@ -250,6 +274,7 @@ void UiLayer::beginFrame() {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   holdClick();
+  followPointer();
   const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
   for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +43,18 @@ class UiLayer {
   /// A mouse button (GLFW's number) went down or up at this place of the window. ImGui reads buttons and place when a frame
   /// begins: with this call it gets each press and each release where it was, one a frame.
   void noteButton(int button, bool down, float x, float y);
+  /// A pointer in the mouse's place until it leaves (Window::point): where it is (GLFW's coordinates), whether its button went
+  /// down or up there, and steps of its wheel. A frame takes one press or release, the next the next one.
+  struct Pointed {
+    double x = 0.0, y = 0.0;
+    std::optional<bool> down{};
+    double wheel = 0.0;
+  };
+  void point(const Pointed& at) { pointed_.push_back(at); }
+  void leavePointer() { pointed_.push_back(std::nullopt); }
   /// Whether presses or characters wait for a later frame.
   [[nodiscard]] bool behind() const noexcept {
-    return !pressed_.empty() || !waiting_.empty() || !clicks_.empty();
+    return !pressed_.empty() || !waiting_.empty() || !clicks_.empty() || !pointed_.empty();
   }
   void beginFrame();
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
@@ -78,16 +89,19 @@ class UiLayer {
   void holdClick();
   [[nodiscard]] bool wantsKeys() const noexcept;
   [[nodiscard]] std::vector<int> holdShortPresses();
+  void followPointer();
 
   Context* context_ = nullptr;
   bool entered_ = false;
   GLFWwindow* window_;
-  std::vector<Press> pressed_;    // since the last frame began, or waiting for the next one
-  std::vector<Click> clicks_;     // the same
-  bool dialog_ = false;           // one was open when the last frame began
-  std::array<bool, 5> down_{};    // of the buttons, after the clicks that had their frame
-  std::vector<ImWchar> waiting_;  // characters that wait for the next frame
-  std::string layout_file_;       // ImGui keeps a pointer to its text
+  std::vector<Press> pressed_;                  // since the last frame began, or waiting for the next one
+  std::vector<Click> clicks_;                   // the same
+  bool dialog_ = false;                         // one was open when the last frame began
+  std::array<bool, 5> down_{};                  // of the buttons, after the clicks that had their frame
+  std::vector<ImWchar> waiting_;                // characters that wait for the next frame
+  std::deque<std::optional<Pointed>> pointed_;  // not taken by a frame yet; nothing: it left
+  std::optional<Pointed> pointer_;              // in the last frame
+  std::string layout_file_;                     // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;
   GpuImage image_;

@@ -12,6 +12,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <glm/vec2.hpp>
 
 #include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
@@ -175,13 +176,23 @@ struct Window::Impl {
     }
     return *cursor;
   }
-  void note(InputEvent event) {
-    const auto [x, y] = cursorOfEvent();
+  // Of the frame, for each of GLFW's units.
+  [[nodiscard]] glm::dvec2 framePixels() const {
     int window_width = 1, window_height = 1, width = 1, height = 1;
     glfwGetWindowSize(glfw.window, &window_width, &window_height);
     glfwGetFramebufferSize(glfw.window, &width, &height);
-    event.x = x * width / std::max(window_width, 1);
-    event.y = y * height / std::max(window_height, 1);
+    return {static_cast<double>(std::max(width, 1)) / std::max(window_width, 1),
+            static_cast<double>(std::max(height, 1)) / std::max(window_height, 1)};
+  }
+  void note(InputEvent event) {
+    const auto [x, y] = cursorOfEvent();
+    const glm::dvec2 scale = framePixels();
+    event.x = x * scale.x;
+    event.y = y * scale.y;
+    noteAt(event, x, y);
+  }
+  // `x`, `y`: GLFW's.
+  void noteAt(InputEvent event, double x, double y) {
     const ImGuiIO& io = ImGui::GetIO();
     event.panels_key = io.WantTextInput || ui->entered();
     event.panels_mouse = ui->panelsHaveMouse(x, y);
@@ -376,6 +387,25 @@ void Window::setWhileWaiting(std::function<void()> work) {
 std::vector<InputEvent> Window::takeInput() {
   return std::exchange(impl_->input, {});
 }
+void Window::point(InputEvent event) {
+  Impl& w = *impl_;
+  if (!w.usable) return;
+  const glm::dvec2 at = glm::dvec2(event.x, event.y) / w.framePixels();
+  if (event.kind == InputKind::kLeave) {
+    w.ui->leavePointer();
+  } else {
+    UiLayer::Pointed pointed{at.x, at.y, std::nullopt, event.wheel};
+    if (event.kind == InputKind::kButtonDown) pointed.down = true;
+    if (event.kind == InputKind::kButtonUp) pointed.down = false;
+    w.ui->point(pointed);
+  }
+  w.noteAt(event, at.x, at.y);
+}
+
+void Window::wake() {
+  glfwPostEmptyEvent();
+}
+
 std::vector<std::string> Window::takeDrops() {
   return std::exchange(impl_->drops, {});
 }

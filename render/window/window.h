@@ -105,7 +105,7 @@ struct PanelText {
 /// A window with panels over pictures. Pictures are drawn by the same code as off-screen, into targets of the
 /// same kind; the window copies them, draws the panels (Dear ImGui) over them and shows the result.
 ///
-/// Threading: only the process's main thread; one window at a time per process.
+/// Threading: only the process's main thread, except for wake(); one window at a time per process.
 class Window {
  public:
   /// Errors (kFailed): no display (the message says so), no Vulkan device that can present on it; otherwise
@@ -121,6 +121,12 @@ class Window {
   void setWhileWaiting(std::function<void()> work);
   /// The input since the last call, oldest first.
   [[nodiscard]] std::vector<InputEvent> takeInput();
+  /// A pointer in the mouse's place, as of a hand that points at the window's frame elsewhere: moves to x, y [pixels of the
+  /// frame], presses and releases the left button there, turns the wheel, leaves. Panels and takeInput() get it as if the
+  /// mouse had done it.
+  void point(InputEvent event);
+  /// Any thread: ends the wait of poll().
+  static void wake();
   /// Paths dropped on the window since the last call.
   [[nodiscard]] std::vector<std::string> takeDrops();
 

@@ -61,6 +61,7 @@ XrResult Hands::make(const XrCalls& calls, XrInstance instance, XrSession sessio
   action("trigger", "Use the tool", XR_ACTION_TYPE_FLOAT_INPUT, trigger_);
   action("squeeze", "Hold the field", XR_ACTION_TYPE_FLOAT_INPUT, squeeze_);
   action("button", "Change the scale", XR_ACTION_TYPE_BOOLEAN_INPUT, button_);
+  action("scroll", "Scroll the panels", XR_ACTION_TYPE_FLOAT_INPUT, scroll_);
   action("vibration", "Contact", XR_ACTION_TYPE_VIBRATION_OUTPUT, vibration_);
   if (XR_FAILED(result)) return result;
 
@@ -76,6 +77,7 @@ XrResult Hands::make(const XrCalls& calls, XrInstance instance, XrSession sessio
     simple.emplace_back(button_, at + "/input/menu/click");
     touch.emplace_back(trigger_, at + "/input/trigger/value");
     touch.emplace_back(squeeze_, at + "/input/squeeze/value");
+    touch.emplace_back(scroll_, at + "/input/thumbstick/y");
   }
   touch.emplace_back(button_, "/user/hand/left/input/x/click");
   touch.emplace_back(button_, "/user/hand/right/input/a/click");
@@ -135,6 +137,7 @@ XrResult Hands::read(XrSpace room, XrTime time, RoomHands& hands) {
     hand.tracked = locate(hands_[i].aim, hand.aim) && locate(hands_[i].grip, hand.grip);
     hand.trigger = std::clamp(value(trigger_), 0.0, 1.0);
     hand.squeeze = std::clamp(value(squeeze_), 0.0, 1.0);
+    hand.scroll = std::clamp(value(scroll_), -1.0, 1.0);
     XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, button_, hands_[i].path};
     XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN, nullptr, XR_FALSE, XR_FALSE, 0, XR_FALSE};
     hand.button = XR_SUCCEEDED(xr_->GetActionStateBoolean(session_, &info, &state)) &&

@@ -33,7 +33,8 @@ class Hands {
   XrSession session_ = XR_NULL_HANDLE;
   XrActionSet set_ = XR_NULL_HANDLE;
   XrAction grip_ = XR_NULL_HANDLE, aim_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE,
-           squeeze_ = XR_NULL_HANDLE, button_ = XR_NULL_HANDLE, vibration_ = XR_NULL_HANDLE;
+           squeeze_ = XR_NULL_HANDLE, button_ = XR_NULL_HANDLE, scroll_ = XR_NULL_HANDLE,
+           vibration_ = XR_NULL_HANDLE;
   struct Hand {
     XrPath path = XR_NULL_PATH;
     XrSpace grip = XR_NULL_HANDLE, aim = XR_NULL_HANDLE;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -15,6 +16,8 @@
 #include "render/xr/hands.h"
 #include "render/xr/xr_calls.h"
 #include "render/xr/xr_images.h"
+#include "render/xr/xr_picture.h"
+#include "render/xr/xr_runtime.h"
 
 namespace fettle::render {
 namespace {
@@ -25,6 +28,11 @@ constexpr auto kBetweenEvents = std::chrono::milliseconds(10);
 
 engine::Error lost(const char* doing, XrResult result) {
   return engine::failure(fmt::format("{} failed: {}", doing, reasonOf(result)), "headset", kStart).value();
+}
+
+engine::Status noHeadset(XrResult result) {
+  return engine::failure(fmt::format("no headset can be used: {}", reasonOf(result)), "OpenXR",
+                         result == XR_ERROR_RUNTIME_UNAVAILABLE ? runtimeRemedy() : kStart);
 }
 
 }  // namespace
@@ -40,8 +48,8 @@ struct Headset::Impl {
   bool on_floor = false;
   XrEnvironmentBlendMode blend = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
   vk::Format format = kColourFormat;
-  XrImages eye_images, panel_images;
-  bool panel_shown = false;
+  XrImages eye_images;
+  std::array<XrPicture, kRoomPictures> pictures;
   Hands hands;
   bool running = false, ended = false;
   XrTime shown_at = 0;
@@ -66,7 +74,7 @@ Headset::Impl::~Impl() {
       // A lost device has no work in progress.
     }
   hands.destroy();
-  panel_images.destroy();
+  for (XrPicture& picture : pictures) picture.destroy();
   eye_images.destroy();
   if (room != XR_NULL_HANDLE) (void)xr.DestroySpace(room);
   if (session != XR_NULL_HANDLE) (void)xr.DestroySession(session);
@@ -81,8 +89,7 @@ engine::Status Headset::Impl::startInstance() {
   std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, "", 0});
   if (XR_SUCCEEDED(result))
     result = xr.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data());
-  if (XR_FAILED(result))
-    return engine::failure(fmt::format("no headset can be used: {}", reasonOf(result)), "OpenXR", kStart);
+  if (XR_FAILED(result)) return noHeadset(result);
   const char* const extension = XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME;
   if (std::none_of(offered.begin(), offered.end(),
                    [&](const auto& e) { return std::strcmp(e.extensionName, extension) == 0; }))
@@ -95,13 +102,11 @@ engine::Status Headset::Impl::startInstance() {
   info.enabledExtensionCount = 1;
   info.enabledExtensionNames = &extension;
   result = xr.CreateInstance(&info, &instance);
-  if (XR_FAILED(result))
-    return engine::failure(fmt::format("no headset can be used: {}", reasonOf(result)), "OpenXR", kStart);
+  if (XR_FAILED(result)) return noHeadset(result);
   if (auto found = xr.find(instance); !found) return found;
   XrSystemGetInfo wanted{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
   result = xr.GetSystem(instance, &wanted, &system);
-  if (XR_FAILED(result))
-    return engine::failure(fmt::format("no headset can be used: {}", reasonOf(result)), "OpenXR", kStart);
+  if (XR_FAILED(result)) return noHeadset(result);
   auto properties = typed<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
   if (XR_SUCCEEDED(xr.GetSystemProperties(instance, system, &properties))) name = properties.systemName;
   return {};
@@ -304,19 +309,18 @@ engine::Status Headset::Impl::frame(const HeadsetFrame& frame) {
                       eye_images.part(static_cast<std::uint32_t>(eye))};
   const XrCompositionLayerProjection projection{
       XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, room, 2, projected.data()};
-  auto quad = typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD);
+  std::vector<XrCompositionLayerQuad> quads;
   std::vector<const XrCompositionLayerBaseHeader*> layers;
   if (complete) {
     ++drawn;
     layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
-    if (frame.panel && panel_shown) {
-      quad.space = room;
-      quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
-      quad.subImage = panel_images.part(0);
-      quad.pose = xrPose(frame.panel->pose);
-      quad.size = {static_cast<float>(frame.panel->width_m), static_cast<float>(frame.panel->height_m)};
+    if (frame.panels)
+      for (const RoomPanel& panel : frame.panels()) {
+        const XrPicture& picture = pictures[static_cast<std::size_t>(panel.picture)];
+        if (picture.made()) quads.push_back(picture.on(panel, room));
+      }
+    for (const XrCompositionLayerQuad& quad : quads)
       layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
-    }
   }
   const XrFrameEndInfo end{
       XR_TYPE_FRAME_END_INFO, nullptr, shown_at, blend, static_cast<std::uint32_t>(layers.size()),
@@ -329,6 +333,11 @@ engine::Status Headset::Impl::frame(const HeadsetFrame& frame) {
 
 Headset::Headset(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Headset::~Headset() = default;
+
+void Headset::silenceLoader() {
+  // The loader's own word for no message at all (1.0.20); its errors come back as results.
+  (void)setenv("XR_LOADER_DEBUG", "none", 0);
+}
 
 engine::Result<std::unique_ptr<Headset>> Headset::create(const HeadsetOptions& options) try {
   auto impl = std::make_unique<Impl>();
@@ -381,43 +390,11 @@ void Headset::vibrate(std::size_t hand, double amplitude) {
   (void)impl_->hands.vibrate(hand, amplitude);
 }
 
-engine::Status Headset::setPanel(const Image& picture) try {
+engine::Status Headset::setPicture(RoomPicture which, const Image& picture) try {
   Impl& h = *impl_;
-  const vk::Extent2D extent{static_cast<std::uint32_t>(picture.width),
-                            static_cast<std::uint32_t>(picture.height)};
-  if (!h.panel_images.made() || h.panel_images.extent() != extent) {
-    h.panel_shown = false;
-    h.panel_images.destroy();
-    const XrResult made = h.panel_images.make(h.xr, h.session, *h.context, h.format, extent, 1);
-    if (XR_FAILED(made)) return tl::unexpected(lost("making the panel's image", made));
-  }
-  XrImages::One image;
-  XrResult result = h.panel_images.acquire(image);
-  if (XR_FAILED(result)) return tl::unexpected(lost("getting an image for the panel", result));
-  const Buffer bytes(*h.context, vk::DeviceSize{4} * extent.width * extent.height,
-                     vk::BufferUsageFlagBits::eTransferSrc);
-  const bool swapped = h.format == vk::Format::eB8G8R8A8Srgb;
-  for (std::size_t i = 0; i < std::size_t{extent.width} * extent.height; ++i) {
-    const std::uint8_t* from = &picture.rgba[4 * i];
-    auto* to = reinterpret_cast<std::uint8_t*>(bytes.data()) + 4 * i;
-    to[0] = from[swapped ? 2 : 0];
-    to[1] = from[1];
-    to[2] = from[swapped ? 0 : 2];
-    to[3] = 255;
-  }
-  h.context->run([&](const vk::raii::CommandBuffer& commands) {
-    change(commands, image.image, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
-           Stage::eTopOfPipe, {}, Stage::eCopy, Access::eTransferWrite);
-    vk::BufferImageCopy copy;
-    copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-        .setImageExtent({extent.width, extent.height, 1});
-    commands.copyBufferToImage(*bytes.handle(), image.image, ImageLayout::eTransferDstOptimal, copy);
-    change(commands, image.image, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
-           Stage::eCopy, Access::eTransferWrite, Stage::eBottomOfPipe, {});
-  });
-  result = h.panel_images.release();
-  if (XR_FAILED(result)) return tl::unexpected(lost("showing the panel", result));
-  h.panel_shown = true;
+  const XrResult set =
+      h.pictures[static_cast<std::size_t>(which)].set(h.xr, h.session, *h.context, h.format, picture);
+  if (XR_FAILED(set)) return tl::unexpected(lost("showing a picture in the room", set));
   return {};
 } catch (const std::exception& error) {
   return engine::failure(fmt::format("drawing for the headset failed ({})", error.what()), "headset", kStart);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +20,6 @@ struct HeadsetOptions {
   Validation validation = Validation::kOff;
 };
 
-/// A rectangle in the room that shows a picture.
-struct RoomPanel {
-  RoomPose pose;  ///< of its middle; it faces its +z
-  double width_m = 1.0, height_m = 1.0;
-};
-
 /// What a frame of a headset calls, in this order; all on the calling thread.
 struct HeadsetFrame {
   /// The hands, as they will be when the frame is seen. Also called while nothing is drawn.
@@ -33,8 +27,8 @@ struct HeadsetFrame {
   /// Draws both eyes into the two layers of the target, in an image of Headset::colourFormat(). Called only where the
   /// picture is seen; empty: nothing is drawn yet. Headset::eyes() may be called by it, as late as it likes.
   std::function<engine::Status(LiveTarget&)> draw;
-  /// Shown in front of the picture, where setPanel() gave it one.
-  std::optional<RoomPanel> panel;
+  /// Shown over the picture, in this order, where setPicture() gave them one. Called after `draw`; empty: none.
+  std::function<std::vector<RoomPanel>()> panels;
 };
 
 /// A headset by OpenXR: a session, a Vulkan device that its runtime makes, an image of two layers for the eyes, the hands.
@@ -45,7 +39,10 @@ struct HeadsetFrame {
 /// Threading: one thread, which waits in frame() for the headset's clock. The device is this thread's own.
 class Headset {
  public:
-  /// Errors (kFailed): no OpenXR loader, no runtime, no headset, no suitable Vulkan device.
+  /// Keeps the loader from writing to standard error what create() says better. Sets an environment variable: to be called
+  /// before the program has threads. $XR_LOADER_DEBUG of the user is left as it is.
+  static void silenceLoader();
+  /// Errors (kFailed): no OpenXR loader, no runtime (and where it was looked for), no headset, no suitable Vulkan device.
   [[nodiscard]] static engine::Result<std::unique_ptr<Headset>> create(const HeadsetOptions& options = {});
   ~Headset();
   Headset& operator=(Headset&&) = delete;
@@ -66,10 +63,11 @@ class Headset {
   [[nodiscard]] engine::Status frame(const HeadsetFrame& frame);
   /// The eyes, left and right, as they will be when the frame is seen. Only within HeadsetFrame::draw.
   [[nodiscard]] std::array<RoomEye, 2> eyes();
-  /// Of a hand (0 left, 1 right), 0 .. 1, until the next call. Only within HeadsetFrame::hands.
+  /// Of a hand (0 left, 1 right), 0 .. 1, for at most a tenth of a second: to be called in each HeadsetFrame::hands; 0 stops it.
   void vibrate(std::size_t hand, double amplitude);
-  /// The picture of the panel from the next frame on; rows from the top.
-  [[nodiscard]] engine::Status setPanel(const Image& picture);
+  /// What panels with this picture show from now on; rows from the top, sRGB, with its opacity. Only within
+  /// HeadsetFrame::draw. Errors (kFailed): the session is lost.
+  [[nodiscard]] engine::Status setPicture(RoomPicture which, const Image& picture);
 
   /// Asks the runtime to end the session: frames follow until ended().
   void requestEnd();

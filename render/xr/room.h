@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
@@ -28,7 +30,20 @@ struct RoomHand {
   double trigger = 0.0;  ///< 0 .. 1
   double squeeze = 0.0;  ///< 0 .. 1
   bool button = false;   ///< A or X; the menu button of a simple controller
+  double scroll = 0.0;  ///< -1 .. 1, away from oneself positive: the thumbstick; a simple controller has none
 };
 using RoomHands = std::array<RoomHand, 2>;  ///< left, right
+
+/// The pictures that a headset shows besides the eyes', each with content of its own (Headset::setPicture).
+enum class RoomPicture : std::uint8_t { kWindow, kRay, kSpot };
+inline constexpr std::size_t kRoomPictures = 3;
+
+/// A rectangle in the room that shows one of them. The runtime draws it over the eyes' pictures, at its own resolution,
+/// whatever lies in front of it there.
+struct RoomPanel {
+  RoomPicture picture = RoomPicture::kWindow;
+  RoomPose pose;  ///< of its middle; it faces its +z
+  double width_m = 1.0, height_m = 1.0;
+};
 
 }  // namespace fettle::render

@@ -13,11 +13,13 @@ std::string handOf(const std::string& path) {
   return {};
 }
 
-// What the script calls an input: "trigger" of ".../input/trigger/value", "button" of any other that clicks.
+// What the script calls an input: "trigger" of ".../input/trigger/value", "scroll" of
+// a thumbstick's y, "button" of any other that clicks.
 std::string componentOf(const std::string& path) {
   for (const char* part : {"trigger", "squeeze", "select"})
     if (path.find(std::string("/input/") + part + "/") != std::string::npos)
       return std::string(part) == "select" ? "trigger" : part;
+  if (path.find("/input/thumbstick/y") != std::string::npos) return "scroll";
   return path.find("/click") != std::string::npos ? "button" : std::string();
 }
 

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <thread>
 
 #include "tests/xr_runtime/runtime.h"
@@ -9,6 +11,7 @@ namespace {
 
 // The states that the frames and the script bring about, one step a frame.
 void advance(Runtime& r) {
+  r.script.readOn(r.frame);
   for (const std::string& word : r.script.events(r.frame)) {
     if (word == "hide") r.seen = false;
     if (word == "show") r.seen = true;
@@ -101,12 +104,61 @@ bool good(Runtime& r, const XrSwapchainSubImage& part, const char* what) {
   return true;
 }
 
-void keep(Runtime& r, const XrSwapchainSubImage& part, const std::string& name) {
+// The picture of a layer, kept as a file.
+Pixels keep(Runtime& r, const XrSwapchainSubImage& part, const std::string& name) {
   const auto* swapchain = reinterpret_cast<const Swapchain*>(part.swapchain);
   const std::string path = r.keep + "/frame" + std::to_string(r.frame) + "." + name + ".png";
-  if (keepPicture(swapchain->images[static_cast<std::size_t>(swapchain->released)],
-                  static_cast<VkFormat>(swapchain->info.format), part.imageRect, part.imageArrayIndex, path))
+  Pixels pixels;
+  if (readPicture(swapchain->images[static_cast<std::size_t>(swapchain->released)],
+                  static_cast<VkFormat>(swapchain->info.format), part.imageRect, part.imageArrayIndex,
+                  pixels) &&
+      keepPicture(pixels, path))
     r.say("kept " + path);
+  return pixels;
+}
+
+// What an eye sees in a frame that is kept: its own picture, and what is laid over it.
+struct Eye {
+  XrPosef pose{};
+  XrFovf fov{};
+  Pixels seen;
+};
+
+void takeProjection(Runtime& r, const XrCompositionLayerProjection& layer, bool kept,
+                    std::array<Eye, 2>& eyes) {
+  if (layer.viewCount != 2) {
+    (void)r.wrong("a projection without two views", XR_ERROR_VALIDATION_FAILURE);
+    return;
+  }
+  XrPosef base{};
+  const bool placed = placeOf(layer.space, base);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const XrCompositionLayerProjectionView& view = layer.views[eye];
+    if (!good(r, view.subImage, "a projection") || !kept || !placed) continue;
+    eyes[eye] = {times(base, view.pose), view.fov, keep(r, view.subImage, eye == 0 ? "left" : "right")};
+  }
+}
+
+void takeQuad(Runtime& r, const XrCompositionLayerQuad& quad, bool kept, int number,
+              std::array<Eye, 2>& eyes) {
+  const XrQuaternionf& q = quad.pose.orientation;
+  const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  // "A unit quaternion", to within a hundredth (specification 2.17, XrQuaternionf).
+  if (!(std::abs(length - 1.0F) < 0.01F)) {
+    (void)r.wrong("a quad that is not turned but stretched", XR_ERROR_POSE_INVALID);
+    return;
+  }
+  if (!(quad.size.width > 0.0F && quad.size.height > 0.0F)) (void)r.wrong("a quad without an area");
+  if (!good(r, quad.subImage, "a quad") || !kept) return;
+  const Pixels picture = keep(r, quad.subImage, "quad" + std::to_string(number));
+  XrPosef base{};
+  if (!placeOf(quad.space, base)) return;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const bool sees = quad.eyeVisibility == XR_EYE_VISIBILITY_BOTH ||
+                      quad.eyeVisibility == (eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT);
+    if (sees)
+      composeQuad(quad, times(base, quad.pose), picture, eyes[eye].pose, eyes[eye].fov, eyes[eye].seen);
+  }
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
@@ -123,26 +175,25 @@ XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
   const bool kept = !r.keep.empty() && std::find(events.begin(), events.end(), "keep") != events.end();
   int quads = 0;
   std::string layers;
+  std::array<Eye, 2> eyes;
+  if (info->layerCount > XR_MIN_COMPOSITION_LAYERS_SUPPORTED)
+    return r.wrong("more layers than the system has", XR_ERROR_LAYER_LIMIT_EXCEEDED);
   for (std::uint32_t i = 0; i < info->layerCount; ++i) {
     const XrCompositionLayerBaseHeader* layer = info->layers[i];
     if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
-      const auto* projection = reinterpret_cast<const XrCompositionLayerProjection*>(layer);
-      if (projection->viewCount != 2)
-        (void)r.wrong("a projection without two views", XR_ERROR_VALIDATION_FAILURE);
-      for (std::uint32_t eye = 0; eye < projection->viewCount; ++eye) {
-        const XrSwapchainSubImage& part = projection->views[eye].subImage;
-        if (good(r, part, "a projection") && kept) keep(r, part, eye == 0 ? "left" : "right");
-      }
+      takeProjection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer), kept, eyes);
       layers += " projection";
     } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
-      const auto* quad = reinterpret_cast<const XrCompositionLayerQuad*>(layer);
-      if (good(r, quad->subImage, "a quad") && kept) keep(r, quad->subImage, "quad" + std::to_string(quads));
+      takeQuad(r, *reinterpret_cast<const XrCompositionLayerQuad*>(layer), kept, quads, eyes);
       ++quads;
       layers += " quad";
     } else {
       return r.wrong("a layer of an unknown kind", XR_ERROR_LAYER_INVALID);
     }
   }
+  for (std::size_t eye = 0; eye < 2 && kept && quads > 0; ++eye)
+    (void)keepPicture(eyes[eye].seen, r.keep + "/frame" + std::to_string(r.frame) +
+                                          (eye == 0 ? ".left.seen.png" : ".right.seen.png"));
   if (kept) r.say("frame " + std::to_string(r.frame) + layers);
   return XR_SUCCESS;
 }

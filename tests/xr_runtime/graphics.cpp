@@ -104,8 +104,16 @@ void destroyImages(Swapchain& swapchain) {
   for (VkDeviceMemory memory : swapchain.memory) vkFreeMemory(runtime().device, memory, nullptr);
 }
 
-bool keepPicture(VkImage image, VkFormat format, const XrRect2Di& part, std::uint32_t layer,
-                 const std::string& path) {
+bool keepPicture(const Pixels& pixels, const std::string& path) {
+  png_image picture{};
+  picture.version = PNG_IMAGE_VERSION;
+  picture.width = static_cast<png_uint_32>(pixels.width);
+  picture.height = static_cast<png_uint_32>(pixels.height);
+  picture.format = PNG_FORMAT_RGBA;
+  return png_image_write_to_file(&picture, path.c_str(), 0, pixels.rgba.data(), 0, nullptr) != 0;
+}
+
+bool readPicture(VkImage image, VkFormat format, const XrRect2Di& part, std::uint32_t layer, Pixels& pixels) {
   const Runtime& r = runtime();
   VkDevice device = r.device;
   const auto width = static_cast<std::uint32_t>(part.extent.width);
@@ -163,12 +171,10 @@ bool keepPicture(VkImage image, VkFormat format, const XrRect2Di& part, std::uin
               vkQueueWaitIdle(r.queue) == VK_SUCCESS;
   void* bytes = nullptr;
   if (kept && vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &bytes) == VK_SUCCESS) {
-    png_image picture{};
-    picture.version = PNG_IMAGE_VERSION;
-    picture.width = width;
-    picture.height = height;
-    picture.format = format == VK_FORMAT_B8G8R8A8_SRGB ? PNG_FORMAT_BGRA : PNG_FORMAT_RGBA;
-    kept = png_image_write_to_file(&picture, path.c_str(), 0, bytes, 0, nullptr) != 0;
+    const auto* from = static_cast<const std::uint8_t*>(bytes);
+    pixels = {part.extent.width, part.extent.height, {from, from + std::size_t{4} * width * height}};
+    if (format == VK_FORMAT_B8G8R8A8_SRGB)
+      for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) std::swap(pixels.rgba[i], pixels.rgba[i + 2]);
     vkUnmapMemory(device, memory);
   }
   vkDestroyCommandPool(device, pool, nullptr);

@@ -4,6 +4,9 @@
 //   FETTLE_XR_SCRIPT   the script (script.h); without one the instance is refused
 //   FETTLE_XR_KEEP     folder for log.txt and the kept pictures
 //
+// A kept frame has files for each eye's picture, for each quad, and, where there are quads, for what each eye sees of both
+// ("frame10.left.seen.png").
+//
 // log.txt has a line for each state of the session, haptic output, kept picture, and "wrong: ..." for each call that the
 // specification does not allow at that time.
 #pragma once
@@ -50,7 +53,7 @@ struct Action {
   XrActionType type{};
   std::string name;
   std::map<std::string, std::string>
-      bound;  // by hand: the component, "trigger", "squeeze", "button", "aim", "grip", "haptic"
+      bound;  // by hand: the component, "trigger", "squeeze", "scroll", "button"; empty: a pose or an output
 };
 
 /// All of it: one instance and one session at a time.
@@ -102,10 +105,22 @@ struct Runtime {
 [[nodiscard]] XrPosef times(const XrPosef& a, const XrPosef& b);
 [[nodiscard]] XrPosef inverse(const XrPosef& a);
 
-/// Writes a part of a layer of an image of the session's device to a file (PNG). The image is in the layout that a
-/// released one has.
-[[nodiscard]] bool keepPicture(VkImage image, VkFormat format, const XrRect2Di& part, std::uint32_t layer,
-                               const std::string& path);
+/// Pixels in rows from the top: red, green, blue, opacity; sRGB.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+/// A part of a layer of an image of the session's device. The image is in the layout that a released one has.
+[[nodiscard]] bool readPicture(VkImage image, VkFormat format, const XrRect2Di& part, std::uint32_t layer,
+                               Pixels& pixels);
+/// Writes them to a file (PNG).
+[[nodiscard]] bool keepPicture(const Pixels& pixels, const std::string& path);
+/// Draws a quad over what an eye at `eye` sees; both poses in the room.
+void composeQuad(const XrCompositionLayerQuad& quad, const XrPosef& pose, const Pixels& picture,
+                 const XrPosef& eye, const XrFovf& fov, Pixels& seen);
+/// Where a space is in the room; false where it is not tracked.
+[[nodiscard]] bool placeOf(XrSpace space, XrPosef& pose);
+[[nodiscard]] XrVector3f turned(const XrQuaternionf& turn, const XrVector3f& vector);
 /// Makes and destroys the images of a swapchain.
 [[nodiscard]] bool makeImages(Swapchain& swapchain);
 void destroyImages(Swapchain& swapchain);

@@ -1,56 +1,59 @@
 #include "tests/xr_runtime/script.h"
 
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
 
 namespace fettle::tests::xr {
 
-bool Script::read(const std::string& path) {
+bool Script::understand(const std::string& line, long frame_now) {
   static const std::set<std::string> kEvents{"keep", "hide", "show", "stop", "lose"};
-  static const std::set<std::string> kValues{"trigger", "squeeze", "button"};
-  std::ifstream file(path);
-  std::string line;
-  int number = 0;
-  while (std::getline(file, line)) {
-    ++number;
-    std::istringstream words(line.substr(0, line.find('#')));
-    std::string first;
-    if (!(words >> first)) continue;
-    bool understood = false;
-    if (first == "size") {
-      understood = static_cast<bool>(words >> width >> height);
-    } else if (first == "rate") {
-      understood = static_cast<bool>(words >> rate_hz);
-    } else {
-      std::istringstream counted(first);
-      long frame = 0;
-      std::string what, next;
-      if (counted >> frame && words >> what) {
-        if (kEvents.count(what) > 0) {
-          events_.emplace(frame, what);
-          understood = true;
-        } else if (words >> next && kValues.count(next) > 0) {
-          double value = 0.0;
-          understood = static_cast<bool>(words >> value);
-          values_[what + " " + next][frame] = value;
-        } else {
-          Place at;
-          std::istringstream x(next);
-          understood = x >> at.x && words >> at.y >> at.z >> at.yaw_deg >> at.pitch_deg;
-          places_[what][frame] = at;
-        }
-      }
-    }
-    if (!understood) {
-      std::fprintf(stderr, "xr runtime: %s:%d is not understood\n", path.c_str(), number);
-      return false;
-    }
+  static const std::set<std::string> kValues{"trigger", "squeeze", "scroll", "button"};
+  std::istringstream words(line.substr(0, line.find('#')));
+  std::string first, what, next;
+  if (!(words >> first)) return true;
+  if (first == "size") return static_cast<bool>(words >> width >> height);
+  if (first == "rate") return static_cast<bool>(words >> rate_hz);
+  std::istringstream counted(first);
+  long frame = 0;
+  if (!(counted >> frame && words >> what)) return false;
+  if (first[0] == '+') frame += frame_now;
+  if (kEvents.count(what) > 0) {
+    events_.emplace(frame, what);
+    return true;
   }
-  if (number == 0) std::fprintf(stderr, "xr runtime: %s has no lines\n", path.c_str());
-  return number > 0;
+  if (!(words >> next)) return false;
+  if (kValues.count(next) > 0) return static_cast<bool>(words >> values_[what + " " + next][frame]);
+  std::istringstream x(next);
+  Place at;
+  if (!(x >> at.x && words >> at.y >> at.z >> at.yaw_deg >> at.pitch_deg)) return false;
+  places_[what][frame] = at;
+  return true;
+}
+
+bool Script::read(const std::string& path) {
+  path_ = path;
+  file_.open(path);
+  std::string line;
+  while (std::getline(file_, line)) {
+    ++number_;
+    if (understand(line, 0)) continue;
+    std::fprintf(stderr, "xr runtime: %s:%d is not understood\n", path.c_str(), number_);
+    return false;
+  }
+  if (number_ == 0) std::fprintf(stderr, "xr runtime: %s has no lines\n", path.c_str());
+  return number_ > 0;
+}
+
+void Script::readOn(long frame) {
+  file_.clear();
+  std::string line;
+  while (std::getline(file_, line)) {
+    ++number_;
+    if (!understand(line, frame))
+      std::fprintf(stderr, "xr runtime: %s:%d is not understood\n", path_.c_str(), number_);
+  }
 }
 
 bool Script::place(const std::string& of, long frame, Place& at) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,15 +18,18 @@ struct Place {
 ///   rate 90                          frames per second
 ///   0 head 0 1.6 0 0 -30             place from this frame on; between two such lines on the straight way
 ///   0 left ... / right ...           the same of a hand; one without a place is not tracked
-///   10 right trigger 0.7             from this frame on; also squeeze, and button 0 or 1
+///   10 right trigger 0.7             from this frame on; also squeeze, scroll (-1 .. 1), and button 0 or 1
 ///   20 keep                          the pictures of this frame become files
 ///   30 hide, show, stop, lose        the session: no longer seen, seen again, asked to end, lost
 ///
-/// Frames are counted by xrWaitFrame, from 1.
+/// Frames are counted by xrWaitFrame, from 1. Lines may be appended while it runs, with frames as "+3": the third after the one
+/// in which they are read.
 class Script {
  public:
   /// False, with a message on standard error, for a file that cannot be read or understood.
   [[nodiscard]] bool read(const std::string& path);
+  /// What was appended to the file since.
+  void readOn(long frame);
 
   /// Of "head", "left", "right"; false where the thing is not tracked.
   [[nodiscard]] bool place(const std::string& of, long frame, Place& at) const;
@@ -39,6 +42,11 @@ class Script {
   double rate_hz = 90.0;
 
  private:
+  [[nodiscard]] bool understand(const std::string& line, long frame_now);
+
+  std::string path_;
+  std::ifstream file_;
+  int number_ = 0;  // of the line read last
   std::map<std::string, std::map<long, Place>> places_;
   std::map<std::string, std::map<long, double>> values_;
   std::multimap<long, std::string> events_;

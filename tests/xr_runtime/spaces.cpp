@@ -16,11 +16,6 @@ XrQuaternionf product(const XrQuaternionf& a, const XrQuaternionf& b) {
           a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
-XrVector3f turned(const XrQuaternionf& q, const XrVector3f& v) {
-  const XrQuaternionf r = product(product(q, {v.x, v.y, v.z, 0.0F}), {-q.x, -q.y, -q.z, q.w});
-  return {r.x, r.y, r.z};
-}
-
 Space* of(XrSpace handle) {
   return reinterpret_cast<Space*>(handle);
 }
@@ -114,6 +109,15 @@ XRAPI_ATTR XrResult XRAPI_CALL locateViews(XrSession, const XrViewLocateInfo* in
 }
 
 }  // namespace
+
+XrVector3f turned(const XrQuaternionf& q, const XrVector3f& v) {
+  const XrQuaternionf r = product(product(q, {v.x, v.y, v.z, 0.0F}), {-q.x, -q.y, -q.z, q.w});
+  return {r.x, r.y, r.z};
+}
+
+bool placeOf(XrSpace space, XrPosef& pose) {
+  return inRoom(*of(space), pose);
+}
 
 XrPosef times(const XrPosef& a, const XrPosef& b) {
   const XrVector3f moved = turned(a.orientation, b.position);

@@ -17,7 +17,11 @@ namespace fettle::tests {
 /// say about it afterwards.
 class XrStage {
  public:
-  explicit XrStage(const std::string& script) { std::ofstream(folder_.file("script.txt")) << script; }
+  explicit XrStage(const std::string& script) { act(script); }
+  /// Continues the script, also while it runs: whole lines.
+  void act(const std::string& lines) const {
+    std::ofstream(folder_.file("script.txt"), std::ios::app) << lines << std::flush;
+  }
   /// Copies the kept pictures where $FETTLE_WINDOW_SHOTS names a folder.
   ~XrStage() {
     const char* const shots = std::getenv("FETTLE_WINDOW_SHOTS");

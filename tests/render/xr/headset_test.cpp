@@ -2,13 +2,17 @@
 #include "render/xr/headset.h"
 
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "render/live/live_picture.h"
 #include "render/png/png.h"
 #include "render/xr/xr_calls.h"
+#include "render/xr/xr_runtime.h"
 #include "tests/render/support/fields.h"
 #include "tests/xr_runtime/xr_stage.h"
 
@@ -40,7 +44,11 @@ EyeView inScene(const RoomEye& eye) {
   return view;
 }
 
-Ran show(const engine::Version& field, Stereo::Passes passes, const std::optional<Image>& panel = {}) {
+// To a head that looks down at 45 degrees: turned about x.
+const glm::dquat kFaces(std::cos(-0.125 * std::numbers::pi), std::sin(-0.125 * std::numbers::pi), 0.0, 0.0);
+
+Ran show(const engine::Version& field, Stereo::Passes passes, const std::optional<Image>& panel = {},
+         double vibration = 0.0) {
   Ran shown;
   auto headset = Headset::create({Validation::kOn});
   if (!headset) {
@@ -52,9 +60,6 @@ Ran show(const engine::Version& field, Stereo::Passes passes, const std::optiona
     if (!picture || !(*picture)->update(field)) {
       ADD_FAILURE() << "no picture";
       return shown;
-    }
-    if (panel) {
-      EXPECT_TRUE((*headset)->setPanel(*panel));
     }
     FrameInput input;
     input.view.width = (*headset)->width();
@@ -69,12 +74,26 @@ Ran show(const engine::Version& field, Stereo::Passes passes, const std::optiona
     };
     HeadsetFrame frame;
     frame.hands = [&](const RoomHands& hands) { shown.hands.push_back(hands); };
+    bool set = false;
     frame.draw = [&](LiveTarget& target) -> engine::Status {
+      if (panel && !std::exchange(set, true)) {
+        EXPECT_TRUE((*headset)->setPicture(RoomPicture::kSpot, *panel));
+      }
       const auto drew = (*picture)->draw(input, target);
       if (!drew) return tl::unexpected(drew.error());
       return {};
     };
-    if (panel) frame.panel = RoomPanel{{{0.0, 0.4, -0.7}, {}}, 0.3, 0.2};
+    frame.panels = [&] {
+      // One without a picture is left out.
+      return std::vector<RoomPanel>{{RoomPicture::kSpot, {{0.0, 0.1, -0.6}, glm::dquat(kFaces)}, 0.3, 0.2},
+                                    {RoomPicture::kRay, {{0.0, 0.1, -0.6}, {}}, 0.3, 0.2}};
+    };
+    if (vibration > 0.0)
+      frame.hands = [&](const RoomHands& hands) {
+        shown.hands.push_back(hands);
+        (*headset)->vibrate(0, 0.0);
+        (*headset)->vibrate(1, hands[1].trigger * vibration);
+      };
     while (!(*headset)->ended()) {
       shown.end = (*headset)->frame(frame);
       if (!shown.end) break;
@@ -160,8 +179,27 @@ TEST(Headset, no_runtime_is_an_error_that_says_so) {
   setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
   const auto headset = Headset::create();
   ASSERT_FALSE(headset);
-  EXPECT_NE(headset.error().line().find("no headset can be used"), std::string::npos)
+  EXPECT_NE(headset.error().line().find("no headset can be used: no runtime is installed"), std::string::npos)
       << headset.error().line();
+  EXPECT_NE(headset.error().remedy.find("/nowhere/runtime.json"), std::string::npos)
+      << "where it was looked for: " << headset.error().remedy;
+}
+
+TEST(Headset, a_runtime_is_looked_for_where_the_loader_looks) {
+  setenv("XR_RUNTIME_JSON", "/a/b.json", 1);
+  EXPECT_EQ(runtimePlaces(), std::vector<std::string>{"/a/b.json"});
+  unsetenv("XR_RUNTIME_JSON");
+  setenv("XDG_CONFIG_HOME", "/own", 1);
+  setenv("XDG_CONFIG_DIRS", "/one:/two", 1);
+  EXPECT_EQ(runtimePlaces(), (std::vector<std::string>{
+                                 "/own/openxr/1/active_runtime.json", "/one/openxr/1/active_runtime.json",
+                                 "/two/openxr/1/active_runtime.json", "/etc/openxr/1/active_runtime.json"}));
+  unsetenv("XDG_CONFIG_HOME");
+  unsetenv("XDG_CONFIG_DIRS");
+  setenv("HOME", "/home/x", 1);
+  EXPECT_EQ(runtimePlaces(), (std::vector<std::string>{"/home/x/.config/openxr/1/active_runtime.json",
+                                                       "/etc/xdg/openxr/1/active_runtime.json",
+                                                       "/etc/openxr/1/active_runtime.json"}));
 }
 
 TEST(Headset, one_pass_and_two_give_the_eyes_the_same_pictures) {
@@ -209,9 +247,10 @@ TEST(Headset, a_hidden_session_is_not_drawn) {
 }
 
 TEST(Headset, hands_are_where_the_script_has_them) {
-  const XrStage stage(std::string(kBefore) +
-                      "5 right 0.1 0.2 -0.3 0 0\n25 right 0.3 0.2 -0.3 0 0\n"
-                      "10 right trigger 0.75\n12 right squeeze 0.5\n14 right button 1\n30 stop\n");
+  const XrStage stage(
+      std::string(kBefore) +
+      "5 right 0.1 0.2 -0.3 0 0\n25 right 0.3 0.2 -0.3 0 0\n"
+      "10 right trigger 0.75\n12 right squeeze 0.5\n14 right button 1\n16 right scroll -0.5\n30 stop\n");
   stage.set();
   const Ran shown = show(wall(), Stereo::Passes::kBest);
   ASSERT_GT(shown.hands.size(), 20U);
@@ -221,6 +260,7 @@ TEST(Headset, hands_are_where_the_script_has_them) {
   EXPECT_NEAR(hand.trigger, 0.75, 1e-6);
   EXPECT_NEAR(hand.squeeze, 0.5, 1e-6);
   EXPECT_TRUE(hand.button);
+  EXPECT_NEAR(hand.scroll, -0.5, 1e-6);
   EXPECT_FALSE(shown.hands[19][0].tracked);
   EXPECT_FALSE(shown.hands[1][1].tracked);
   stage.expectSilence();
@@ -234,10 +274,72 @@ TEST(Headset, a_panel_hangs_in_the_room_with_its_own_picture) {
     for (const int value : {40 * i, 10, 200, 255}) panel.rgba.push_back(static_cast<std::uint8_t>(value));
   const Ran shown = show(wall(), Stereo::Passes::kBest, panel);
   EXPECT_TRUE(shown.end) << shown.end.error().line();
-  EXPECT_EQ(stage.count("frame 10 projection quad"), 1) << stage.log();
+  EXPECT_EQ(stage.count("frame 10 projection quad\n"), 1) << stage.log();
   const auto kept = readPng(stage.file("frame10.quad0.png"));
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->rgba, panel.rgba);
+  stage.expectSilence();
+  // Upright, its picture's left at the left, for both eyes.
+  for (const char* eye : {"left", "right"}) {
+    const auto seen = readPng(stage.file(std::string("frame10.") + eye + ".seen.png"));
+    ASSERT_TRUE(seen) << stage.log();
+    std::array<glm::dvec2, 2> middle{};  // of the darkest and of the reddest of its pixels
+    std::array<int, 2> pixels{};
+    for (int y = 0; y < seen->height; ++y)
+      for (int x = 0; x < seen->width; ++x) {
+        const std::uint8_t* at = &seen->rgba[4 * static_cast<std::size_t>(y * seen->width + x)];
+        if (at[1] != 10 || at[2] != 200) continue;
+        for (std::size_t i = 0; i < 2; ++i)
+          if (at[0] == (i == 0 ? 0 : 200)) {
+            middle[i] += glm::dvec2(x, y);
+            ++pixels[i];
+          }
+      }
+    ASSERT_GT(pixels[0], 20) << eye;
+    ASSERT_GT(pixels[1], 20) << eye;
+    EXPECT_LT(middle[0].x / pixels[0], middle[1].x / pixels[1]) << eye;
+    EXPECT_LT(middle[0].y / pixels[0], middle[1].y / pixels[1]) << eye;
+  }
+}
+
+TEST(Headset, what_is_clear_in_a_panel_shows_what_is_behind_it) {
+  std::array<Image, 2> seen, plain;
+  for (const std::uint8_t opacity : {std::uint8_t{0}, std::uint8_t{128}}) {
+    const XrStage stage(std::string(kBefore) + "10 keep\n12 stop\n");
+    stage.set();
+    Image panel{1, 1, {255, 255, 255, opacity}};
+    const Ran shown = show(wall(), Stereo::Passes::kBest, panel);
+    EXPECT_TRUE(shown.end) << shown.end.error().line();
+    const auto s = readPng(stage.file("frame10.left.seen.png")), p = readPng(stage.file("frame10.left.png"));
+    ASSERT_TRUE(s && p) << stage.log();
+    seen[opacity == 0 ? 0 : 1] = *s;
+    plain[opacity == 0 ? 0 : 1] = *p;
+    stage.expectSilence();
+  }
+  EXPECT_EQ(seen[0].rgba, plain[0].rgba);
+  int lighter = 0, white = 0;
+  for (std::size_t i = 0; i < seen[1].rgba.size(); i += 4) {
+    lighter += seen[1].rgba[i] > plain[1].rgba[i] ? 1 : 0;
+    white += seen[1].rgba[i] == 255 ? 1 : 0;
+  }
+  EXPECT_GT(lighter, 1000);
+  EXPECT_LT(white, lighter / 10);
+}
+
+TEST(Headset, a_hand_is_told_by_vibration_and_not_after_the_focus_is_lost) {
+  const XrStage stage(std::string(kBefore) +
+                      "5 right 0.1 0.2 -0.3 0 0\n5 left -0.1 0.2 -0.3 0 0\n10 right trigger 0.8\n"
+                      "20 right trigger 0\n30 right trigger 1\n40 hide\n50 stop\n");
+  stage.set();
+  const Ran shown = show(wall(), Stereo::Passes::kBest, {}, 0.5);
+  EXPECT_TRUE(shown.end) << shown.end.error().line();
+  EXPECT_EQ(stage.count("haptics right 0.400 in frame 15\n"), 1) << stage.log();
+  EXPECT_EQ(stage.count("haptics right 0.400 in frame"), 10) << "renewed in each frame";
+  EXPECT_EQ(stage.count("haptics right stopped in frame 20\n"), 1);
+  EXPECT_EQ(stage.count("haptics right 0.500 in frame 30\n"), 1);
+  EXPECT_EQ(stage.count("haptics right 0.500 in frame 45\n"), 0);
+  EXPECT_GE(stage.count("haptics right stopped in frame"), 2);
+  EXPECT_EQ(stage.count("haptics left"), 0) << "nothing is stopped that does not run";
   stage.expectSilence();
 }
 
