@@ -123,7 +123,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
 
   render::FrameInput input = frameInput(parts, sharpness, options);
   addTitles(parts, previews, input);
-  const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
+  const bool stylus = parts.stylus.on() || client.mouse() == nullptr || client.controllerLeads();
   // The shadow is three quarters of what a frame with a brush takes.
   StylusLook look = parts.settings.display.stylus;
   if (picture.spares()) look.shadow = false;
@@ -160,6 +160,10 @@ HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
     StylusOverlay::appendTip(client, state, parts.picture.mmPerPixel(), kTipInTheRoom,
                              picture.input.overlays);
   return picture;
+}
+
+TipLook tipLookOf(const Parts& parts) {
+  return StylusOverlay::tipLookOf(*parts.document.client());
 }
 
 void drawCoarse(Parts& parts, const DrawOptions& options) {

@@ -17,6 +17,8 @@ struct DrawOptions {
 void drawField(Parts& parts, const DrawOptions& options);
 /// What a headset shows of the open document: the field without previews, in the colours of the window, and the stylus.
 [[nodiscard]] HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options);
+/// How the tip of the hand looks in it.
+[[nodiscard]] TipLook tipLookOf(const Parts& parts);
 /// The same for the coarse picture of a scan that is being read.
 void drawCoarse(Parts& parts, const DrawOptions& options);
 

@@ -169,25 +169,34 @@ bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) c
          glm::length(turned) * kStylus_px > kTurn_px || state.contact != state_.contact;
 }
 
-void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                              const StylusLook& look, render::Overlays& overlays) {
+TipLook StylusOverlay::tipLookOf(const LoopClient& client) {
   const haptic::Scene& scene = client.scene();
   const engine::Grid& grid = client.field().grid();
+  TipLook look;
+  look.ring_mm = std::max(brushRadius(client), 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
+  if (scene.tip == haptic::TipShape::kSphere) look.ball_radius_mm = scene.tip_radius_mm;
+  look.colour =
+      haptic::isMarkTool(client.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
+  return look;
+}
+
+void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+                              const StylusLook& look, render::Overlays& overlays) {
+  const TipLook tip_look = tipLookOf(client);
   render::StylusState tip;
   tip.endpoint_mm = state.endpoint_mm;
   tip.proxy_mm = state.proxy_mm;
   tip.force_n = state.force_n;
   tip.contact = state.contact;
-  if (scene.tip == haptic::TipShape::kSphere) tip.tip_radius_mm = scene.tip_radius_mm;
+  tip.tip_radius_mm = tip_look.ball_radius_mm;
   tip.discs = !look.pen;
   tip.arrow = look.force;
-  render::appendStylus(tip, kLargestForce_px * mm_per_pixel / scene.force_limit_n, overlays.lines);
+  render::appendStylus(tip, kLargestForce_px * mm_per_pixel / client.scene().force_limit_n, overlays.lines);
   render::Overlays::Ring ring;
   ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
   ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
-  ring.radius_mm = std::max(brushRadius(client), 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
-  ring.colour =
-      haptic::isMarkTool(client.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
+  ring.radius_mm = tip_look.ring_mm;
+  ring.colour = tip_look.colour;
   overlays.rings.push_back(ring);
   // In contact the endpoint is under the surface.
   const glm::dvec3& seen_mm = state.contact ? state.proxy_mm : state.endpoint_mm;

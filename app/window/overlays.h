@@ -9,6 +9,7 @@
 #include "app/work/loop_client.h"
 #include "app/work/place_tool.h"
 #include "app/work/section_tool.h"
+#include "app/xr/room_tip.h"
 #include "render/live/live_picture.h"
 
 namespace fettle::app {
@@ -64,6 +65,8 @@ class StylusOverlay {
   /// the picture would hold it.
   void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
               const StylusLook& look, render::Overlays& overlays);
+  /// How the tip looks: its brush's ring, its ball, its colour.
+  [[nodiscard]] static TipLook tipLookOf(const LoopClient& client);
   /// The same without its trail: for a picture beside the window's.
   static void appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
                         const StylusLook& look, render::Overlays& overlays);

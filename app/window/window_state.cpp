@@ -24,6 +24,11 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
   const Question* const dialog = p.feedback.questions.shown();
   const render::Rectangle& area = p.window.pictureArea();
   const SessionKeeper* const keeper = p.document.keeper();
+  const HeadsetFigures& headset = run.headset;
+  const Report room{{"mm", headset.metres_per_mm},
+                    {"true_size", headset.true_size},
+                    {"tip", headset.tip ? Report(*headset.tip == 0 ? "left" : "right") : Report()},
+                    {"points", headset.points}};
   Report r{{"keys", input.counts().keys},
            {"buttons", input.counts().buttons},
            {"wheels", input.counts().wheels},
@@ -46,6 +51,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
                        : run.headset.over       ? "over"
                        : run.headset.frames > 0 ? "shown"
                                                 : "starting"},
+           {"room", room},
            {"loading", p.opening.busy()},
            {"coarse", p.coarseIsShown()},
            {"saving", p.saving.busy(p.document)},

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +15,13 @@ namespace fettle::app {
 
 /// Of the headset (`--xr`).
 struct HeadsetFigures {
-  std::string name;          ///< empty without one
-  std::uint64_t frames = 0;  ///< drawn
-  bool over = false;         ///< its session has ended
+  std::string name;                ///< empty without one
+  std::uint64_t frames = 0;        ///< drawn
+  bool over = false;               ///< its session has ended
+  bool true_size = false;          ///< chosen, rather than a giant's
+  double metres_per_mm = 0.0;      ///< of the field in the room; 0: it is not placed yet
+  std::optional<std::size_t> tip;  ///< the hand that is the tip, 0 left, 1 right
+  bool points = false;             ///< a hand points at the window's frame
   std::vector<std::string> validation;
 };
 

@@ -21,9 +21,10 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kIdle_s = 0.1;                                 // between two frames while nothing happens
-constexpr double kBusy_s = 0.03;                                // ... while only figures change
-constexpr std::uint64_t kSaveSettingsEvery = 120;               // frames
+constexpr double kIdle_s = 0.1;                       // between two frames while nothing happens
+constexpr double kBusy_s = 0.03;                      // ... while only figures change
+constexpr std::uint64_t kSaveSettingsEvery = 120;     // frames
+constexpr std::int64_t kInRoomAgain_ns = 25'000'000;  // between two frames of the window in a headset's room
 constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two polls of the loop
 
 std::string settingsPath(const char* file) {
@@ -55,6 +56,7 @@ Workstation::~Workstation() {
 }
 
 engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptions& options) {
+  if (options.xr) render::Headset::silenceLoader();
   render::WindowOptions window = options.window;
   window.layout_file = settingsPath("/layout.ini");
   auto opened = render::Window::create(window);
@@ -67,9 +69,7 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
     station->events_ = *std::move(events);
   }
   if (options.xr) {
-    auto headset = HeadsetView::start({options.window.validation}, options.xr_scale);
-    if (!headset) return tl::unexpected(headset.error());
-    station->headset_ = *std::move(headset);
+    if (auto started = station->startHeadset(); !started) return tl::unexpected(started.error());
   }
   if (!options.scan.empty()) station->open(options.scan, std::nullopt);
   return station;
@@ -133,6 +133,7 @@ void Workstation::runFrame() {
 // off its ring.
 void Workstation::whileWaiting() {
   window_->poll(0.0);
+  takeHeadsetInput();
   for (const render::InputEvent& event : window_->takeInput()) input_.add(event, parts_);
   if (parts_.document.isOpen()) parts_.document.client()->poll();
 }
@@ -152,8 +153,53 @@ void Workstation::handleInput() {
   }
 }
 
+engine::Status Workstation::startHeadset() {
+  options_.client.controllers = controllersBeside(options_.client.device);
+  HeadsetView::Options options{
+      {options_.window.validation}, options_.xr_scale, options_.client.controllers, &render::Window::wake};
+  auto headset = HeadsetView::start(std::move(options));
+  if (!headset) return tl::unexpected(headset.error());
+  headset_ = *std::move(headset);
+  return {};
+}
+
 void Workstation::noteHeadset(const HeadsetView::State& state) {
-  headset_figures_ = {state.headset, state.frames, state.over, state.validation};
+  headset_figures_ = {.name = state.headset,
+                      .frames = state.frames,
+                      .over = state.over,
+                      .true_size = state.scale == RoomScale::kTrue,
+                      .metres_per_mm = state.metres_per_mm,
+                      .tip = state.tip,
+                      .points = state.points,
+                      .validation = state.validation};
+}
+
+void Workstation::takeHeadsetInput() {
+  if (!headset_) return;
+  using render::InputKind;
+  static constexpr std::pair<ScreenInput::Kind, InputKind> kKinds[] = {
+      {ScreenInput::Kind::kMove, InputKind::kMove},   {ScreenInput::Kind::kDown, InputKind::kButtonDown},
+      {ScreenInput::Kind::kUp, InputKind::kButtonUp}, {ScreenInput::Kind::kWheel, InputKind::kWheel},
+      {ScreenInput::Kind::kLeave, InputKind::kLeave},
+  };
+  for (const ScreenInput& input : headset_->takeInput()) {
+    render::InputEvent event;
+    for (const auto& [done, kind] : kKinds)
+      if (done == input.kind) event.kind = kind;
+    event.button = render::MouseButton::kLeft;
+    event.x = input.x * window_->width();
+    event.y = input.y * window_->height();
+    event.wheel = input.wheel;
+    window_->point(event);
+  }
+}
+
+void Workstation::showFrameInRoom() {
+  const std::int64_t now = engine::steadyNs();
+  if (!headset_ || now - in_room_ns_ < kInRoomAgain_ns) return;
+  in_room_ns_ = now;
+  // A lost device is reported by the next frame.
+  if (auto frame = window_->capture()) headset_->showWindow(*std::move(frame));
 }
 
 void Workstation::followHeadset() {
@@ -164,6 +210,7 @@ void Workstation::followHeadset() {
     if (!parts_.document.isOpen()) return;
     HeadsetView::Picture picture = headsetPicture(parts_, options_.drawing);
     picture.field = documents_;
+    picture.tip = tipLookOf(parts_);
     headset_->show(std::move(picture));
     return;
   }
@@ -234,10 +281,12 @@ void Workstation::showFrame() {
   }
   const auto shown = window_->present();
   parts_.picture.noteFrame(watch.ms());
-  if (shown)
+  if (shown) {
     noteShown(*shown, edit_ns, announces);
-  else
+    showFrameInRoom();
+  } else {
     losePicture(shown.error());
+  }
 }
 
 void Workstation::noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns,

@@ -62,6 +62,11 @@ class Workstation {
   /// Gives the headset what is to be seen, and notes its end.
   void followHeadset();
   void noteHeadset(const HeadsetView::State& state);
+  [[nodiscard]] engine::Status startHeadset();
+  /// What hands did on the window's frame in the room.
+  void takeHeadsetInput();
+  /// The frame as shown, where it may have changed.
+  void showFrameInRoom();
   void noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns, bool announces);
 
   // Documents.
@@ -94,6 +99,7 @@ class Workstation {
   Parts parts_;
   std::unique_ptr<HeadsetView> headset_;  // null without one
   HeadsetFigures headset_figures_;
+  std::int64_t in_room_ns_ = 0;          // when the last frame was shown there
   std::uint64_t documents_ = 0;          // opened
   std::optional<Document> unconfirmed_;  // while it is asked whether its reading is right
   ToolResults tool_results_;

@@ -47,27 +47,34 @@ double topMm(const engine::Version& field, const haptic::Scene& scene) {
   return bounds.empty() ? 0.0 : static_cast<double>(bounds.max) * field.grid().height_unit.mm;
 }
 
-// A mouse has no force: its depth replaces it. Two cells deep is pressing hard, at every scale of the field.
-haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
-  // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
-  // them.
-  scene.level = haptic::ContactLevel::kCertified;
-  scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
-  scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * spacingMm(grid)), 1e-6, 1000.0);
+// A hand in a room cannot be led as finely as a cursor: on a table of 0.6 m (app/xr/room_table) this is 6 mm.
+double handsUnitMm(const engine::Grid& grid) {
+  const double side_mm =
+      std::max((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  return std::max(spacingMm(grid), 0.01 * side_mm);
+}
+
+// A hand without force: its depth replaces it. Two units deep is pressing hard, at every scale of the field.
+haptic::Scene fitted(haptic::Scene scene, double unit_mm) {
+  scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * unit_mm), 1e-6, 1000.0);
   return scene;
 }
 
-haptic::MouseFeel feelFor(const engine::Grid& grid) {
-  const double cell = spacingMm(grid);
+haptic::MouseFeel feelFor(double unit_mm) {
   haptic::MouseFeel feel;
-  feel.hover_mm = cell;
-  feel.press_mm = cell;
-  feel.wheel_step_mm = 0.1 * cell;
-  feel.deepest_mm = 4.0 * cell;
+  feel.hover_mm = unit_mm;
+  feel.press_mm = unit_mm;
+  feel.wheel_step_mm = 0.1 * unit_mm;
+  feel.deepest_mm = 4.0 * unit_mm;
   return feel;
 }
 
 }  // namespace
+
+std::shared_ptr<haptic::ControllerLink> controllersBeside(const std::string& device) {
+  const haptic::KnownDriver* const driver = haptic::driverNamed(device).driver;
+  return driver != nullptr && driver->needs_window ? std::make_shared<haptic::ControllerLink>() : nullptr;
+}
 
 DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Grid& grid)
     : options_(std::move(options)), driver_(haptic::driverNamed(options_.device).driver), grid_(grid) {}
@@ -75,10 +82,24 @@ DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Grid& grid)
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   const engine::Grid& grid = grid_;
   if (driver_ != nullptr && driver_->needs_window) {
-    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
+    if (options_.controllers) {
+      auto hands =
+          std::make_unique<haptic::ControllerStylus>(feelFor(handsUnitMm(grid)), options_.controllers);
+      mouse_ = &hands->mouse();
+      device_ = std::move(hands);
+      if (options_.fit_spring) scene = fitted(scene, handsUnitMm(grid));
+      return {};
+    }
+    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(spacingMm(grid)));
     mouse_ = mouse.get();
     device_ = std::move(mouse);
-    if (options_.fit_spring) scene = fitted(scene, grid);
+    if (options_.fit_spring) {
+      scene = fitted(scene, spacingMm(grid));
+      // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
+      // them.
+      scene.level = haptic::ContactLevel::kCertified;
+      scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
+    }
     return {};
   }
   auto device = haptic::openDevice(options_.device, options_.rate_hz);

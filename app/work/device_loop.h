@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/enumerate.h"
+#include "haptic/devices/virtual/controller_stylus.h"
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/effects/stability.h"
 #include "haptic/loop/haptic_loop.h"
@@ -43,7 +44,13 @@ struct LoopClientOptions {
   bool lower_scene = false;
   Loudness loudness;         ///< of scenes with sound
   DeviceSetups setups = {};  ///< of the devices that are known
+  /// Of a headset's controllers, which are then the tip as well where the device is the mouse; null: there are none.
+  std::shared_ptr<haptic::ControllerLink> controllers = nullptr;
 };
+
+/// Where a headset's controllers may be the tip: beside the mouse. Another device stays it, and this is null: it gives forces, or
+/// its user chose it. `device`: as LoopClientOptions::device.
+[[nodiscard]] std::shared_ptr<haptic::ControllerLink> controllersBeside(const std::string& device);
 
 /// Choices that were made by buttons of the device (haptic::StylusButtons): how often the next one was chosen.
 struct DeviceChoices {
@@ -118,6 +125,10 @@ class DeviceLoop {
   [[nodiscard]] std::optional<double> largestStiffness(const haptic::Scene& scene) const;
 
   [[nodiscard]] haptic::MouseStylus* mouse() noexcept { return mouse_; }
+  /// Whether a headset's controller is the tip now.
+  [[nodiscard]] bool controllerLeads() const noexcept {
+    return options_.controllers && options_.controllers->leads.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] const haptic::Device& device() const noexcept { return *device_; }
   [[nodiscard]] haptic::HapticLoop& loop() noexcept { return *loop_; }
   [[nodiscard]] const haptic::HapticLoop& loop() const noexcept { return *loop_; }
@@ -142,7 +153,7 @@ class DeviceLoop {
   engine::Grid grid_;
   std::unique_ptr<haptic::Device> device_;
   DeviceSetup setup_;
-  haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
+  haptic::MouseStylus* mouse_ = nullptr;  // device_, or the one in it
   std::unique_ptr<haptic::HapticLoop> loop_;
   bool running_ = false;
   std::vector<haptic::LoopCommand> unsent_;  // when the ring was full

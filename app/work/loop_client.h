@@ -150,6 +150,8 @@ class LoopClient final {
   /// What plays; null while the scene lists no sound, and where no audio device answered.
   [[nodiscard]] const SoundPlayer* soundPlayer() const noexcept { return sound_.player(); }
   [[nodiscard]] haptic::MouseStylus* mouse() noexcept { return loop_.mouse(); }
+  /// Whether a headset's controller is the tip now, in place of the mouse.
+  [[nodiscard]] bool controllerLeads() const noexcept { return loop_.controllerLeads(); }
   [[nodiscard]] const haptic::Device& device() const noexcept { return loop_.device(); }
   /// The newest tick.
   [[nodiscard]] haptic::LoopState state() noexcept { return loop_.loop().state(); }

@@ -90,10 +90,17 @@ TEST_F(XrTest, a_lost_headset_is_said_once_and_the_window_goes_on) {
   stage.expectSilence();
 }
 
-TEST_F(XrTest, without_a_runtime_it_says_so_and_ends) {
-  const auto program = start({scan, "--xr"}, {{"XR_RUNTIME_JSON", folder.file("none.json")}});
+TEST_F(XrTest, without_a_runtime_it_says_so_in_one_line_and_ends) {
+  const std::string none = folder.file("none.json");
+  const auto program = start({scan, "--xr"}, {{"XR_RUNTIME_JSON", none}});
   EXPECT_EQ(program->wait(), 1);
-  EXPECT_NE(program->err().find("no headset can be used"), std::string::npos) << program->err();
+  const std::string& said = program->err();
+  EXPECT_EQ(
+      said.find(R"({"schema":"fettle.error/1","error":"no headset can be used: no runtime is installed)"), 0U)
+      << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  for (const char* part : {"install the runtime", none.c_str()})
+    EXPECT_NE(said.find(part), std::string::npos) << "'" << part << "' in " << said;
 }
 
 TEST_F(XrTest, without_the_option_nothing_of_it_is_loaded) {

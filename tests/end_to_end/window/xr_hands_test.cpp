@@ -1,0 +1,287 @@
+// Hands in a scripted headset (tests/xr_runtime): a controller as the tip, the field held by two, the window's frame pointed
+// at. The runtime composes what each eye sees, so that it can be looked at.
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "render/png/png.h"
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+#include "tests/xr_runtime/xr_stage.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+// A head over the table, whose top lies at 0.75 m and 0.55 m ahead, and which looks down at it; 0.15 m behind it is a screen
+// of 1.1 m x 0.8 m, a millimetre for each of the window's pixels.
+constexpr const char* kRoom = "size 480 500\nrate 45\n0 head 0 1.45 -0.05 0 -42\n";
+constexpr double kScreenY_m = 1.35, kTableZ_m = -0.6;
+
+class XrHands : public WindowTest {
+ protected:
+  XrHands() : stage(kRoom) {}
+
+  std::unique_ptr<ViewProgram> startIn(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {scan, "--xr"});
+    auto program = start(more, stage.environment());
+    (void)opened(*program);
+    program->until("the field is in the room",
+                   [](const State& s) { return s["headset"] == "shown" && s["room"]["mm"] > 0.0; });
+    return program;
+  }
+  // A hand at a place that looks down.
+  static std::string over(const char* hand, double x, double y, double z = kTableZ_m, int frame = 1) {
+    return fmt::format("+{} {} {} {} {} 0 -70\n", frame, hand, x, y, z);
+  }
+  // A hand whose ray meets a pixel of the window's frame.
+  static std::string at(const char* hand, double px, double py, int frame = 1) {
+    return fmt::format("+{} {} {} {} -0.6 0 0\n", frame, hand, 1e-3 * px - 0.55,
+                       kScreenY_m + 0.4 - 1e-3 * py);
+  }
+  static std::string set(const char* what, double value, int frame = 1) {
+    return fmt::format("+{} {} {}\n", frame, what, value);
+  }
+  static State tipIs(ViewProgram& program, const State& hand) {
+    return program.until("the tip " + hand.dump(), [&](const State& s) { return s["room"]["tip"] == hand; });
+  }
+  // Keeps what is seen some frames from now; its number.
+  int keep(int frames = 2) const {
+    const int before = stage.count("\nframe ");
+    stage.act(fmt::format("+{} keep\n", frames));
+    for (int tries = 0; stage.count("\nframe ") == before && tries < 2000; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const std::string log = stage.log();
+    return std::atoi(log.c_str() + log.rfind("\nframe ") + 7);
+  }
+  render::Image seen(int frame, const char* eye, const char* what = "") const {
+    const auto image = render::readPng(stage.file(fmt::format("frame{}.{}{}.png", frame, eye, what)));
+    EXPECT_TRUE(image) << stage.log();
+    return image ? *image : render::Image{};
+  }
+  static int pixelsApart(const render::Image& a, const render::Image& b) {
+    int apart = 0;
+    for (std::size_t i = 0; i + 3 < std::min(a.rgba.size(), b.rgba.size()); i += 4)
+      apart += std::equal(&a.rgba[i], &a.rgba[i] + 3, &b.rgba[i]) ? 0 : 1;
+    return apart;
+  }
+  // The strongest vibration told to a hand since `from` of the log.
+  double strongest(const std::string& hand, std::size_t from) const {
+    std::istringstream lines(stage.log().substr(from));
+    double most = 0.0;
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("haptics " + hand) == 0 && line.find("stopped") == std::string::npos)
+        most = std::max(most, std::atof(line.c_str() + 9 + hand.size()));
+    return most;
+  }
+  // The last word about a hand's vibration.
+  std::string lastWord(const std::string& hand) const {
+    const std::string log = stage.log();
+    const std::size_t begin = log.rfind("haptics " + hand);
+    return begin == std::string::npos ? "" : log.substr(begin, log.find('\n', begin) - begin);
+  }
+
+  // The headset's next frames tell a hand nothing more.
+  void expectStops(const std::string& hand) const {
+    for (int tries = 0; lastWord(hand).find("stopped") == std::string::npos && tries < 2000; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_NE(lastWord(hand).find("stopped"), std::string::npos) << lastWord(hand);
+  }
+
+  XrStage stage;
+};
+
+TEST_F(XrHands, a_controller_is_the_tip_and_a_stroke_of_it_is_a_step) {
+  const auto program = startIn();
+  User user(display, *program, "xr tip");
+  EXPECT_EQ(program->now()["device"], "mouse and controllers");
+  (void)user.key("s");
+  ASSERT_EQ(program->now()["tool"], "smooth");
+  stage.act(over("right", 0.0, 0.95));
+  const int before = keep();
+  EXPECT_TRUE(program->now()["room"]["tip"].is_null()) << "a hand that pressed nothing";
+  // Pressed over the field, then down on it.
+  stage.act(set("right trigger", 1) + over("right", 0.0, 0.95, kTableZ_m, 2) +
+            over("right", 0.0, 0.755, kTableZ_m, 30));
+  tipIs(*program, "right");
+  (void)program->until("contact", [](const State& s) { return s["touching"] == true; });
+  const int touching = keep();
+  EXPECT_GT(strongest("right", 0), 0.1) << stage.log();
+  EXPECT_EQ(stage.count("haptics left"), 0);
+  for (const char* eye : {"left", "right"})
+    EXPECT_GT(pixelsApart(seen(before, eye), seen(touching, eye)), 150)
+        << "the tip is seen by the eye at the " << eye;
+  // Aside, and up.
+  stage.act(over("right", 0.0, 0.755) + over("right", 0.12, 0.755, kTableZ_m, 20) +
+            over("right", 0.12, 0.755, kTableZ_m, 22) + over("right", 0.12, 0.95, kTableZ_m, 30) +
+            set("right trigger", 0, 32));
+  const State stroked = program->until("a step", [](const State& s) { return s["steps"] == 1; });
+  EXPECT_EQ(stroked["room"]["tip"], "right") << "it stays the tip";
+  (void)program->until("off", [](const State& s) { return s["touching"] == false; });
+  expectStops("right");
+  // The window shows it as of any device.
+  (void)user.look("a stroke of the controller");
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  EXPECT_EQ(user.key("ctrl+y")["steps"], 1);
+  const std::string session = folder.file("stroke.fettle");
+  saveAs(user, session);
+  const State report = quit(user);
+  EXPECT_EQ(report["steps"], 1);
+  stage.expectSilence();
+  EXPECT_EQ(stage.count("session ended"), 1);
+  const Differences d = compare(load(session), load(scan));
+  EXPECT_GT(d.changed, 20);
+  EXPECT_GT(d.last_column - d.first_column, 30) << "from the middle to the right";
+  const std::string again = folder.file("again.tif");
+  const Outcome replayed = runProcess({FETTLE_PROGRAM, "replay", session, again});
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_EQ(compare(load(again), load(session)).changed, 0);
+}
+
+TEST_F(XrHands, the_tip_is_lifted_and_its_vibration_stopped_when_the_focus_is_lost) {
+  const auto program = startIn();
+  User user(display, *program, "xr focus");
+  (void)user.key("s");
+  stage.act(over("left", 0.0, 0.95) + set("left trigger", 1, 2) + over("left", 0.0, 0.755, kTableZ_m, 20));
+  tipIs(*program, "left");
+  (void)program->until("contact", [](const State& s) { return s["touching"] == true; });
+  (void)keep();
+  EXPECT_GT(strongest("left", 0), 0.1) << stage.log();
+  stage.act("+1 hide\n");
+  tipIs(*program, State());
+  (void)program->until("the stroke is a step", [](const State& s) { return s["steps"] == 1; });
+  expectStops("left");
+  const std::size_t hidden = stage.log().size();
+  stage.act("+1 show\n");
+  tipIs(*program, "left");
+  (void)keep();
+  EXPECT_GT(strongest("left", hidden), 0.1) << "it is the tip again";
+  (void)quit(user);
+  EXPECT_NE(lastWord("left").find("stopped"), std::string::npos) << "at the end: " << lastWord("left");
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, a_stroke_of_the_mouse_takes_the_tip_and_a_trigger_takes_it_back) {
+  const auto program = startIn();
+  User user(display, *program, "xr mouse");
+  (void)user.key("s");
+  stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 2) + set("right trigger", 0, 6));
+  tipIs(*program, "right");
+  (void)user.drag(1, {330, 400}, {380, 400}, 3);
+  EXPECT_EQ(tipIs(*program, State())["steps"], 1);
+  stage.act(set("right trigger", 1) + set("right trigger", 0, 6));
+  tipIs(*program, "right");
+  (void)quit(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, another_device_stays_the_tip) {
+  const std::string strokes = folder.file("hand.csv");
+  std::ofstream(strokes) << "t,x,y,z,tool\n0,5,5,100,feel\n1,5,5,100,feel\n";
+  const auto program = startIn({"--device", "replay:" + strokes});
+  User user(display, *program, "xr other device");
+  stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 2) + over("right", 0.0, 0.755, kTableZ_m, 20));
+  const int frame = keep();
+  EXPECT_GT(frame, 20);
+  EXPECT_TRUE(program->now()["room"]["tip"].is_null());
+  EXPECT_EQ(stage.count("haptics"), 0) << stage.log();
+  (void)quit(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, two_hands_move_and_scale_the_field_and_a_button_gives_its_true_size) {
+  const auto program = startIn();
+  User user(display, *program, "xr two hands");
+  const double giant = program->now()["room"]["mm"];
+  EXPECT_FALSE(program->now()["room"]["true_size"]);
+  stage.act(over("left", -0.1, 0.95) + over("right", 0.1, 0.95) + set("left squeeze", 1, 3) +
+            set("right squeeze", 1, 3) + over("left", -0.1, 0.95, kTableZ_m, 5) +
+            over("right", 0.1, 0.95, kTableZ_m, 5) + over("left", -0.2, 0.95, kTableZ_m, 25) +
+            over("right", 0.2, 0.95, kTableZ_m, 25));
+  (void)program->until("twice as large", [&](const State& s) {
+    return std::abs(s["room"]["mm"].get<double>() / giant - 2.0) < 0.01;
+  });
+  const int large = keep();
+  // Let go: nothing follows the hands.
+  stage.act(set("left squeeze", 0) + set("right squeeze", 0) + over("left", -0.2, 0.95, kTableZ_m, 2) +
+            over("left", -0.4, 0.95, kTableZ_m, 10));
+  EXPECT_GT(keep(14), large);
+  EXPECT_NEAR(program->now()["room"]["mm"].get<double>() / giant, 2.0, 0.01);
+  EXPECT_TRUE(program->now()["room"]["tip"].is_null());
+  stage.act(set("right button", 1) + set("right button", 0, 4));
+  (void)program->until("true size", [](const State& s) { return s["room"]["true_size"] == true; });
+  EXPECT_NEAR(program->now()["room"]["mm"].get<double>(), 1e-3, 1e-12);
+  const int small = keep();
+  for (const char* eye : {"left", "right"})
+    EXPECT_GT(pixelsApart(seen(large, eye), seen(small, eye)), 480 * 500 / 20) << eye;
+  stage.act(set("left button", 1) + set("left button", 0, 4));
+  (void)program->until("a giant's", [&](const State& s) { return s["room"]["mm"] == giant; });
+  (void)quit(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, the_window_is_pointed_at_in_the_room_clicked_and_scrolled) {
+  const auto program = startIn();
+  User user(display, *program, "xr screen");
+  // Up to the screen.
+  stage.act("+1 head 0 1.45 -0.05 0 -12\n");
+  const int before = keep();
+  // Its own frame hangs there, as it is on the desktop.
+  const State texts = program->now()["texts"];
+  State button;
+  for (const State& t : texts)
+    if (t["text"] == "Smooth") button = t["at"];
+  ASSERT_TRUE(button.is_array()) << texts.dump();
+  const int x = button[0].get<int>() + button[2].get<int>() / 2;
+  const int y = button[1].get<int>() + button[3].get<int>() / 2;
+  stage.act(at("right", x, y));
+  (void)program->until("the cursor on the button", [&](const State& s) {
+    return s["room"]["points"] == true && std::abs(s["cursor"][0].get<int>() - x) <= 1 &&
+           std::abs(s["cursor"][1].get<int>() - y) <= 1;
+  });
+  const int pointing = keep();
+  // Ray and spot are layers over the screen's, and each eye sees them.
+  EXPECT_EQ(stage.count(fmt::format("frame {} projection quad\n", before)), 1) << stage.log();
+  EXPECT_EQ(stage.count(fmt::format("frame {} projection quad quad quad\n", pointing)), 1) << stage.log();
+  for (const char* eye : {"left", "right"}) {
+    EXPECT_GT(pixelsApart(seen(before, eye), seen(before, eye, ".seen")), 480 * 500 / 10) << "the screen";
+    EXPECT_GT(pixelsApart(seen(before, eye, ".seen"), seen(pointing, eye, ".seen")), 100) << "ray and spot";
+  }
+  const render::Image frame = seen(pointing, "quad0");
+  EXPECT_EQ(frame.width, 1100);
+  EXPECT_EQ(frame.height, 800);
+
+  stage.act(set("right trigger", 1) + set("right trigger", 0, 5));
+  const State chosen = program->until("the tool", [](const State& s) { return s["tool"] == "smooth"; });
+  EXPECT_TRUE(chosen["room"]["tip"].is_null()) << "a click is no stroke";
+  (void)user.rest();
+  EXPECT_EQ(program->now()["steps"], 0);
+
+  // The panels scroll under the ray.
+  const auto shows = [&] { return program->now()["texts"].dump(); };
+  const std::string top = shows();
+  stage.act(set("right scroll", -1) + set("right scroll", 0, 40));
+  (void)program->until("scrolled", [&](const State& s) { return s["texts"].dump() != top; });
+  EXPECT_GT(program->now()["wheels"], 0);
+
+  // Away from the screen it is the tip.
+  stage.act(over("right", 0.0, 0.95, kTableZ_m, 50) + set("right trigger", 1, 55) +
+            set("right trigger", 0, 60));
+  tipIs(*program, "right");
+  EXPECT_EQ(program->now()["room"]["points"], false);
+  // And back at the screen it is not.
+  stage.act(at("right", x, y));
+  tipIs(*program, State());
+  (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
+  (void)quit(user);
+  stage.expectSilence();
+}
+
+}  // namespace
+}  // namespace fettle::tests
