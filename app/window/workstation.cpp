@@ -21,10 +21,9 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kIdle_s = 0.1;                       // between two frames while nothing happens
-constexpr double kBusy_s = 0.03;                      // ... while only figures change
-constexpr std::uint64_t kSaveSettingsEvery = 120;     // frames
-constexpr std::int64_t kInRoomAgain_ns = 25'000'000;  // between two frames of the window in a headset's room
+constexpr double kIdle_s = 0.1;                                 // between two frames while nothing happens
+constexpr double kBusy_s = 0.03;                                // ... while only figures change
+constexpr std::uint64_t kSaveSettingsEvery = 120;               // frames
 constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two polls of the loop
 
 std::string settingsPath(const char* file) {
@@ -69,7 +68,10 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
     station->events_ = *std::move(events);
   }
   if (options.xr) {
-    if (auto started = station->startHeadset(); !started) return tl::unexpected(started.error());
+    LoopClientOptions& client = station->options_.client;
+    if (auto started = station->headset_.start({options.window.validation}, options.xr_scale, client);
+        !started)
+      return tl::unexpected(started.error());
   }
   if (!options.scan.empty()) station->open(options.scan, std::nullopt);
   return station;
@@ -87,11 +89,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     const double lived = watch.seconds();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
-  if (headset_) {
-    headset_->finish();
-    noteHeadset(headset_->state());
-    headset_.reset();
-  }
+  headset_.finish();
   Report report = runReport(parts_, figures());
   // A user who quits has saved what was to be saved. Otherwise there was no question: unsaved work is
   // restored when the scan is opened again.
@@ -115,7 +113,7 @@ void Workstation::runFrame() {
   releaseHandsWhenAsked();
   takeResults();
   parts_.showMarksMade();
-  followHeadset();
+  headset_.follow(parts_, options_.drawing, documents_);
   releaseHandsWhenAsked();
   if (!parts_.picture.made() || window_->displayLost()) {
     // No graphics device: loop and workers continue.
@@ -133,7 +131,7 @@ void Workstation::runFrame() {
 // off its ring.
 void Workstation::whileWaiting() {
   window_->poll(0.0);
-  takeHeadsetInput();
+  headset_.takeInput(*window_);
   for (const render::InputEvent& event : window_->takeInput()) input_.add(event, parts_);
   if (parts_.document.isOpen()) parts_.document.client()->poll();
 }
@@ -151,76 +149,6 @@ void Workstation::handleInput() {
     parts_.cursor = {event->x, event->y};
     releaseHandsWhenAsked();
   }
-}
-
-engine::Status Workstation::startHeadset() {
-  options_.client.controllers = controllersBeside(options_.client.device);
-  HeadsetView::Options options{
-      {options_.window.validation}, options_.xr_scale, options_.client.controllers, &render::Window::wake};
-  auto headset = HeadsetView::start(std::move(options));
-  if (!headset) return tl::unexpected(headset.error());
-  headset_ = *std::move(headset);
-  return {};
-}
-
-void Workstation::noteHeadset(const HeadsetView::State& state) {
-  headset_figures_ = {.name = state.headset,
-                      .frames = state.frames,
-                      .over = state.over,
-                      .true_size = state.scale == RoomScale::kTrue,
-                      .metres_per_mm = state.metres_per_mm,
-                      .tip = state.tip,
-                      .points = state.points,
-                      .validation = state.validation};
-}
-
-void Workstation::takeHeadsetInput() {
-  if (!headset_) return;
-  using render::InputKind;
-  static constexpr std::pair<ScreenInput::Kind, InputKind> kKinds[] = {
-      {ScreenInput::Kind::kMove, InputKind::kMove},   {ScreenInput::Kind::kDown, InputKind::kButtonDown},
-      {ScreenInput::Kind::kUp, InputKind::kButtonUp}, {ScreenInput::Kind::kWheel, InputKind::kWheel},
-      {ScreenInput::Kind::kLeave, InputKind::kLeave},
-  };
-  for (const ScreenInput& input : headset_->takeInput()) {
-    render::InputEvent event;
-    for (const auto& [done, kind] : kKinds)
-      if (done == input.kind) event.kind = kind;
-    event.button = render::MouseButton::kLeft;
-    event.x = input.x * window_->width();
-    event.y = input.y * window_->height();
-    event.wheel = input.wheel;
-    window_->point(event);
-  }
-}
-
-void Workstation::showFrameInRoom() {
-  const std::int64_t now = engine::steadyNs();
-  if (!headset_ || now - in_room_ns_ < kInRoomAgain_ns) return;
-  in_room_ns_ = now;
-  // A lost device is reported by the next frame.
-  if (auto frame = window_->capture()) headset_->showWindow(*std::move(frame));
-}
-
-void Workstation::followHeadset() {
-  if (!headset_) return;
-  const HeadsetView::State state = headset_->state();
-  noteHeadset(state);
-  if (!state.over) {
-    if (!parts_.document.isOpen()) return;
-    HeadsetView::Picture picture = headsetPicture(parts_, options_.drawing);
-    picture.field = documents_;
-    picture.tip = tipLookOf(parts_);
-    headset_->show(std::move(picture));
-    return;
-  }
-  // The window goes on without it, and nothing that was done is lost.
-  parts_.feedback.notices.push_back(
-      state.error
-          ? Notice{state.error->what, "the window continues; start fettle view --xr again for the headset"}
-          : Notice{"the headset's session was ended", "the window continues"});
-  headset_.reset();
-  parts_.picture.requestRedraw();
 }
 
 void Workstation::followFlight() {
@@ -283,7 +211,7 @@ void Workstation::showFrame() {
   parts_.picture.noteFrame(watch.ms());
   if (shown) {
     noteShown(*shown, edit_ns, announces);
-    showFrameInRoom();
+    headset_.showFrame(*window_);
   } else {
     losePicture(shown.error());
   }

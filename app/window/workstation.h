@@ -9,12 +9,13 @@
 #include "app/window/device_renewal.h"
 #include "app/window/draw_field.h"
 #include "app/window/event_log.h"
+#include "app/window/headset_room.h"
 #include "app/window/input.h"
 #include "app/window/panels/panels.h"
 #include "app/window/parts.h"
 #include "app/window/tool_results.h"
 #include "app/window/window_state.h"
-#include "app/xr/headset_view.h"
+#include "app/xr/room_table.h"
 
 namespace fettle::app {
 
@@ -59,14 +60,6 @@ class Workstation {
   void followFlight();
   void takeResults();
   void showFrame();
-  /// Gives the headset what is to be seen, and notes its end.
-  void followHeadset();
-  void noteHeadset(const HeadsetView::State& state);
-  [[nodiscard]] engine::Status startHeadset();
-  /// What hands did on the window's frame in the room.
-  void takeHeadsetInput();
-  /// The frame as shown, where it may have changed.
-  void showFrameInRoom();
   void noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns, bool announces);
 
   // Documents.
@@ -91,15 +84,13 @@ class Workstation {
   void saveSettings();
   void saveSettingsNow();
   [[nodiscard]] RunFigures figures() const {
-    return {frames_, renewal_.losses(), headset_figures_, shown_ns_};
+    return {frames_, renewal_.losses(), headset_.figures(), shown_ns_};
   }
 
   ViewOptions options_;
   std::unique_ptr<render::Window> window_;
   Parts parts_;
-  std::unique_ptr<HeadsetView> headset_;  // null without one
-  HeadsetFigures headset_figures_;
-  std::int64_t in_room_ns_ = 0;          // when the last frame was shown there
+  HeadsetRoom headset_;
   std::uint64_t documents_ = 0;          // opened
   std::optional<Document> unconfirmed_;  // while it is asked whether its reading is right
   ToolResults tool_results_;
