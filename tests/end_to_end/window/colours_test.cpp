@@ -16,8 +16,7 @@ class ColoursTest : public WindowTest {
   void SetUp() override {
     WindowTest::SetUp();
     State panels{{"Colours", true}};
-    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan"})
-      panels[closed] = false;
+    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan"}) panels[closed] = false;
     std::ofstream(folder.path() / "fettle" / "window.json")
         << State{{"edge_lines", false}, {"panels", panels}};
   }
@@ -116,12 +115,7 @@ TEST_F(ColoursTest, a_small_change_is_seen_beside_an_edge_that_moved_and_a_toler
   const int before = coloured(seen);
   EXPECT_GT(before, 100);
   (void)user.until("all within the tolerance", [&](const Screen& now) { return coloured(now) < before / 4; });
-  (void)user.press("ctrl+q");
-  program->until("a question",
-                 [](const State& s) { return s["dialog"] == "unsaved" && s["settled"] == true; });
-  (void)user.press("d");
-  EXPECT_EQ(program->wait(), 0) << program->err();
-  expectSilence(*program);
+  (void)quitWithoutSaving(user);
   // The share is kept for the next start, what was typed is not.
   const auto again = start({scan});
   User next(display, *again, "next");

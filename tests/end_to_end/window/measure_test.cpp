@@ -165,6 +165,7 @@ TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
   });
   EXPECT_NEAR(angle["section_figures"]["angle"]["included_deg"].get<double>(),
               180.0 - std::abs(angle["section_figures"]["angle"]["turn_deg"].get<double>()), 1e-9);
+  (void)user.wheel(-8);
   EXPECT_TRUE(user.reads("angle turn"));
   (void)user.look("angle between two stretches");
   // Behind the border there is no height, and nothing to show.

@@ -161,6 +161,11 @@ void ViewProgram::signal(int number) const {
 
 int ViewProgram::wait() {
   if (status_ < 0) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!reported_.wait_for(lock, kPatience, [this] { return ended_; }))
+        throw std::runtime_error("the program never ended\n" + lastReported());
+    }
     listener_.join();  // its streams are closed: it has ended, or soon has
     int status = 0;
     waitpid(pid_, &status, 0);

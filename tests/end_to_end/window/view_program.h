@@ -48,7 +48,7 @@ class ViewProgram {
   [[nodiscard]] bool ended();
 
   void signal(int number) const;
-  /// Waits for its end. Exit status; 128 + signal when a signal ended it.
+  /// Waits for its end. Exit status; 128 + signal when a signal ended it. Throws when it does not end.
   int wait();
   [[nodiscard]] pid_t pid() const { return pid_; }
   [[nodiscard]] const std::string& err() const { return err_; }  ///< after wait()

@@ -87,12 +87,23 @@ void WindowTest::saveAs(User& user, const std::string& path) {
   });
 }
 
-User::State WindowTest::quit(User& user) {
-  (void)user.press("ctrl+q");
-  ViewProgram& program = user.program();
+User::State WindowTest::endOf(ViewProgram& program) {
   EXPECT_EQ(program.wait(), 0) << program.err();
   expectSilence(program);
   return program.report();
+}
+
+User::State WindowTest::quit(User& user) {
+  (void)user.press("ctrl+q");
+  return endOf(user.program());
+}
+
+User::State WindowTest::quitWithoutSaving(User& user) {
+  (void)user.press("ctrl+q");
+  (void)user.program().until(
+      "a question", [](const User::State& s) { return s["dialog"] == "unsaved" && s["settled"] == true; });
+  (void)user.press("Delete");
+  return endOf(user.program());
 }
 
 void WindowTest::expectSilence(const ViewProgram& program) {

@@ -45,6 +45,8 @@ class WindowTest : public ::testing::Test {
   static void saveAs(User& user, const std::string& path);
   /// Ctrl+Q, and the end: exit status 0 and no word from the validation layers. Its report.
   static User::State quit(User& user);
+  /// The same where there is unsaved work: it is dropped when the question comes.
+  static User::State quitWithoutSaving(User& user);
   static void expectSilence(const ViewProgram& program);
 
   TempFolder folder;
@@ -52,6 +54,9 @@ class WindowTest : public ::testing::Test {
   XClient other;
   std::string scan = folder.file("part.tif");
   int width_, height_;
+
+ private:
+  static User::State endOf(ViewProgram& program);
 };
 
 }  // namespace fettle::tests

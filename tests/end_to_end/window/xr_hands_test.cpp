@@ -128,7 +128,7 @@ TEST_F(XrHands, a_controller_is_the_tip_and_a_stroke_of_it_is_a_step) {
   // The window shows it as of any device.
   (void)user.look("a stroke of the controller");
   EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
-  EXPECT_EQ(user.key("ctrl+y")["steps"], 1);
+  EXPECT_EQ(user.key("ctrl+shift+z")["steps"], 1);
   const std::string session = folder.file("stroke.fettle");
   saveAs(user, session);
   const State report = quit(user);
@@ -162,7 +162,7 @@ TEST_F(XrHands, the_tip_is_lifted_and_its_vibration_stopped_when_the_focus_is_lo
   tipIs(*program, "left");
   (void)keep();
   EXPECT_GT(strongest("left", hidden), 0.1) << "it is the tip again";
-  (void)quit(user);
+  (void)quitWithoutSaving(user);
   EXPECT_NE(lastWord("left").find("stopped"), std::string::npos) << "at the end: " << lastWord("left");
   stage.expectSilence();
 }
@@ -177,7 +177,7 @@ TEST_F(XrHands, a_stroke_of_the_mouse_takes_the_tip_and_a_trigger_takes_it_back)
   EXPECT_EQ(tipIs(*program, State())["steps"], 1);
   stage.act(set("right trigger", 1) + set("right trigger", 0, 6));
   tipIs(*program, "right");
-  (void)quit(user);
+  (void)quitWithoutSaving(user);
   stage.expectSilence();
 }
 
@@ -187,8 +187,7 @@ TEST_F(XrHands, another_device_stays_the_tip) {
   const auto program = startIn({"--device", "replay:" + strokes});
   User user(display, *program, "xr other device");
   stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 2) + over("right", 0.0, 0.755, kTableZ_m, 20));
-  const int frame = keep();
-  EXPECT_GT(frame, 20);
+  (void)keep(24);  // it is down by then
   EXPECT_TRUE(program->now()["room"]["tip"].is_null());
   EXPECT_EQ(stage.count("haptics"), 0) << stage.log();
   (void)quit(user);
@@ -250,7 +249,7 @@ TEST_F(XrHands, the_window_is_pointed_at_in_the_room_clicked_and_scrolled) {
   EXPECT_EQ(stage.count(fmt::format("frame {} projection quad\n", before)), 1) << stage.log();
   EXPECT_EQ(stage.count(fmt::format("frame {} projection quad quad quad\n", pointing)), 1) << stage.log();
   for (const char* eye : {"left", "right"}) {
-    EXPECT_GT(pixelsApart(seen(before, eye), seen(before, eye, ".seen")), 480 * 500 / 10) << "the screen";
+    EXPECT_GT(pixelsApart(seen(before, eye), seen(before, eye, ".seen")), 480 * 500 / 12) << "the screen";
     EXPECT_GT(pixelsApart(seen(before, eye, ".seen"), seen(pointing, eye, ".seen")), 100) << "ray and spot";
   }
   const render::Image frame = seen(pointing, "quad0");
