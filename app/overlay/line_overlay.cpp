@@ -6,7 +6,10 @@
 
 namespace fettle::app {
 
-glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
+namespace {
+
+// Of the highest of the samples around a position [mm]; nothing where none of them has a height.
+std::optional<double> heightAbove(const engine::FieldReader& reader, glm::dvec2 at) {
   const engine::Grid& grid = reader.grid();
   const auto clamped = [](double v, std::int32_t side) {
     return static_cast<std::int32_t>(std::clamp(v, 0.0, side - 1.0));
@@ -18,8 +21,18 @@ glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
                                       clamped(std::floor(at.y + dr), grid.height));
       if (z > height) height = static_cast<double>(z);
     }
-  if (!std::isfinite(height)) height = 0.0;
-  return {at.x * grid.spacingXMm(), at.y * grid.spacingYMm(), height * grid.height_unit.mm};
+  if (!std::isfinite(height)) return std::nullopt;
+  return height * grid.height_unit.mm;
+}
+
+glm::dvec3 placeAt(const engine::Grid& grid, glm::dvec2 at, double height_mm) {
+  return {at.x * grid.spacingXMm(), at.y * grid.spacingYMm(), height_mm};
+}
+
+}  // namespace
+
+glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
+  return placeAt(reader.grid(), at, heightAbove(reader, at).value_or(0.0));
 }
 
 namespace {
@@ -63,14 +76,23 @@ void LineOverlay::append(const engine::Version& field, std::optional<std::int64_
     pieces_.clear();
     for (const EdgeLine& line : *field.lines()) {
       const std::size_t points = line.points.size();
+      // Over a hole a line goes on at the height it had, or will have.
+      std::optional<double> height;
+      for (std::size_t i = 0; i < points && !height; ++i)
+        height = heightAbove(reader, line.points[i].position);
+      if (!height) continue;
       const bool is_chosen = chosen == line.id;
       const std::size_t end = line.closed ? points : points - std::min<std::size_t>(points, 1);
       for (std::size_t i = 0; i < end; i += static_cast<std::size_t>(stride)) {
         const std::size_t to = std::min(i + static_cast<std::size_t>(stride), end);
         const EdgePoint &a = line.points[i], &b = line.points[to % points];
         render::OverlayLine piece;
-        piece.from_mm = aboveSurface(reader, a.position);
-        piece.to_mm = aboveSurface(reader, b.position);
+        const auto placeOf = [&](const EdgePoint& point) {
+          if (const auto above = heightAbove(reader, point.position)) height = above;
+          return placeAt(grid, point.position, *height);
+        };
+        piece.from_mm = placeOf(a);
+        piece.to_mm = placeOf(b);
         piece.depth = render::OverlayLine::Depth::kInScene;
         if (a.located) {
           render::OverlayLine band = piece;
