@@ -122,7 +122,8 @@ void placeholder(Parts& parts, float width, const Act& act, PanelRequests& reque
                           ImVec2(0.5F, 0.5F));
   ImGui::Begin("##empty", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoSavedSettings);
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoFocusOnAppearing);  // dialogs lie over it
   Opening& opening = parts.opening;
   if (announces) {
     ImGui::Text("%s: making the first picture", parts.document.fileName().c_str());
