@@ -31,7 +31,10 @@ constexpr Tip kTips[] = {
     {Action::kFilterApply, "Makes the previewed filter a step, which undo takes back."},
     {Action::kFilterScope,
      "\"keep marks\": marked samples keep their heights. \"only marks\": nothing else changes."},
-    {Action::kFilterMaxChange, "No sample moves farther than this from the scan."},
+    {Action::kFilterMaxChange,
+     "No sample is farther than this from the scan afterwards. What earlier steps moved farther comes back "
+     "to "
+     "this limit."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},
     {Action::kLevelLines, "For scanners whose rows lie at different heights: stripes go."},
     {Action::kShowMarks, "They count whether they are shown or not."},

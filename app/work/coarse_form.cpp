@@ -50,7 +50,7 @@ double rmsBetween(const engine::FieldReader& fine, const engine::FieldReader& co
 
 std::string coarseFormState(const CoarseForm& form) {
   const engine::LengthUnit& unit = form.surface.grid().height_unit;
-  const ReadAs as = readLengthAs(form.off_rms, unit.mm, unit.name);
+  const ReadAs as = readOnScreenAs(form.off_rms, unit.mm, unit.name);
   return fmt::format("approximate, off by about {:.3g} {} rms", form.off_rms / as.size, as.name);
 }
 

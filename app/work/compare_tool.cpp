@@ -30,7 +30,7 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
   if (const auto& found = compared.alignment) {
     const glm::dvec3 &shift = found->motion.shift, &error = found->shift_error;
     const ReadAs as =
-        readLengthAs(std::max({std::abs(shift.x), std::abs(shift.y), std::abs(shift.z)}), 1.0, "mm");
+        readOnScreenAs(std::max({std::abs(shift.x), std::abs(shift.y), std::abs(shift.z)}), 1.0, "mm");
     lines.push_back(figureLine("shift x", shift.x, error.x, 1.0 / as.size, as.name));
     lines.push_back(figureLine("shift y", shift.y, error.y, 1.0 / as.size, as.name));
     lines.push_back(figureLine("shift z", shift.z, error.z, 1.0 / as.size, as.name));
@@ -41,7 +41,7 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
     lines.push_back(
         fmt::format("{:.3g} % of the samples lie apart and do not count", 100.0 * found->left_out));
   }
-  const ReadAs height = readLengthAs(compared.rms_mm, 1.0, "mm");
+  const ReadAs height = readOnScreenAs(compared.rms_mm, 1.0, "mm");
   lines.push_back(fmt::format("deviation: rms {:.4g}, mean {:.4g}, largest {:.4g} {}, {} samples",
                               compared.rms_mm / height.size, compared.mean_mm / height.size,
                               compared.most_mm / height.size, height.name, compared.samples));

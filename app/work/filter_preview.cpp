@@ -43,7 +43,7 @@ std::string previewState(const engine::FilterView::Picture& picture, const engin
     return picture.exact == 1.0 ? "exact in view" : fmt::format("{} % so far", percent(picture.exact));
   std::string text = "approximate";
   if (picture.off) {
-    const ReadAs as = readLengthAs(picture.off->rms, grid.height_unit.mm, grid.height_unit.name);
+    const ReadAs as = readOnScreenAs(picture.off->rms, grid.height_unit.mm, grid.height_unit.name);
     text += fmt::format(", off by {}{:.3g} {} rms", picture.off->estimated ? "about " : "",
                         picture.off->rms / as.size, as.name);
   }

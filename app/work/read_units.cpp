@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/io/import.h"
+
 namespace fettle::app {
 
 namespace {
@@ -23,6 +25,19 @@ ReadAs readLengthAs(double length, double unit_mm, const std::string& unit) {
   for (const auto& each : kUnits)
     if (length * unit_mm >= each.mm) return {each.name, each.mm / unit_mm};
   return {"nm", 1e-6 / unit_mm};
+}
+
+ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit) {
+  ReadAs as = readLengthAs(length, unit_mm, unit);
+  if (as.name == "um") as.name = "\u00b5m";
+  return as;
+}
+
+std::optional<double> ratioOfUnits(const std::string& typed, const std::string& unit) {
+  if (typed == unit) return 1.0;
+  const auto from = engine::lengthUnitFromName(typed), to = engine::lengthUnitFromName(unit);
+  if (!from || !to) return std::nullopt;
+  return from->mm / to->mm;
 }
 
 }  // namespace fettle::app

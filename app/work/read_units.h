@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace fettle::app {
@@ -13,5 +14,12 @@ struct ReadAs {
 /// The unit for lengths up to `length`, kept in a unit of `unit_mm` millimetres called `unit`: of metric ones m, mm, um or
 /// nm, so that 0.0000113 mm are 11.3 nm; of others the same. 0 is read in the unit that it is kept in.
 [[nodiscard]] ReadAs readLengthAs(double length, double unit_mm, const std::string& unit);
+
+/// The same for the window, whose lengths read "\u00b5m".
+[[nodiscard]] ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit);
+
+/// How many of `unit` make one of `typed`, both names of length units (engine::lengthUnitFromName); nothing where one of them is
+/// none and they differ.
+[[nodiscard]] std::optional<double> ratioOfUnits(const std::string& typed, const std::string& unit);
 
 }  // namespace fettle::app

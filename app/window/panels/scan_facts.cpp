@@ -18,9 +18,9 @@ std::string extentText(const ScanThumbnail& picture) {
   if (!picture.grid) return {};
   const engine::Grid& grid = *picture.grid;
   const double across = grid.width * grid.spacing_x, up = grid.height * grid.spacing_y;
-  const ReadAs whole = readLengthAs(std::max(across, up), grid.lateral_unit.mm, grid.lateral_unit.name);
+  const ReadAs whole = readOnScreenAs(std::max(across, up), grid.lateral_unit.mm, grid.lateral_unit.name);
   const ReadAs apart =
-      readLengthAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit.mm, grid.lateral_unit.name);
+      readOnScreenAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit.mm, grid.lateral_unit.name);
   return fmt::format("{:.4g} x {:.4g} {}, {:.4g} x {:.4g} {} apart", across / whole.size, up / whole.size,
                      whole.name, grid.spacing_x / apart.size, grid.spacing_y / apart.size, apart.name);
 }
@@ -29,7 +29,7 @@ std::string heightsText(const ScanThumbnail& picture) {
   if (picture.empty() || !picture.grid) return {};
   const engine::LengthUnit& unit = picture.grid->height_unit;
   const double low = static_cast<double>(picture.lowest), high = static_cast<double>(picture.highest);
-  const ReadAs as = readLengthAs(std::max(std::abs(low), std::abs(high)), unit.mm, unit.name);
+  const ReadAs as = readOnScreenAs(std::max(std::abs(low), std::abs(high)), unit.mm, unit.name);
   return fmt::format("heights {}{:.4g} to {:.4g} {}", picture.whole ? "" : "about ", low / as.size,
                      high / as.size, as.name);
 }
@@ -37,12 +37,12 @@ std::string heightsText(const ScanThumbnail& picture) {
 std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {
   const engine::Grid& grid = *picture.grid;
   const double longest = std::max(grid.width * grid.spacing_x, grid.height * grid.spacing_y);
-  const ReadAs across = readLengthAs(longest, grid.lateral_unit.mm, grid.lateral_unit.name);
+  const ReadAs across = readOnScreenAs(longest, grid.lateral_unit.mm, grid.lateral_unit.name);
   const std::string place = fmt::format("x {:.4g}  y {:.4g} {}", cursor.column * grid.spacing_x / across.size,
                                         cursor.row * grid.spacing_y / across.size, across.name);
   if (!std::isfinite(cursor.height)) return place + "  hole";
   const auto height = static_cast<double>(cursor.height);
-  const ReadAs up = readLengthAs(std::abs(height), grid.height_unit.mm, grid.height_unit.name);
+  const ReadAs up = readOnScreenAs(std::abs(height), grid.height_unit.mm, grid.height_unit.name);
   return fmt::format("{}  z {:.4g} {}", place, height / up.size, up.name);
 }
 

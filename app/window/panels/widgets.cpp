@@ -1,11 +1,16 @@
 #include "app/window/panels/widgets.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/printf.h>
+#include <imgui_stdlib.h>
 
 #include "app/window/action_tips.h"
+#include "app/work/read_units.h"
 
 namespace fettle::app {
 
@@ -83,13 +88,51 @@ void fieldName(const char* name, std::string_view says) {
   if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
 }
 
-std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
-  double typed = value;
-  if (!ImGui::InputDouble(id, &typed, 0.0, 0.0, format.c_str(),
-                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll) ||
-      !std::isfinite(typed) || typed == value)
-    return std::nullopt;
+namespace {
+
+struct Typed {
+  double number = 0.0;
+  std::string unit;  // what stands behind it; may be empty
+};
+
+std::optional<Typed> numberIn(const std::string& text) {
+  const char *begin = text.data() + std::min(text.find_first_not_of(" +"), text.size()), *const end =
+                                                                                             text.data() +
+                                                                                             text.size();
+  Typed typed;
+  const auto read = std::from_chars(begin, end, typed.number);
+  if (read.ec != std::errc() || !std::isfinite(typed.number)) return std::nullopt;
+  typed.unit = std::string(read.ptr, end);
+  typed.unit.erase(0, typed.unit.find_first_not_of(' '));
+  typed.unit.erase(typed.unit.find_last_not_of(' ') + 1);
   return typed;
+}
+
+// A field for a number and its unit: what was typed when it is left by Enter, Tab or a click elsewhere; nothing by Escape, or
+// where it reads as before: the number has digits that are not shown.
+std::optional<Typed> typedText(const char* id, const std::string& reads) {
+  static ImGuiID edited = 0;  // one at a time
+  static std::string text;
+  const ImGuiID self = ImGui::GetID(id);
+  std::string now = edited == self ? text : reads;
+  ImGui::InputText(id, &now, ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::IsItemActive()) {
+    edited = self;
+    text = now;
+  }
+  if (!ImGui::IsItemDeactivated()) return std::nullopt;
+  edited = 0;
+  return now == reads ? std::nullopt : numberIn(now);
+}
+
+}  // namespace
+
+std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
+  const std::string reads = fmt::sprintf(format, value);
+  const auto typed = typedText(id, reads), before = numberIn(reads);
+  if (!typed || typed->number == value) return std::nullopt;
+  if (!typed->unit.empty() && before && typed->unit != before->unit) return std::nullopt;
+  return typed->number;
 }
 
 bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
@@ -101,9 +144,12 @@ bool typeNumber(const char* id, double& value, double low, double high, const st
 }
 
 bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit) {
-  const auto typed = typedNumber(id, value * unit.per_unit, "%.4g " + unit.name);
-  const double taken = std::clamp(typed ? *typed / unit.per_unit : value, low, high);
-  if (!typed || taken == value) return false;
+  const auto typed = typedText(id, fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
+  if (!typed) return false;
+  const auto ratio = ratioOfUnits(typed->unit.empty() ? unit.name : typed->unit, unit.name);
+  if (!ratio) return false;
+  const double taken = std::clamp(typed->number * *ratio / unit.per_unit, low, high);
+  if (taken == value) return false;
   value = taken;
   return true;
 }

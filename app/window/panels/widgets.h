@@ -55,8 +55,8 @@ bool field(const char* name, std::string_view says, const auto& edit) {
   return changed;
 }
 
-/// A typed number with its unit: returns what was typed and confirmed, any finite value; nothing while it is
-/// unchanged. For fields whose range is checked elsewhere and refused with a message.
+/// A typed number with its unit: returns what was typed when the field is left by Enter, Tab or a click elsewhere, any finite
+/// value; nothing while it is unchanged or after Escape. For fields whose range is checked elsewhere and refused with a message.
 [[nodiscard]] std::optional<double> typedNumber(const char* id, double value, const std::string& format);
 
 /// The same clamped to a range: true when it was changed and confirmed; never a value that is not finite.
@@ -64,7 +64,7 @@ bool field(const char* name, std::string_view says, const auto& edit) {
                               const std::string& format);
 
 /// The same for a length that is kept in one unit and shown in another: `value`, `low` and `high` in the unit it is kept
-/// in. What is typed is taken in the unit that stands beside it.
+/// in. What is typed is taken in the unit that stands beside it, or in one that is typed behind the number.
 [[nodiscard]] bool typeLength(const char* id, double& value, double low, double high,
                               const render::ShownUnit& unit);
 

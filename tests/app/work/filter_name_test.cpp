@@ -29,11 +29,11 @@ TEST(FilterName, a_preview_says_what_it_is_until_it_is_exact) {
   picture.step = 16;
   EXPECT_EQ(previewState(picture, grid), "approximate");
   picture.off = engine::FilterView::Off{0.2384, 3.0, false};
-  EXPECT_EQ(previewState(picture, grid), "approximate, off by 238 um rms");
+  EXPECT_EQ(previewState(picture, grid), "approximate, off by 238 \u00b5m rms");
   picture.off->estimated = true;
   picture.exact = 0.12;
   picture.untouched = 0.002;
-  EXPECT_EQ(previewState(picture, grid), "approximate, off by about 238 um rms, 12 % exact, 1 % to come");
+  EXPECT_EQ(previewState(picture, grid), "approximate, off by about 238 \u00b5m rms, 12 % exact, 1 % to come");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "engine/filter/filter.h"
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
@@ -193,6 +195,33 @@ TEST_F(WindowTest, a_form_of_a_large_field_is_previewed_approximately_first) {
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
+}
+
+// Enter, Tab and a click elsewhere take what stands in a field, Escape does not; a unit may be typed.
+TEST_F(WindowTest, a_number_is_taken_when_its_field_is_left_and_in_the_unit_that_is_typed) {
+  const auto program = start({scan});
+  User user(display, *program, "typed numbers");
+  (void)opened(*program);
+  EXPECT_TRUE(user.key("x")["max_change"].is_number());
+  const auto taken = [&](double mm) {
+    return program->until(fmt::format("{} mm", mm), [&](const State& s) { return s["max_change"] == mm; });
+  };
+  EXPECT_EQ(user.enter("max change", "15")["max_change"], 0.015);
+  EXPECT_EQ(user.enter("max change", "0.25 mm")["max_change"], 0.25);
+  EXPECT_EQ(user.enter("max change", "15 parsecs")["max_change"], 0.25) << "no unit that is known";
+  ASSERT_TRUE(user.typeIn("max change", "40"));
+  (void)user.press("Tab");
+  (void)taken(0.04);
+  (void)user.press("Escape");
+  (void)user.rest();
+  ASSERT_TRUE(user.typeIn("max change", "60"));
+  user.tap("window");
+  (void)taken(0.06);
+  (void)user.rest();
+  ASSERT_TRUE(user.typeIn("max change", "80"));
+  (void)user.press("Escape");
+  EXPECT_EQ(user.rest()["max_change"], 0.06);
+  (void)quit(user);
 }
 
 }  // namespace

@@ -165,7 +165,13 @@ void User::tap(const std::string& text) {
 }
 
 User::State User::enter(const std::string& name, const std::string& value) {
-  if (!pointAt(name)) return program_.now();
+  if (!typeIn(name, value)) return program_.now();
+  (void)press("Return");
+  return waitFor("after typing " + name, [](const State& s) { return s["text_field"] == false && rests(s); });
+}
+
+bool User::typeIn(const std::string& name, const std::string& value) {
+  if (!pointAt(name)) return false;
   const State now = program_.now();
   const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
   const int width = now["frame"][0].get<int>() - left;
@@ -179,8 +185,7 @@ User::State User::enter(const std::string& name, const std::string& value) {
   (void)press("ctrl+a");
   display_.hands({"type", "--delay", "0", value});
   (void)waitFor("typed " + value, [&](const State& s) { return s["field_text"] == value; });
-  (void)press("Return");
-  return waitFor("after typing " + name, [](const State& s) { return s["text_field"] == false && rests(s); });
+  return true;
 }
 
 User::State User::click(const std::string& text, int count) {

@@ -46,6 +46,8 @@ class User {
   void tap(const std::string& text);
   /// Types into the field to the right of the name that reads `name`, confirmed, until the window rests.
   State enter(const std::string& name, const std::string& value);
+  /// The same, and the field is not left. Whether it was found.
+  bool typeIn(const std::string& name, const std::string& value);
   /// Until nothing moves any more and everything asked for was done.
   State rest(const std::string& what = "rest");
   /// Whether a text is on the panels.
