@@ -95,6 +95,8 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
   // restored when the scan is opened again.
   const bool kept = parts_.quit != Quit::kDone && parts_.document.unsaved();
   parts_.closeDocument(kept ? SessionKeeper::Afterwards::kKeep : SessionKeeper::Afterwards::kDiscard);
+  // Without a name it is removed where nothing is to be restored.
+  if (!kept && !report.value("session_named", true)) report["session"] = "";
   if (kept)
     warn(fmt::format("{}: unsaved work is stored; open the scan again to continue it",
                      parts_.document.path()));
