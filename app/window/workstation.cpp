@@ -21,9 +21,9 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kIdle_s = 0.1;                                 // between two frames while nothing happens
-constexpr double kBusy_s = 0.03;                                // ... while only figures change
-constexpr std::uint64_t kSaveSettingsEvery = 120;               // frames
+constexpr double kIdle_s = 0.1;   // between two frames while nothing happens
+constexpr double kBusy_s = 0.03;  // ... while only figures change
+constexpr auto kSaveSettingsEvery = std::chrono::seconds(1);
 constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two polls of the loop
 
 std::string settingsPath(const char* file) {
@@ -237,9 +237,12 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
   logState(events_, p, input_, figures());
 }
 
-// Writes changed settings, at most once in some seconds.
+// Writes changed settings, at most once a second: by time and not by frames, of which a window at rest shows few, so that
+// a power cut takes no more than that.
 void Workstation::saveSettings() {
-  if (parts_.quit == Quit::kNo && frames_ % kSaveSettingsEvery != 0) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (parts_.quit == Quit::kNo && now - settings_looked_at_ < kSaveSettingsEvery) return;
+  settings_looked_at_ = now;
   saveSettingsNow();
 }
 

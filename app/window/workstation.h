@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,6 +99,7 @@ class Workstation {
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as in the file
+  std::chrono::steady_clock::time_point settings_looked_at_{};
   std::uint64_t frames_ = 0;
   std::int64_t shown_ns_ = 0;  // the last one
   engine::Status end_;
