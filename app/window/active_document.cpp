@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kNoteEvery = std::chrono::seconds(1);
+// Writing what came since is a matter of milliseconds, and no word for it shall flicker.
+constexpr auto kSayWaiting = std::chrono::seconds(1);
 constexpr const char* kContactNote = "contact";  // what the words of the note "scene" mean: kContactRevision
 
 // Of the scene that a session notes: none is noted by the programs that had only the first.
@@ -125,6 +127,7 @@ void ActiveDocument::poll(const render::View& view, Feedback& feedback) {
     }
   }
   updateSession(view, feedback);
+  if (keeper_->waiting() == 0) kept_ = std::chrono::steady_clock::now();
 }
 
 void ActiveDocument::updateSession(const render::View& view, Feedback& feedback) {
@@ -168,12 +171,12 @@ bool ActiveDocument::unsaved() const {
 std::string ActiveDocument::keptText() const {
   if (const auto error = keeper_->error())
     return fmt::format("not stored: {}; the work is in memory, save it elsewhere", error->what);
-  const std::size_t waiting = keeper_->waiting();
+  const bool waiting = keeper_->waiting() > 0 && std::chrono::steady_clock::now() - kept_ > kSayWaiting;
   const std::string session = keeper_->path();
   if (keeper_->named())
-    return fmt::format("{} {}", waiting > 0 ? "writing" : "kept in", fs::path(session).filename().string());
+    return fmt::format("{} {}", waiting ? "writing" : "kept in", fs::path(session).filename().string());
   if (!unsaved()) return {};
-  return session.empty() || waiting > 0 ? "changed" : "changed, kept until it is saved";
+  return session.empty() || waiting ? "changed" : "changed, kept until it is saved";
 }
 
 }  // namespace fettle::app

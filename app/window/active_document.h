@@ -67,7 +67,8 @@ class ActiveDocument {
   std::string sections_;   // empty: none, and none before
   std::string views_;      // likewise
   std::chrono::steady_clock::time_point noted_{};
-  bool keeping_fails_ = false;  // and the user was informed
+  std::chrono::steady_clock::time_point kept_{};  // nothing waited to be written
+  bool keeping_fails_ = false;                    // and the user was informed
 };
 
 }  // namespace fettle::app
