@@ -30,6 +30,7 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, c
   input.stereo.eye_separation = static_cast<double>(display.eye_separation);
   input.theme = display.theme;
   if (display.half_in_motion && !options.sharp_motion) input.sharpness = sharpness;
+  input.titles_in_margin = true;  // the picture stays where it is when a preview begins
   input.decoration_scale = WindowPicture::kDecorations * parts.window.scale();
   input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display.light_azimuth_deg;

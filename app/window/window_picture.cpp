@@ -259,8 +259,7 @@ render::Rectangle WindowPicture::plot(const render::View& view, const Display& d
   const render::Rectangle& area = window_.pictureArea();
   const auto layout =
       render::layOut(view, display.decorations ? render::Decoration::kFull : render::Decoration::kNone, 1,
-                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone,
-                     kDecorations * window_.scale());
+                     render::Titles::kNone, kDecorations * window_.scale());
   render::Rectangle rectangle = layout.plots.front();
   rectangle.x += area.x;
   rectangle.y += area.y;

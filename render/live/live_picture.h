@@ -119,6 +119,7 @@ struct FrameInput {
   Decoration decoration = Decoration::kFull;
   double decoration_scale = 0.0;    ///< of text and bars, see layOut; 0: by the picture's size
   std::vector<std::string> titles;  ///< one per version, or none
+  bool titles_in_margin = false;    ///< smaller, in the room that is there without titles
   /// Range of the colours [height_unit]; empty: robust, computed when a field or an original is first shown
   /// and kept until refreshRanges(), so that colours do not change while a brush works.
   std::optional<ValueRange> range;

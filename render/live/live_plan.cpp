@@ -18,7 +18,7 @@ namespace {
 render::Layout arranged(const FrameInput& input, int versions) {
   const bool titled =
       std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
-  const Titles titles = titled ? Titles::kAbove : Titles::kNone;
+  const Titles titles = !titled ? Titles::kNone : input.titles_in_margin ? Titles::kInMargin : Titles::kAbove;
   if (input.arrangement == Arrangement::kSplit && versions >= 2) {
     render::Layout layout = layOut(input.view, input.decoration, 1, titles, input.decoration_scale);
     layout.plots.push_back(layout.plots.front());

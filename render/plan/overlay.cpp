@@ -250,12 +250,14 @@ Layout layOut(const View& view, Decoration decoration, int panels, Titles titles
                                     : std::min(view.width / 1280.0, view.height / 800.0);
   layout.scale = std::clamp(wanted, 0.6, 6.0);
   layout.text_px = std::max(10, static_cast<int>(std::lround(15.0 * layout.scale)));
+  const bool above = titles == Titles::kAbove;
+  layout.title_px = static_cast<int>(std::lround(layout.text_px * (above ? 1.2 : 1.0)));
+  layout.title_above = (above ? 14.0 : 5.0) * layout.scale;
   const double s = layout.scale;
   // Below this size the decorations would leave no room for the surface.
   layout.decorated = decoration == Decoration::kFull && view.width >= 200 && view.height >= 140;
   const auto px = [s](double at_full_size) { return static_cast<int>(std::lround(at_full_size * s)); };
-  const int left = layout.decorated ? px(20) : 0,
-            top = layout.decorated ? px(titles == Titles::kAbove ? 48 : 18) : 0;
+  const int left = layout.decorated ? px(20) : 0, top = layout.decorated ? px(above ? 48 : 18) : 0;
   const int right = layout.decorated ? std::max(px(116), 72) : 0, bottom = layout.decorated ? px(46) : 0;
   const int gap = panels > 1 ? px(16) : 0;
   const int width = (view.width - left - right - gap * (panels - 1)) / panels;
@@ -273,9 +275,8 @@ std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
   Pen pen(quads, glyphs);
   for (std::size_t i = 0; i < layout.plots.size() && i < decorations.titles.size(); ++i) {
     const Rectangle& plot = layout.plots[i];
-    const int px = static_cast<int>(std::lround(layout.text_px * 1.2));
-    pen.text(plot.x, plot.y - 14 * layout.scale, pen.fitted(decorations.titles[i], plot.width, px, kBold), px,
-             kBold, palette.ink);
+    const std::string title = pen.fitted(decorations.titles[i], plot.width, layout.title_px, kBold);
+    pen.text(plot.x, plot.y - layout.title_above, title, layout.title_px, kBold, palette.ink);
   }
   if (decorations.colours) colourBar(pen, layout, view, decorations, palette, warnings);
   bottomLine(pen, layout, view, decorations, palette, warnings);

@@ -23,10 +23,13 @@ struct Palette {
 struct Layout {
   double scale = 1.0;  ///< 1: text of 15 pixels
   int text_px = 15;
+  int title_px = 18;
+  double title_above = 14.0;     ///< of a title's foot, over its plot [pixels]
   std::vector<Rectangle> plots;  ///< one per panel
   bool decorated = false;        ///< whether there is room for colour bar and scale bar
 };
-enum class Titles { kNone, kAbove };
+/// In the margin that is there without them, or above the plots in a row of their own.
+enum class Titles { kNone, kInMargin, kAbove };
 /// `scale`: of text and bars, as set for the display; 0: by the size of the picture, 1 at 1280 x 800. At any
 /// scale, text and bars leave three fifths of width and height to the surface.
 [[nodiscard]] Layout layOut(const View& view, Decoration decoration, int panels, Titles titles,

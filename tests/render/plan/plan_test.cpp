@@ -357,6 +357,22 @@ TEST(Plan, TheNoteNamesTheExtremesOfNowWhateverTheColoursWereChosenBy) {
   EXPECT_EQ(decorations(after).range, decorations(before).range);
 }
 
+TEST(Plan, ATitleInTheMarginMovesNoPlot) {
+  View view;
+  view.width = 1100;
+  view.height = 758;
+  for (const double scale : {0.7, 0.87, 1.0, 1.74})
+    for (const int panels : {1, 2, 3}) {
+      const Layout none = layOut(view, Decoration::kFull, panels, Titles::kNone, scale);
+      const Layout titled = layOut(view, Decoration::kFull, panels, Titles::kInMargin, scale);
+      EXPECT_EQ(titled.plots, none.plots);
+      // Letters with accents and all: the margin holds them.
+      EXPECT_LE(0.85 * titled.title_px + titled.title_above, titled.plots.front().y);
+      EXPECT_GT(layOut(view, Decoration::kFull, panels, Titles::kAbove, scale).plots.front().y,
+                none.plots.front().y);
+    }
+}
+
 TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
   View view;
   view.width = 1280;
