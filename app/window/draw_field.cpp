@@ -169,6 +169,7 @@ TipLook tipLookOf(const Parts& parts) {
 
 void drawCoarse(Parts& parts, const DrawOptions& options) {
   WindowPicture& picture = parts.picture;
+  picture.adapt(!options.steady);
   picture.fit(parts.view);
   render::Shown shown;
   shown.versions.push_back(parts.opening.coarse()->field);

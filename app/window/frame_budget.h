@@ -7,7 +7,7 @@ namespace fettle::app {
 /// Whether frames of one kind are drawn with less, decided by the time that the last ones took. The mean of them counts, the newest
 /// ones most, and a single long one - a pipeline that was compiled - changes nothing.
 ///
-///   all --- mean above kSlow_ms, kFew frames at least --> less
+///   all --- mean above kSlow_ms, kFew frames at least, the last two above it --> less
 ///    ^--- mean below kQuick_ms, calm() frames in a row ---'
 ///
 /// Where frames with all are slow again soon after that, calm() doubles: so the picture does not keep changing between the two
@@ -21,12 +21,13 @@ class FrameBudget {
   static constexpr double kSlow_ms = 25.0, kQuick_ms = 12.0;
   static constexpr int kFew = 3, kCalm = 20, kMostCalm = 320, kSoon = 60;
 
-  /// A frame of this kind took so long, from its beginning until it was passed to the window system.
+  /// A frame of this kind took so long, from its beginning until it was passed to the window system, without waiting for the display.
   void note(double ms) noexcept {
     constexpr double kWeight = 0.25;
     const double counted = std::min(ms, 2.0 * kSlow_ms);
     mean_ms_ = frames_ == 0 ? counted : mean_ms_ + kWeight * (counted - mean_ms_);
     ++frames_;
+    slow_ = ms > kSlow_ms ? slow_ + 1 : 0;
     if (less_)
       noteLess();
     else
@@ -41,7 +42,7 @@ class FrameBudget {
  private:
   void noteAll() noexcept {
     if (frames_ >= kSoon) calm_ = kCalm;
-    if (frames_ < kFew || mean_ms_ <= kSlow_ms) return;
+    if (frames_ < kFew || slow_ < 2 || mean_ms_ <= kSlow_ms) return;
     if (returned_ && frames_ < kSoon) calm_ = std::min(2 * calm_, kMostCalm);
     change(true);
   }
@@ -53,13 +54,14 @@ class FrameBudget {
   }
   void change(bool less) noexcept {
     less_ = less;
-    frames_ = quick_ = 0;
+    frames_ = quick_ = slow_ = 0;
   }
 
   bool less_ = false, returned_ = false;
   double mean_ms_ = 0.0;
   int frames_ = 0;  // since the last change
   int quick_ = 0;   // in a row
+  int slow_ = 0;    // in a row
   int calm_ = kCalm;
 };
 

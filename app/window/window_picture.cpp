@@ -49,6 +49,8 @@ void WindowPicture::clear() {
   refinement_ = {};
   at_rest_ = {};
   figures_ = {};
+  moving_ = strokes_ = {};  // what took long was another field or another device
+  measured_ = Measured::kNothing;
   needs_redraw_ = true;
 }
 

@@ -210,8 +210,8 @@ void Workstation::showFrame() {
     parts_.picture.skipRedraw();
   }
   const auto shown = window_->present();
-  parts_.picture.noteFrame(watch.ms());
   if (shown) {
+    if (shown->shown_ns > 0) parts_.picture.noteFrame(watch.ms() - shown->waited_ms);
     noteShown(*shown, edit_ns, announces);
     headset_.showFrame(*window_);
   } else {

@@ -582,7 +582,8 @@ engine::Result<PresentReport> Window::present() {
           [&w] {
             if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
           });
-      report.draw_ms = watch.ms();
+      report.waited_ms += w.swapchain->waitedMs();
+      report.draw_ms = watch.ms() - w.swapchain->waitedMs();
       report.shown_ns = engine::steadyNs();
       if (shown) break;
     }

@@ -91,6 +91,7 @@ struct WindowOptions {
 /// Times of showing a frame.
 struct PresentReport {
   double draw_ms = 0.0;       ///< panels and copies, until the device has completed them
+  double waited_ms = 0.0;     ///< for the display to give back an image, not in draw_ms
   std::int64_t shown_ns = 0;  ///< engine::steadyNs() when the drawn frame was submitted to the window system
 };
 

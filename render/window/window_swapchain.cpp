@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/memory.h"
 
@@ -78,6 +79,8 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
                      const std::function<void()>& before_showing) {
   std::uint32_t index = 0;
   bool right_size = true;
+  const engine::Stopwatch watch;
+  waited_ms_ = 0.0;
   try {
     // FIFO: while all images wait for the display this takes as long as the display does.
     std::pair<vk::Result, std::uint32_t> next;
@@ -85,6 +88,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
       next = swapchain_.acquireNextImage(while_waiting ? kLook_ns : kForever, *acquired_);
       if (next.first == vk::Result::eTimeout || next.first == vk::Result::eNotReady) while_waiting();
     } while (next.first == vk::Result::eTimeout || next.first == vk::Result::eNotReady);
+    waited_ms_ = watch.ms();
     index = next.second;
     right_size = next.first != vk::Result::eSuboptimalKHR;
   } catch (const vk::OutOfDateKHRError&) {

@@ -29,11 +29,14 @@ class Swapchain {
   [[nodiscard]] bool show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
                           const std::function<void()>& while_waiting,
                           const std::function<void()>& before_showing);
+  /// How long the last show() waited for an image, which is as long as the display takes while all are in use.
+  [[nodiscard]] double waitedMs() const noexcept { return waited_ms_; }
 
  private:
   Context& context_;
   vk::SurfaceFormatKHR format_;
   vk::Extent2D extent_;
+  double waited_ms_ = 0.0;
   vk::raii::SwapchainKHR swapchain_ = nullptr;
   std::vector<vk::Image> images_;
   vk::raii::Semaphore acquired_ = nullptr;
