@@ -1,4 +1,5 @@
-// The kernels of filter_bounds.cpp; see each_cpu-inl.h. Eight chains at once, more than the latency of an instruction hides.
+// The kernels of filter_bounds.cpp; see each_cpu-inl.h. Eight chains at once, more than the latency of an instruction hides; in registers
+// where there are 32 of them, with AVX-512: with AVX2 some are spilled, and the bound is too slow.
 
 double productsAlone(int rounds) noexcept {
   Doubles v[8];

@@ -92,7 +92,7 @@ bool fillAll(ArealGaussian& filter, const FieldReader& field, WholeSurface& to, 
                           std::min(kTileSide, field.height() - row)};
     // Rows that end at a tile's end may not write into the next one's.
     float part[kTileSamples + 16], before[kTileSamples];
-    (void)filter.fill(rect, part, kTileSide, job);
+    if (!filter.fill(rect, part, kTileSide, job)) return;
     for (int r = 0; r < rect.rows; ++r) {
       float* const out = to.z.data() + (row + r) * to.stride + column;
       std::copy_n(out, rect.columns, before);

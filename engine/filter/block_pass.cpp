@@ -151,7 +151,6 @@ bool BlockPass::merge(const TileRect& rect, float sign, std::int32_t to_next, Bl
   return true;
 }
 
-// Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
 std::optional<TileAround> BlockPass::around(std::int32_t tc, std::int32_t tr) const noexcept {
   if (tc < 1 || tr < 1 || tc + 1 >= reader_.tileColumns() || tr + 1 >= reader_.tileRows()) return {};
   TileAround around;
@@ -179,6 +178,7 @@ bool BlockPass::mergeTileAt(std::int32_t tc, std::int32_t tr, BlockScratch& scra
   return mergeOne(tc, tr, scratch.results.data(), 1.0F, ahead, scratch, made);
 }
 
+// Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
 bool BlockPass::mergeOne(std::int32_t tc, std::int32_t tr, const float* results, float sign,
                          const Tile* ahead, BlockScratch& scratch, std::vector<NewTile>& made) {
   const Tile& before = reader_.tile(tc, tr);
