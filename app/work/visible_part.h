@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/filter/filter_view.h"
+#include "engine/field/field_view.h"
+#include "engine/field/grid.h"
 
 namespace fettle::app {
 

@@ -13,12 +13,12 @@ namespace fettle::engine {
 
 namespace {
 
-// The runs of the rows of one row of tiles, by row and then column.
-std::vector<HoleRun> runsOfTileRow(const FieldReader& field, std::int32_t tr) {
+// The runs of the rows of one row of tiles of a part, by row and then column.
+std::vector<HoleRun> runsOfTileRow(const FieldReader& field, const TileRange& part, std::int32_t tr) {
   std::vector<HoleRun> runs;
   const std::int32_t row0 = tr * kTileSide, rows = std::min(kTileSide, field.height() - row0);
   std::vector<std::int32_t> holed;  // columns of tiles
-  for (std::int32_t tc = 0; tc < field.tileColumns(); ++tc) {
+  for (std::int32_t tc = part.column; tc < part.column + part.columns; ++tc) {
     const std::int32_t columns = std::min(kTileSide, field.width() - tc * kTileSide);
     const auto outside = static_cast<std::uint32_t>(kTileSamples - columns * rows);
     if (field.tile(tc, tr).nan_samples > outside) holed.push_back(tc);
@@ -73,25 +73,38 @@ void joinNeighbours(const std::vector<HoleRun>& runs, RunSets& sets) {
   }
 }
 
+// Whether a run touches a side of the part that is not one of the field.
+bool isCut(const HoleRun& run, const TileRange& part, const FieldReader& field) noexcept {
+  const std::int32_t c0 = part.column * kTileSide, r0 = part.row * kTileSide;
+  const std::int32_t c1 = std::min(c0 + part.columns * kTileSide, field.width());
+  const std::int32_t r1 = std::min(r0 + part.rows * kTileSide, field.height());
+  return (run.first == c0 && c0 > 0) || (run.last == c1 - 1 && c1 < field.width()) ||
+         (run.row == r0 && r0 > 0) || (run.row == r1 - 1 && r1 < field.height());
+}
+
 }  // namespace
 
 Result<Holes> findHoles(const Version& field, JobControl& job) {
+  return findHoles(field, allTiles(field.grid()), job);
+}
+
+Result<Holes> findHoles(const Version& field, const TileRange& part, JobControl& job) {
   const FieldReader reader = field.reader();
-  std::vector<std::vector<HoleRun>> parts(static_cast<std::size_t>(reader.tileRows()));
+  std::vector<std::vector<HoleRun>> parts(static_cast<std::size_t>(part.rows));
   job.begin("finding holes", parts.size());
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t tr) {
     if (job.cancelled()) return;
-    parts[tr] = runsOfTileRow(reader, static_cast<std::int32_t>(tr));
+    parts[tr] = runsOfTileRow(reader, part, part.row + static_cast<std::int32_t>(tr));
     job.advance();
   });
   if (job.cancelled()) return cancelled();
   std::vector<HoleRun> runs;
   std::size_t count = 0;
-  for (const auto& part : parts) count += part.size();
+  for (const auto& of_row : parts) count += of_row.size();
   runs.reserve(count);
-  for (auto& part : parts) {
-    runs.insert(runs.end(), part.begin(), part.end());
-    part = {};
+  for (auto& of_row : parts) {
+    runs.insert(runs.end(), of_row.begin(), of_row.end());
+    of_row = {};
   }
   RunSets sets(runs.size());
   joinNeighbours(runs, sets);
@@ -113,6 +126,7 @@ Result<Holes> findHoles(const Version& field, JobControl& job) {
     hole.box = hole.box.joined({run.first, run.row, run.samples(), 1});
     hole.at_border = hole.at_border || run.row == 0 || run.first == 0 || run.row == reader.height() - 1 ||
                      run.last == reader.width() - 1;
+    hole.cut = hole.cut || isCut(run, part, reader);
   }
   std::vector<std::size_t> next;
   next.reserve(found.holes.size());

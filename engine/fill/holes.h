@@ -26,6 +26,7 @@ struct Hole {
   std::int64_t samples = 0;
   SampleRect box;          ///< the smallest rectangle around it
   bool at_border = false;  ///< some sample of it is one of the field's outermost
+  bool cut = false;        ///< it reaches the side of the part that was searched, and may go on beyond
 };
 
 /// The holes of a field.
@@ -42,5 +43,8 @@ struct Holes {
 /// 1966). Time: a look at each tile, and the samples of tiles with holes; memory: about 40 bytes per run. The same for
 /// any number of threads. Errors: kCancelled. Throws std::bad_alloc. Thread: any; a job on all workers of the arena.
 [[nodiscard]] Result<Holes> findHoles(const Version& field, JobControl& job);
+
+/// The same in a part of the field, which lies in it: those that are not cut are holes of the field.
+[[nodiscard]] Result<Holes> findHoles(const Version& field, const TileRange& part, JobControl& job);
 
 }  // namespace fettle::engine

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/field_view.h"
 #include "engine/field/live_field.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
@@ -16,13 +17,6 @@
 #include "engine/filter/filter_work.h"
 
 namespace fettle::engine {
-
-/// What a picture shows of a field: these tiles, around this sample.
-struct FieldView {
-  TileRange tiles;
-  std::int32_t column = 0, row = 0;
-  friend bool operator==(const FieldView&, const FieldView&) = default;
-};
 
 /// A filter of a whole field, of which what is seen is there first.
 ///
