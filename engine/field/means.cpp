@@ -15,15 +15,14 @@ namespace {
 
 constexpr std::int32_t kRowsOfCell = 4;  // read of each cell: the others are a fetch from memory each
 
-// Every so many rows of a cell are read.
-std::int32_t rowsApart(std::int32_t step) noexcept {
+}  // namespace
+
+std::int32_t rowsApartInMean(std::int32_t step) noexcept {
   return std::max(1, step / kRowsOfCell);
 }
 
-}  // namespace
-
 std::int32_t samplesOfMean(std::int32_t step) noexcept {
-  return step * ((step + rowsApart(step) - 1) / rowsApart(step));
+  return step * ((step + rowsApartInMean(step) - 1) / rowsApartInMean(step));
 }
 
 Version meansOf(const Version& field, const SampleRect& rect, std::int32_t step) {
@@ -45,7 +44,7 @@ Version meansOf(const Version& field, const SampleRect& rect, std::int32_t step)
     std::vector<std::int32_t> counts(wide), marks_in(marked ? wide : 0);
     const std::int32_t end = std::min((y + 1) * step, rect.rows);
     std::int32_t rows = 0;
-    for (std::int32_t r = y * step; r < end; r += rowsApart(step), ++rows) {
+    for (std::int32_t r = y * step; r < end; r += rowsApartInMean(step), ++rows) {
       reader.readHeights(rect.column, rect.row + r, rect.columns, 1, row.data(), rect.columns);
       for (std::size_t x = 0; x < wide; ++x) {
         const std::size_t c1 = std::min((x + 1) * static_cast<std::size_t>(step), row.size());

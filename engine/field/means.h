@@ -13,6 +13,9 @@ namespace fettle::engine {
 /// rectangle lies in the field. All workers of the calling arena; throws std::bad_alloc.
 [[nodiscard]] Version meansOf(const Version& field, const SampleRect& rect, std::int32_t step);
 
+/// Of a cell one row in so many counts, from its first.
+[[nodiscard]] std::int32_t rowsApartInMean(std::int32_t step) noexcept;
+
 /// Samples that a mean is of.
 [[nodiscard]] std::int32_t samplesOfMean(std::int32_t step) noexcept;
 

@@ -38,7 +38,7 @@ Terms legendre(double x) noexcept {
 }
 
 // Place of a sample of a line in -1 .. 1.
-double along(std::int32_t index, std::int32_t length) noexcept {
+double along(double index, std::int32_t length) noexcept {
   return length > 1 ? 2.0 * index / (length - 1) - 1.0 : 0.0;
 }
 
@@ -56,6 +56,20 @@ double median(std::vector<double>& values) noexcept {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+// Which samples of a line are looked at: all, or those at some places.
+struct Places {
+  std::span<const std::int32_t> some;
+  std::size_t length = 0;
+
+  [[nodiscard]] std::size_t count() const noexcept { return some.empty() ? length : some.size(); }
+  template <typename F>
+  void each(F&& f) const {
+    if (some.empty())
+      for (std::size_t i = 0; i < length; ++i) f(i);
+    for (const std::int32_t i : some) f(static_cast<std::size_t>(i));
+  }
+};
+
 // Samples of a line that count, and the basis there.
 struct LineSamples {
   std::vector<double> z;  // less `base`
@@ -63,18 +77,18 @@ struct LineSamples {
   double base = 0.0;
 };
 
-void take(ScanLine line, LineSamples& out) {
+void take(ScanLine line, const Places& places, LineSamples& out) {
   out.z.clear();
   out.basis.clear();
   out.base = 0.0;
   const auto length = static_cast<std::int32_t>(line.size());
-  for (std::int32_t i = 0; i < length; ++i) {
-    const float z = line[static_cast<std::size_t>(i)];
-    if (std::isnan(z)) continue;
+  places.each([&](std::size_t i) {
+    const float z = line[i];
+    if (std::isnan(z)) return;
     if (out.z.empty()) out.base = z;  // so that sums are of differences, however far the heights are from 0
     out.z.push_back(z - out.base);
-    out.basis.push_back(legendre(along(i, length)));
-  }
+    out.basis.push_back(legendre(along(static_cast<double>(i), length)));
+  });
 }
 
 // Weighted least squares; of least size where the samples do not determine the terms.
@@ -164,18 +178,18 @@ Terms robustPolynomial(const LineSamples& samples, int terms, std::uint64_t seed
 }
 
 // Step from line `a` to line `b` by the median of differences.
-double medianStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
+double medianStep(ScanLine a, ScanLine b, const Places& places, std::vector<double>& scratch) {
   scratch.clear();
-  for (std::size_t i = 0; i < a.size(); ++i) {
+  places.each([&](std::size_t i) {
     const double d = double{b[i]} - a[i];
     if (!std::isnan(d)) scratch.push_back(d);
-  }
+  });
   return scratch.empty() ? 0.0 : median(scratch);
 }
 
 // The same by a weighted mean: less of a sample whose difference is far from most others', or where the slopes differ.
-double matchedStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
-  double now = medianStep(a, b, scratch);
+double matchedStep(ScanLine a, ScanLine b, const Places& places, std::vector<double>& scratch) {
+  double now = medianStep(a, b, places, scratch);
   if (scratch.empty()) return now;
   for (double& d : scratch) d = std::abs(d - now);
   const double scale = kOfGaussian * median(scratch);
@@ -187,19 +201,19 @@ double matchedStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
     return std::isnan(d) ? 0.0 : d;
   };
   double squares = 0.0;
-  for (std::size_t i = 0; i <= last; ++i) squares += unlike(i) * unlike(i);
-  const double variance = squares / static_cast<double>(a.size());
+  places.each([&](std::size_t i) { squares += unlike(i) * unlike(i); });
+  const double variance = squares / static_cast<double>(places.count());
   for (int round = 0; round < kMostRounds; ++round) {
     double sum = 0.0, weights = 0.0;
-    for (std::size_t i = 0; i <= last; ++i) {
+    places.each([&](std::size_t i) {
       const double step = double{b[i]} - a[i];
-      if (std::isnan(step)) continue;
+      if (std::isnan(step)) return;
       const double d = unlike(i);
       const double weight = biweight((step - now) / (kReach * scale)) *
                             (variance > 0.0 ? std::exp(-d * d / (2.0 * variance)) : 1.0);
       sum += weight * step;
       weights += weight;
-    }
+    });
     if (weights == 0.0) return now;
     const double better = sum / weights;
     const double change = std::abs(better - now);
@@ -211,7 +225,8 @@ double matchedStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
 
 class LineSearch {
  public:
-  LineSearch(const Version& field, const LineOptions& options, JobControl& job)
+  LineSearch(const Version& field, const LineOptions& options, std::span<const std::int32_t> places,
+             JobControl& job)
       : field_(field.reader()), options_(options), job_(job) {
     const bool rows = options.axis == ScanAxis::kX;
     found_.axis = options.axis;
@@ -220,6 +235,13 @@ class LineSearch {
     found_.degree = options.method == LineMethod::kPolynomial ? options.degree : 0;
     found_.coefficients.assign(static_cast<std::size_t>(found_.lines) * terms(), 0.0);
     counts_.assign(static_cast<std::size_t>(found_.lines), 0);
+    const auto length = static_cast<std::size_t>(found_.length);
+    places_ = {places, length};
+    read_.assign(length, places.empty() ? 1 : 0);
+    // Beside each place its neighbours, for slopes.
+    for (const std::int32_t place : places)
+      for (std::int32_t i = std::max(place - 1, 0); i <= std::min(place + 1, found_.length - 1); ++i)
+        read_[static_cast<std::size_t>(i)] = 1;
   }
 
   Result<LineOffsets> run() {
@@ -259,7 +281,7 @@ class LineSearch {
     });
   }
 
-  // `count` <= kTileSide lines from `first`, one after the other.
+  // `count` <= kTileSide lines from `first`, one after the other; samples that are not looked at may be left out.
   void readLines(std::int32_t first, std::int32_t count, std::vector<float>& out) const {
     const auto length = static_cast<std::size_t>(found_.length);
     out.resize(static_cast<std::size_t>(count) * length);
@@ -271,9 +293,11 @@ class LineSearch {
       }
       float z[kTileSamples];
       readRegion(field_, options_.region, {first, i, count, part}, z, kTileSide);
-      for (std::int32_t l = 0; l < count; ++l)
-        for (std::int32_t k = 0; k < part; ++k)
+      for (std::int32_t k = 0; k < part; ++k) {
+        if (read_[static_cast<std::size_t>(i + k)] == 0) continue;
+        for (std::int32_t l = 0; l < count; ++l)
           out[static_cast<std::size_t>(l) * length + static_cast<std::size_t>(i + k)] = z[k * kTileSide + l];
+      }
     }
   }
   [[nodiscard]] ScanLine lineOf(const std::vector<float>& lines, std::int32_t index) const noexcept {
@@ -288,9 +312,11 @@ class LineSearch {
     for (std::int32_t l = 0; l < count; ++l) {
       const ScanLine line = lineOf(lines, l);
       const auto at = static_cast<std::size_t>(first + l);
-      counts_[at] = std::ranges::count_if(line, [](float z) { return !std::isnan(z); });
+      std::int64_t there = 0;
+      places_.each([&](std::size_t i) { there += std::isnan(line[i]) ? 0 : 1; });
+      counts_[at] = there;
       if (!fit || counts_[at] == 0) continue;
-      take(line, samples);
+      take(line, places_, samples);
       Terms c{};
       if (options_.method == LineMethod::kMedian)
         c[0] = median(samples.z);
@@ -325,8 +351,9 @@ class LineSearch {
       if (source < first) readLines(source, 1, before);
       const ScanLine a = source < first ? ScanLine(before) : lineOf(lines, source - first);
       const ScanLine b = lineOf(lines, l);
-      found_.coefficients[static_cast<std::size_t>(first + l)] =
-          options_.method == LineMethod::kDifference ? medianStep(a, b, scratch) : matchedStep(a, b, scratch);
+      found_.coefficients[static_cast<std::size_t>(first + l)] = options_.method == LineMethod::kDifference
+                                                                     ? medianStep(a, b, places_, scratch)
+                                                                     : matchedStep(a, b, places_, scratch);
     }
   }
 
@@ -364,6 +391,8 @@ class LineSearch {
   LineOptions options_;
   JobControl& job_;
   LineOffsets found_;
+  Places places_;
+  std::vector<std::uint8_t> read_;     // of each place along a line: whether it is read
   std::vector<std::int64_t> counts_;   // samples that count, of each line
   std::vector<std::int32_t> sources_;  // -1: none
 };
@@ -387,11 +416,25 @@ void LineOffsets::readHeights(const SampleRect& rect, double* out) const noexcep
   }
 }
 
+double LineOffsets::takenAt(std::int32_t line, double place) const noexcept {
+  const Terms basis = legendre(along(place, length));
+  const auto terms = static_cast<std::size_t>(degree) + 1;
+  const double* c = coefficients.data() + static_cast<std::size_t>(line) * terms;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < terms; ++k) sum += c[k] * basis[k];
+  return sum;
+}
+
 Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options, JobControl& job) {
+  return findLineOffsets(field, options, {}, job);
+}
+
+Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options,
+                                    std::span<const std::int32_t> places, JobControl& job) {
   if (options.degree < 0 || options.degree > LineOptions::kMostDegree)
     return inputError(fmt::format("a line's polynomial of degree {} is not possible", options.degree),
                       "lines", fmt::format("take 0 to {}", LineOptions::kMostDegree));
-  return LineSearch(field, options, job).run();
+  return LineSearch(field, options, places, job).run();
 }
 
 }  // namespace fettle::engine

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -37,6 +38,8 @@ struct LineOptions {
   /// kPolynomial: samples far from the polynomial do not count. From the one with the least median distance of those
   /// through 150 sets of samples, by Tukey's biweight at 4.685 times the normalised median distance (as FormOptions).
   bool robust = false;
+
+  friend bool operator==(const LineOptions&, const LineOptions&) = default;
 };
 
 /// What is taken from each scanned line.
@@ -53,6 +56,8 @@ struct LineOffsets {
 
   /// As HeightsOf: what is taken from the samples of a rectangle.
   void readHeights(const SampleRect& rect, double* out) const noexcept;
+  /// What is taken at a place along a line, counted in samples, which may lie between two.
+  [[nodiscard]] double takenAt(std::int32_t line, double place) const noexcept;
 };
 
 /// Finds the offset or drift of each line of a line scanner.
@@ -62,5 +67,10 @@ struct LineOffsets {
 /// arena.
 [[nodiscard]] Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options,
                                                   JobControl& job);
+
+/// The same from the samples at these places of each line alone, or from all where none is given; ascending. Slopes are those between
+/// neighbours, as ever. A line that has no sample there counts as one without samples.
+[[nodiscard]] Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options,
+                                                  std::span<const std::int32_t> places, JobControl& job);
 
 }  // namespace fettle::engine

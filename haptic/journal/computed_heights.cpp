@@ -1,17 +1,15 @@
 #include "haptic/journal/computed_heights.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <utility>
 
-#include "engine/field/live_field.h"
-#include "engine/field/tile.h"
+#include "engine/field/sample_rect.h"
+#include "engine/fill/fill_view.h"
+#include "engine/measure/levelled_lines.h"
+#include "engine/measure/line_view.h"
 
 namespace fettle::haptic {
 
 namespace {
-
-using engine::kTileSide;
 
 engine::Result<ComputedHeights> made(const engine::Version& before, const engine::FillOptions& options,
                                      engine::JobControl& job) {
@@ -23,43 +21,45 @@ engine::Result<ComputedHeights> made(const engine::Version& before, const engine
   return result;
 }
 
-// Rounded to float once, as engine::lowered(), into tiles of the field's own memory.
 engine::Result<ComputedHeights> made(const engine::Version& before, const engine::LineOptions& options,
                                      engine::JobControl& job) {
   const auto offsets = engine::findLineOffsets(before, options, job);
   if (!offsets) return tl::unexpected(offsets.error());
-  const engine::FieldReader reader = before.reader();
-  job.begin("levelling lines", static_cast<std::uint64_t>(reader.tileRows()));
-  engine::LiveField live(before, engine::Growth::kAllowed);
-  float z[engine::kTileSamples];
-  double taken[engine::kTileSamples];
-  for (std::int32_t row = 0; row < reader.height(); row += kTileSide) {
-    if (job.cancelled()) return engine::cancelled();
-    for (std::int32_t column = 0; column < reader.width(); column += kTileSide) {
-      const engine::SampleRect rect{column, row, std::min(kTileSide, reader.width() - column),
-                                    std::min(kTileSide, reader.height() - row)};
-      reader.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
-      offsets->readHeights(rect, taken);
-      for (int r = 0; r < rect.rows; ++r)
-        for (int k = r * kTileSide; k < r * kTileSide + rect.columns; ++k)
-          z[k] = static_cast<float>(z[k] - taken[k]);
-      if (!live.writeHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide))
-        return engine::failure("there is not enough memory for the levelled field", "level",
-                               "keep the samples on a disk with --store FOLDER");
-    }
-    job.advance();
-  }
+  auto levelled = engine::levelledLines(before, *offsets, engine::allTiles(before.grid()), job);
+  if (!levelled) return tl::unexpected(levelled.error());
   ComputedHeights result;
-  result.field = live.snapshot();
+  result.field = *std::move(levelled);
   result.rows_rms = offsets->rms;
   return result;
 }
+
+struct Showing {
+  engine::Status operator()(const engine::FillOptions& options) const {
+    return engine::showFilled(before, options, view, show, job);
+  }
+  engine::Status operator()(const engine::LineOptions& options) const {
+    return engine::showLevelled(before, options, view, show, job);
+  }
+  const engine::Version& before;
+  const engine::FieldView& view;
+  const engine::ShowEarly& show;
+  engine::JobControl& job;
+};
 
 }  // namespace
 
 engine::Result<ComputedHeights> computeHeights(const engine::Version& before, const HeightsMaker& maker,
                                                engine::JobControl& job) {
   return std::visit([&](const auto& options) { return made(before, options, job); }, maker);
+}
+
+engine::Result<ComputedHeights> computeHeights(const engine::Version& before, const HeightsMaker& maker,
+                                               const engine::FieldView& view, const engine::ShowEarly& show,
+                                               engine::JobControl& job) {
+  // Errors of the picture are those of the whole, which reports them.
+  (void)std::visit(Showing{before, view, show, job}, maker);
+  if (job.cancelled()) return engine::cancelled();
+  return computeHeights(before, maker, job);
 }
 
 }  // namespace fettle::haptic

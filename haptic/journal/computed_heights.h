@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/early_picture.h"
+#include "engine/field/field_view.h"
 #include "engine/field/version.h"
 #include "engine/fill/fill.h"
 #include "engine/measure/line_offsets.h"
@@ -24,6 +26,13 @@ struct ComputedHeights {
 /// lines, sign and form stay. Errors: those of engine::fillHoles and engine::findLineOffsets. Thread: any; a long job on all workers.
 [[nodiscard]] engine::Result<ComputedHeights> computeHeights(const engine::Version& before,
                                                              const HeightsMaker& maker,
+                                                             engine::JobControl& job);
+
+/// The same, and before it what `view` shows, soon: engine::showFilled, engine::showLevelled.
+[[nodiscard]] engine::Result<ComputedHeights> computeHeights(const engine::Version& before,
+                                                             const HeightsMaker& maker,
+                                                             const engine::FieldView& view,
+                                                             const engine::ShowEarly& show,
                                                              engine::JobControl& job);
 
 }  // namespace fettle::haptic
