@@ -142,6 +142,8 @@ inline void navigate(Parts& p) {
     p.form.dropPreview();
   else if (p.heights.busy())
     p.heights.cancel();
+  else if (p.heights.previewed() != nullptr)
+    p.heights.dropPreview();
   else if (p.compare.busy())
     p.compare.cancel();
   else if (p.measure.busy())
@@ -292,7 +294,11 @@ void preview(Parts& p) {
   p.filters.compute(clientOf(p), keep, p.picture.seenPart(client.field().grid(), p.view));
 }
 inline void dropPreview(Parts& p) {
-  if (!p.filters.variants().empty()) p.filters.drop(p.filters.variants().size() - 1);
+  if (!p.filters.variants().empty())
+    p.filters.drop(p.filters.variants().size() - 1);
+  else
+    p.heights.dropPreview();
+  p.picture.requestRedraw();
 }
 template <int by>
 void window(Parts& p) {
@@ -311,7 +317,11 @@ inline void changeScope(Parts& p) {
 inline void apply(Parts& p) {
   EdgeTool& edges = p.marking.edges;
   const bool taken = p.settings.draw_lines ? edges.acceptAsLines(p.marking.edit) : edges.accept(clientOf(p));
-  if (!taken && !p.filters.variants().empty()) p.filters.apply(clientOf(p));
+  if (taken) return;
+  if (!p.filters.variants().empty())
+    p.filters.apply(clientOf(p));
+  else
+    p.heights.applyPreview();
 }
 template <int steps>
 void moveSplit(Parts& p) {
@@ -320,7 +330,7 @@ void moveSplit(Parts& p) {
 }
 
 inline bool hasPreview(const Parts& p) {
-  return hasField(p) && !p.filters.variants().empty();
+  return hasField(p) && (!p.filters.variants().empty() || p.heights.previewed() != nullptr);
 }
 inline void limitFilter(Parts& p) {
   toggleLimit(p.filters.spec.max_change, p.last_limit);
@@ -329,7 +339,7 @@ inline bool filterIsLimited(const Parts& p) {
   return p.filters.spec.max_change.has_value();
 }
 inline bool canApply(const Parts& p) {
-  return hasField(p) && (!p.filters.variants().empty() || p.marking.edges.suggestion() != nullptr);
+  return hasPreview(p) || (hasField(p) && p.marking.edges.suggestion() != nullptr);
 }
 
 // --- Form
@@ -355,6 +365,18 @@ void sectionEnd(Parts& p) {
   if (!at) return;
   (p.section.*set)(*at);
   p.settings.panels["Section"] = true;
+  p.picture.requestRedraw();
+}
+template <auto options>
+bool heightsArePreviewed(const Parts& p) {
+  return p.heights.previews(p.heights.*options);
+}
+template <auto options>
+void previewHeights(Parts& p) {
+  if (heightsArePreviewed<options>(p))
+    p.heights.dropPreview();
+  else
+    p.heights.preview(p.heights.*options, p.picture.seenPart(clientOf(p).field().grid(), p.view));
   p.picture.requestRedraw();
 }
 template <void (HeightTool::*make)()>

@@ -35,6 +35,8 @@ constexpr Tip kTips[] = {
      "No sample is farther than this from the scan afterwards. What earlier steps moved farther comes back "
      "to "
      "this limit."},
+    {Action::kFillPreview, "Shows it beside the scan and changes nothing."},
+    {Action::kLevelPreview, "Shows it beside the scan and changes nothing."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},
     {Action::kLevelLines, "For scanners whose rows lie at different heights: stripes go."},
     {Action::kShowMarks, "They count whether they are shown or not."},

@@ -53,18 +53,22 @@ const CoarseForm* meansShown(const Parts& parts) {
 }
 
 // A preview that has fewer samples at first has no differences from others: it follows when it has all.
-std::vector<FilterPreview::Picture> previewsOf(Parts& parts) {
+std::vector<PreviewPicture> previewsOf(Parts& parts) {
   if (meansShown(parts) != nullptr) return {};
-  std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
+  std::vector<PreviewPicture> previews = parts.filters.pictures();
+  if (auto heights = parts.heights.picture()) {
+    previews.push_back(*std::move(heights));
+    if (previews.size() > FilterPreview::kMostVariants) previews.erase(previews.begin());
+  }
   const engine::Grid& grid = parts.document.client()->field().grid();
   if (comparedWith(parts))
-    std::erase_if(previews, [&grid](const FilterPreview::Picture& preview) {
+    std::erase_if(previews, [&grid](const PreviewPicture& preview) {
       return preview.field.grid().width != grid.width || preview.field.grid().height != grid.height;
     });
   return previews;
 }
 
-render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& previews) {
+render::Shown shownOf(Parts& parts, const std::vector<PreviewPicture>& previews) {
   const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
   render::Shown shown;
@@ -84,20 +88,19 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   } else {
     shown.versions.push_back(parts.marking.edges.over(client.field()));
   }
-  for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
+  for (const PreviewPicture& preview : previews) shown.versions.push_back(likeField(preview.field));
   if (const auto original = comparedWith(parts)) shown.original = likeField(*original);
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
   if (parts.marking.edges.suggestion() != nullptr && !parts.shows_before) shown.accepted = client.field();
   return shown;
 }
 
-void addTitles(const Parts& parts, const std::vector<FilterPreview::Picture>& previews,
-               render::FrameInput& input) {
+void addTitles(const Parts& parts, const std::vector<PreviewPicture>& previews, render::FrameInput& input) {
   if (const CoarseForm* coarse = meansShown(parts))
     input.titles.push_back(fmt::format("without the form: {}", coarseFormState(*coarse)));
   if (previews.empty()) return;
   input.titles.emplace_back("unchanged");
-  for (const FilterPreview::Picture& preview : previews) input.titles.push_back(preview.title);
+  for (const PreviewPicture& preview : previews) input.titles.push_back(preview.title);
   // One plot has room for only one title.
   if (input.arrangement == render::Arrangement::kSplit)
     input.titles = {fmt::format("left: unchanged, right: {}", input.titles[1]), ""};
@@ -111,7 +114,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   const haptic::LoopState state = client.state();
   if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) picture.requestRedraw();
   picture.fit(parts.view);
-  const std::vector<FilterPreview::Picture> previews = previewsOf(parts);
+  const std::vector<PreviewPicture> previews = previewsOf(parts);
   if (const auto status = picture.show(shownOf(parts, previews)); !status) {
     // present() reports a lost device.
     if (parts.window.usable()) parts.feedback.message(status.error().line(), "");

@@ -178,6 +178,9 @@ void addFilters(const Parts& p, Report& r) {
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
   r["computing_heights"] = p.heights.busy();
   r["heights_found"] = p.heights.found();
+  const haptic::HeightsMaker* const previewed = p.heights.previewed();
+  r["heights_preview"] = previewed != nullptr ? Report(makerName(*previewed)) : Report();
+  r["heights_so_far"] = p.heights.soFar();
   r["measuring"] = p.measure.busy();
   Report parameters = Report::object();
   if (const auto& figures = p.measure.figures())

@@ -5,9 +5,7 @@
 #include <new>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "app/work/read_units.h"
+#include "app/work/preview_picture.h"
 #include "engine/field/means.h"
 #include "engine/measure/form_surface.h"
 
@@ -49,9 +47,7 @@ double rmsBetween(const engine::FieldReader& fine, const engine::FieldReader& co
 }  // namespace
 
 std::string coarseFormState(const CoarseForm& form) {
-  const engine::LengthUnit& unit = form.surface.grid().height_unit;
-  const ReadAs as = readOnScreenAs(form.off_rms, unit.mm, unit.name);
-  return fmt::format("approximate, off by about {:.3g} {} rms", form.off_rms / as.size, as.name);
+  return offText(form.off_rms, true, form.surface.grid());
 }
 
 bool formTakesLong(const engine::Grid& grid) noexcept {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "app/work/read_units.h"
-
 namespace fettle::app {
 namespace {
 
@@ -41,12 +39,8 @@ std::string previewState(const engine::FilterView::Picture& picture, const engin
   const auto percent = [](double share) { return static_cast<int>(100.0 * share); };
   if (picture.step == 0)
     return picture.exact == 1.0 ? "exact in view" : fmt::format("{} % so far", percent(picture.exact));
-  std::string text = "approximate";
-  if (picture.off) {
-    const ReadAs as = readOnScreenAs(picture.off->rms, grid.height_unit.mm, grid.height_unit.name);
-    text += fmt::format(", off by {}{:.3g} {} rms", picture.off->estimated ? "about " : "",
-                        picture.off->rms / as.size, as.name);
-  }
+  std::string text =
+      picture.off ? offText(picture.off->rms, picture.off->estimated, grid) : std::string("approximate");
   if (const int done = percent(picture.exact); done > 0) text += fmt::format(", {} % exact", done);
   if (picture.untouched > 0.0) text += fmt::format(", {} % to come", std::max(1, percent(picture.untouched)));
   return text;
@@ -152,8 +146,8 @@ void FilterPreview::drop(std::size_t variant) {
   if (variant < variants_.size()) variants_.erase(variants_.begin() + static_cast<std::ptrdiff_t>(variant));
 }
 
-std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
-  std::vector<Picture> pictures;
+std::vector<PreviewPicture> FilterPreview::pictures() const {
+  std::vector<PreviewPicture> pictures;
   const bool additional = so_far_.field.empty() || keep_ == Keep::kAdd;
   if (additional)
     for (const Variant& variant : variants_)

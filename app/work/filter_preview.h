@@ -7,6 +7,7 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/preview_picture.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/filter_view.h"
 #include "haptic/loop/adopt_filtered.h"
@@ -37,12 +38,6 @@ class FilterPreview {
   /// Edited by the panel. A range sigma of 0 means one for the field's noise (engine::withMeasuredRange).
   engine::FilterSpec spec;
 
-  /// A picture of a filter: its result, or its result so far.
-  struct Picture {
-    engine::Version field;
-    std::string title;
-  };
-
   /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them.
   /// `view`: what is shown of the field (visiblePart) is filtered first, approximately where that takes long.
   enum class Keep : std::uint8_t { kReplace, kAdd };
@@ -65,7 +60,7 @@ class FilterPreview {
   [[nodiscard]] bool isCurrent(const Variant& variant) const;
   void drop(std::size_t variant);
   /// What is to be drawn next to the field.
-  [[nodiscard]] std::vector<Picture> pictures() const;
+  [[nodiscard]] std::vector<PreviewPicture> pictures() const;
   [[nodiscard]] bool computing() const noexcept { return computing_.busy(); }
   [[nodiscard]] bool applying() const noexcept { return applying_.busy(); }
   [[nodiscard]] WorkProgress progress() const {

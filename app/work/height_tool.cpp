@@ -14,7 +14,8 @@ namespace {
 
 struct MakerName {
   std::string operator()(const engine::FillOptions& fill) const {
-    return fill.method == engine::FillMethod::kMembrane ? "Fill holes: membrane" : "Fill holes: curvature";
+    return fill.method == engine::FillMethod::kMembrane ? "Fill holes: membrane"
+                                                        : "Fill holes: least curvature";
   }
   std::string operator()(const engine::LineOptions& lines) const {
     constexpr const char* kMethods[] = {"median", "polynomial", "difference", "matching"};
@@ -60,50 +61,146 @@ std::string makerName(const haptic::HeightsMaker& maker) {
   return std::visit(MakerName(), maker);
 }
 
-void HeightTool::ask(const haptic::HeightsMaker& maker) {
+std::string earlyState(const engine::EarlyPicture& picture) {
+  if (picture.off) return offText(picture.off->rms, picture.off->estimated, picture.field.grid());
+  if (picture.exact == 1.0) return "exact in view";
+  return fmt::format("{} % so far", static_cast<int>(100.0 * picture.exact));
+}
+
+void HeightTool::make(const haptic::HeightsMaker& maker) {
+  if (previews(maker)) return applyPreview();
+  // On its way as a preview: it becomes a step when it is there.
+  if (working_.busy() && !working_.cancelling() && !asked_ && wanted_.maker == maker) {
+    wanted_.becomes = Becomes::kStep;
+    return dropEarly();
+  }
   cancel();
-  asked_ = maker;
+  preview_.reset();
+  asked_ = Wanted{maker, Becomes::kStep, {}};
+}
+
+void HeightTool::preview(const haptic::HeightsMaker& maker, const engine::FieldView& view) {
+  cancel();
+  preview_.reset();
+  asked_ = Wanted{maker, Becomes::kPreview, view};
+}
+
+void HeightTool::applyPreview() {
+  if (!preview_) return;
+  cancel();
+  wanted_ = {preview_->maker, Becomes::kStep, {}};
+  done_ = std::move(preview_->work);
+  preview_.reset();
+}
+
+void HeightTool::dropPreview() {
+  preview_.reset();
+  found_.clear();
 }
 
 void HeightTool::cancel() noexcept {
   working_.cancel();
   asked_.reset();
   done_.reset();
+  dropEarly();
+}
+
+void HeightTool::dropEarly() {
+  slot_.reset();
+  early_.reset();
+}
+
+bool HeightTool::dropOutdated(const LoopClient& client) {
+  const bool computing = working_.busy() && !working_.cancelling() && wanted_.becomes == Becomes::kPreview;
+  if (!computing && !preview_) return false;
+  const engine::Version now = client.newest();
+  bool dropped = false;
+  if (computing && !(base_ == now)) {
+    cancel();
+    dropped = true;
+  }
+  if (preview_ && !(preview_->work.base == now)) {
+    dropPreview();
+    dropped = true;
+  }
+  return dropped;
+}
+
+bool HeightTool::takeEarly() {
+  if (!slot_) return false;
+  const std::scoped_lock lock(slot_->mutex);
+  if (!slot_->picture) return false;
+  early_ = std::exchange(slot_->picture, std::nullopt);
+  return true;
 }
 
 bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
-  bool changed = false;
+  bool changed = dropOutdated(client);
+  changed |= takeEarly();
   const bool dropped = working_.cancelling();
   if (auto result = working_.take()) {
     changed = true;
+    base_ = {};
+    dropEarly();
     if (!dropped && *result)
       done_ = *std::move(*result);
     else if (!dropped && result->error().kind != engine::ErrorKind::kCancelled)
       notices.push_back({result->error().what, result->error().remedy});
   }
+  const bool step = wanted_.becomes == Becomes::kStep;
   // Under a stroke the field is another one every tick.
-  if (done_ && !client.strokeIsUnderWay()) {
+  if (done_ && !(step && client.strokeIsUnderWay())) {
     changed = true;
-    found_ = foundIn(done_->heights, maker_, done_->base);
-    if (!(done_->base == done_->heights.field) &&
-        !client.changeHeights(done_->base, done_->heights.field, makerName(maker_), maker_))
-      asked_ = maker_;
+    found_ = foundIn(done_->heights, wanted_.maker, done_->base);
+    if (!step)
+      preview_ = Preview{wanted_.maker, *std::move(done_)};
+    else if (!(done_->base == done_->heights.field) &&
+             !client.changeHeights(done_->base, done_->heights.field, makerName(wanted_.maker),
+                                   wanted_.maker))
+      asked_ = wanted_;
     done_.reset();
   }
-  if (asked_ && !working_.busy() && !client.strokeIsUnderWay()) {
-    maker_ = *std::exchange(asked_, std::nullopt);
-    client.awaitRestored();
-    working_.start([base = client.newest(), maker = maker_](engine::JobControl& job) -> engine::Result<Work> {
-      auto heights = haptic::computeHeights(base, maker, job);
-      if (!heights) return tl::unexpected(heights.error());
-      return Work{base, *std::move(heights)};
-    });
-  }
+  if (asked_ && !working_.busy() && !client.strokeIsUnderWay()) start(client);
   return changed;
+}
+
+void HeightTool::start(LoopClient& client) {
+  wanted_ = *std::exchange(asked_, std::nullopt);
+  client.awaitRestored();
+  engine::Version base = client.newest();
+  if (wanted_.becomes == Becomes::kPreview) {
+    base_ = base;
+    slot_ = std::make_shared<Slot>();
+  }
+  working_.start([base = std::move(base), wanted = wanted_,
+                  slot = slot_](engine::JobControl& job) -> engine::Result<Work> {
+    const auto show = [&slot](engine::EarlyPicture picture) {
+      const std::scoped_lock lock(slot->mutex);
+      slot->picture = std::move(picture);
+    };
+    auto heights = slot ? haptic::computeHeights(base, wanted.maker, wanted.view, show, job)
+                        : haptic::computeHeights(base, wanted.maker, job);
+    if (!heights) return tl::unexpected(heights.error());
+    return Work{base, *std::move(heights)};
+  });
+}
+
+std::string HeightTool::soFar() const {
+  return early_ ? earlyState(*early_) : std::string();
+}
+
+std::optional<PreviewPicture> HeightTool::picture() const {
+  if (early_)
+    return PreviewPicture{early_->field,
+                          fmt::format("{}: {}", makerName(wanted_.maker), earlyState(*early_))};
+  if (preview_) return PreviewPicture{preview_->work.heights.field, makerName(preview_->maker)};
+  return std::nullopt;
 }
 
 void HeightTool::clear() {
   cancel();
+  preview_.reset();
+  base_ = {};
   found_.clear();
 }
 

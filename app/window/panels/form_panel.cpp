@@ -8,12 +8,6 @@
 namespace fettle::app {
 namespace {
 
-void writeWrapped(const std::string& text) {
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-}
-
 std::string shortTitle(const engine::FormInfo& form) {
   return form.degree >= 2 ? fmt::format("polynomial {}", form.degree) : std::string(form.title);
 }

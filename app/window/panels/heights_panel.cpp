@@ -2,6 +2,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <variant>
 
 #include <imgui.h>
 
@@ -70,11 +71,25 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
-void foundText(const HeightTool& heights) {
-  if (heights.found().empty()) return;
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(heights.found().c_str());
-  ImGui::PopTextWrapPos();
+struct ButtonsOf {
+  Action preview;
+  Action make;
+  const char* name;
+};
+constexpr ButtonsOf kFillButtons{Action::kFillPreview, Action::kFillHoles, "Fill holes"};
+constexpr ButtonsOf kLevelButtons{Action::kLevelPreview, Action::kLevelLines, "Level lines"};
+
+void makeButtons(const PanelContext& context, const HeightTool& heights, const haptic::HeightsMaker& maker,
+                 const ButtonsOf& buttons) {
+  const bool same = heights.filledLast() == std::holds_alternative<engine::FillOptions>(maker);
+  const std::string preview = heights.previews(maker) ? "Drop preview" : "Preview";
+  actionButton((preview + "##" + buttons.name).c_str(), buttons.preview, context.act);
+  sameLineIfFits(buttons.name);
+  actionButton(buttons.name, buttons.make, context.act);
+  if (!same) return;
+  if (!heights.found().empty()) writeWrapped(heights.found());
+  if (heights.previewed() != nullptr && !heights.previews(maker))
+    ImGui::TextDisabled("not shown yet: what the fields say now");
 }
 
 }  // namespace
@@ -86,6 +101,7 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
     workBar(heights.progress(), -ImGui::GetFontSize() * 5.0F, "computing heights");
     ImGui::SameLine();
     if (ImGui::Button("Cancel##heights")) heights.cancel();
+    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
     return;
   }
   int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
@@ -96,12 +112,10 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   endFields();
   extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
   ImGui::Checkbox("at the border too", &heights.fill.at_border);
-  actionButton("Fill holes", Action::kFillHoles, context.act);
-  if (heights.filledLast()) foundText(heights);
+  makeButtons(context, heights, heights.fill, kFillButtons);
   ImGui::Separator();
   linesFields(heights.lines);
-  actionButton("Level lines", Action::kLevelLines, context.act);
-  if (!heights.filledLast()) foundText(heights);
+  makeButtons(context, heights, heights.lines, kLevelButtons);
 }
 
 }  // namespace fettle::app

@@ -58,6 +58,12 @@ void actionButton(const char* name, Action action, const Act& act) {
   tip(action);
 }
 
+void writeWrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void actionTick(const char* name, bool ticked, Action action, const Act& act) {
   if (ImGui::Checkbox(name, &ticked)) act(action);
   tip(action);

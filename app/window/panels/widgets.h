@@ -29,6 +29,8 @@ using Act = std::function<void(Action)>;
 void explain(std::string_view says);
 /// Shows what an action does and its keys as a tip of the last item.
 void tip(Action action);
+/// Text as wide as there is room.
+void writeWrapped(const std::string& text);
 /// A button and a tick box for an action, with its tip.
 void actionButton(const char* name, Action action, const Act& act);
 void actionTick(const char* name, bool ticked, Action action, const Act& act);

@@ -174,7 +174,7 @@ TEST(SessionJournal, ReplaysFilledHolesAndLevelledLinesToTheSameBits) {
   const auto session = engine::openSession(path, {}, engine::importField, job);
   ASSERT_TRUE(session) << session.error().line();
   EXPECT_EQ(engine::contentHash(session->history.current()), expected);
-  EXPECT_EQ(session->history.info(1).name, "Fill holes: curvature");
+  EXPECT_EQ(session->history.info(1).name, "Fill holes: least curvature");
   EXPECT_EQ(session->history.info(2).name, "Level rows: matching");
   const auto played = haptic::playSession(*session, job);
   ASSERT_TRUE(played) << played.error().line();

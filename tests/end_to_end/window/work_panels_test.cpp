@@ -3,6 +3,8 @@
 #include <fstream>
 #include <string>
 
+#include "engine/measure/levelled_lines.h"
+#include "engine/measure/line_offsets.h"
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
 
@@ -14,8 +16,7 @@ using State = User::State;
 // Only these panels are open.
 void openPanels(const TempFolder& folder, const std::vector<std::string>& names) {
   State panels;
-  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan"})
-    panels[other] = false;
+  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan"}) panels[other] = false;
   for (const std::string& name : names) panels[name] = true;
   std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};
 }
@@ -31,6 +32,14 @@ State jsonOf(const std::vector<std::string>& arguments) {
   const Outcome outcome = runProcess(all);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return outcome.status == 0 ? State::parse(outcome.out) : State::object();
+}
+
+// As the panel does it without a choice.
+engine::Version levelledRows(const engine::Version& field) {
+  engine::JobControl job;
+  const auto offsets = engine::findLineOffsets(field, {}, job);
+  EXPECT_TRUE(offsets);
+  return *engine::levelledLines(field, *offsets, engine::allTiles(field.grid()), job);
 }
 
 TEST_F(WindowTest, sections_are_measured_as_by_the_command_and_kept_with_the_session) {
@@ -115,6 +124,68 @@ TEST_F(WindowTest, holes_are_filled_and_lines_levelled_as_steps) {
   EXPECT_EQ(in_session["filled"], by_command["filled"]);
   const State replayed = jsonOf({"replay", work, folder.file("again.tif")});
   EXPECT_EQ(jsonOf({"compare", folder.file("again.tif"), filled})["max_abs"], 0.0);
+}
+
+TEST_F(WindowTest, filled_holes_and_levelled_lines_are_previewed_beside_the_scan) {
+  openPanels(folder, {"Holes and lines"});
+  const Outcome made =
+      runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "300x200", "--dropouts", "0.002"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string saved = folder.file("levelled.tif");
+  const auto program = start({scan});
+  User user(display, *program, "heights");
+  (void)opened(*program);
+  user.at({20, 790});
+  const Screen alone = user.look("scan");
+  const State shown = user.click("Preview");
+  EXPECT_EQ(shown["heights_preview"], "Fill holes: least curvature") << shown["notices"].dump();
+  EXPECT_EQ(shown["steps"], 0);
+  EXPECT_NE(shown["heights_found"].get<std::string>().find("holes filled"), std::string::npos);
+  EXPECT_TRUE(user.reads("Drop preview"));
+  user.at({20, 790});
+  (void)user.changed("filled beside the scan", alone);
+  const State filled = user.click("Fill holes");
+  EXPECT_EQ(filled["steps"], 1);
+  EXPECT_TRUE(filled["heights_preview"].is_null());
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  EXPECT_EQ(user.key("ctrl+r")["heights_preview"], "Level rows: median");
+  user.at({20, 790});
+  (void)user.look("levelled beside the scan");
+  EXPECT_TRUE(user.key("Escape")["heights_preview"].is_null());
+  (void)user.key("ctrl+r");
+  EXPECT_TRUE(user.key("ctrl+r")["heights_preview"].is_null());
+  (void)user.key("ctrl+r");
+  const State levelled = user.key("Return");
+  EXPECT_EQ(levelled["steps"], 1);
+  EXPECT_TRUE(levelled["heights_preview"].is_null());
+  saveAs(user, saved);
+  (void)quit(user);
+  EXPECT_EQ(compare(levelledRows(load(scan)), load(saved)).changed, 0);
+}
+
+// Of a large field an approximation comes first, which says how far it is off; the step is the exact one.
+TEST_F(WindowTest, levelled_lines_of_a_large_field_are_approximated_first) {
+  openPanels(folder, {"Holes and lines"});
+  const std::string large = folder.file("large.tif"), saved = folder.file("levelled.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "4096x4096", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({large});
+  User user(display, *program, "large heights");
+  (void)opened(*program);
+  (void)user.press("ctrl+r");
+  const State first = program->until("an approximation", [](const State& s) {
+    return s["heights_so_far"].get<std::string>().starts_with("approximate, off by about");
+  });
+  EXPECT_EQ(first["computing_heights"], true);
+  (void)user.look("approximate, if soon enough");
+  const State full = user.rest("all of it");
+  EXPECT_EQ(full["heights_preview"], "Level rows: median");
+  EXPECT_EQ(full["heights_so_far"], "");
+  (void)user.look("all of it");
+  EXPECT_EQ(user.key("Return")["steps"], 1);
+  saveAs(user, saved);
+  (void)quit(user);
+  EXPECT_EQ(compare(levelledRows(load(large)), load(saved)).changed, 0);
 }
 
 TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {

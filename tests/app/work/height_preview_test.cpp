@@ -1,0 +1,202 @@
+// Filled holes and levelled lines beside the field: adopted as they are, gone with the state that they are of.
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "app/work/height_tool.h"
+#include "engine/field/live_field.h"
+#include "tests/app/work/part.h"
+
+namespace fettle::tests {
+namespace {
+
+using app::HeightTool;
+
+constexpr std::size_t kHistoryOfPreviews = std::size_t{64} << 20;
+
+class HeightPreview : public testing::Test {
+ protected:
+  void SetUp() override {
+    scan_ = roughPart();
+    auto client =
+        app::LoopClient::start(engine::History(scan_, kHistoryOfPreviews), scan_, brushScene(), {}, nullptr);
+    ASSERT_TRUE(client) << client.error().line();
+    client_ = *std::move(client);
+    hash_ = engine::contentHash(scan_);
+  }
+  void TearDown() override {
+    heights_.clear();
+    for (const app::Notice& notice : notices_) ADD_FAILURE() << notice.what;
+  }
+
+  void poll() {
+    client_->poll();
+    (void)heights_.poll(*client_, notices_);
+  }
+  // As a window's frames look at it.
+  void until(const std::function<bool()>& is) {
+    while (!is()) {
+      poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  void untilRest() {
+    until([&] { return !heights_.busy(); });
+  }
+  void previewAll(const haptic::HeightsMaker& maker) {
+    heights_.preview(maker, {engine::allTiles(scan_.grid()), 115, 90});
+  }
+  [[nodiscard]] std::uint64_t madeBy(const haptic::HeightsMaker& maker) const {
+    engine::JobControl job;
+    const auto made = haptic::computeHeights(client_->newest(), maker, job);
+    EXPECT_TRUE(made);
+    return made ? engine::contentHash(made->field) : 0;
+  }
+  void mark(std::int32_t column) {
+    const engine::Version base = client_->upright();
+    engine::LiveField field(base, engine::Growth::kAllowed);
+    ASSERT_TRUE(field.setMark(column, 20, true));
+    ASSERT_TRUE(client_->change(base, field.snapshot(), "Box"));
+  }
+  [[nodiscard]] std::int64_t steps() const { return client_->history().number(); }
+
+  engine::Version scan_;
+  std::uint64_t hash_ = 0;
+  std::unique_ptr<app::LoopClient> client_;
+  HeightTool heights_;
+  std::vector<app::Notice> notices_;
+};
+
+TEST_F(HeightPreview, BecomesTheStepAsItIs) {
+  heights_.lines.method = engine::LineMethod::kMatching;
+  const std::pair<haptic::HeightsMaker, const char*> kMakers[] = {
+      {heights_.fill, "Fill holes: least curvature"}, {heights_.lines, "Level rows: matching"}};
+  for (const auto& [maker, name] : kMakers) {
+    const std::uint64_t expected = madeBy(maker);
+    EXPECT_NE(expected, hash_);
+    previewAll(maker);
+    EXPECT_TRUE(heights_.busy());
+    untilRest();
+    ASSERT_TRUE(heights_.previews(maker));
+    EXPECT_FALSE(heights_.found().empty());
+    EXPECT_EQ(steps(), 0);
+    EXPECT_EQ(engine::contentHash(client_->field()), hash_);
+    const auto picture = heights_.picture();
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->title, name);
+    EXPECT_EQ(engine::contentHash(picture->field), expected);
+    if (std::holds_alternative<engine::FillOptions>(maker))
+      heights_.fillHoles();
+    else
+      heights_.levelLines();
+    // Nothing is worked out: one look is enough.
+    poll();
+    EXPECT_EQ(steps(), 1);
+    EXPECT_FALSE(heights_.busy());
+    EXPECT_EQ(heights_.previewed(), nullptr);
+    EXPECT_FALSE(heights_.picture());
+    EXPECT_EQ(client_->history().info(1).name, name);
+    until([&] { return client_->upright() == client_->history().current(); });
+    EXPECT_EQ(engine::contentHash(client_->field()), expected);
+    client_->undo();
+    until([&] { return engine::contentHash(client_->field()) == hash_; });
+  }
+}
+
+TEST_F(HeightPreview, OfOtherOptionsIsNotTheStep) {
+  previewAll(heights_.fill);
+  untilRest();
+  heights_.fill.method = engine::FillMethod::kMembrane;
+  EXPECT_FALSE(heights_.previews(heights_.fill));
+  const std::uint64_t expected = madeBy(heights_.fill);
+  heights_.fillHoles();
+  untilRest();
+  EXPECT_EQ(steps(), 1);
+  EXPECT_EQ(engine::contentHash(client_->history().current()), expected);
+  EXPECT_EQ(heights_.previewed(), nullptr);
+}
+
+TEST_F(HeightPreview, OnItsWayBecomesAStepWhenItIsThere) {
+  const std::uint64_t expected = madeBy(heights_.fill);
+  previewAll(heights_.fill);
+  poll();
+  heights_.fillHoles();
+  untilRest();
+  EXPECT_EQ(steps(), 1);
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  EXPECT_EQ(engine::contentHash(client_->history().current()), expected);
+}
+
+TEST_F(HeightPreview, EndsWithTheStateThatItIsOf) {
+  previewAll(heights_.fill);
+  untilRest();
+  ASSERT_TRUE(heights_.previews(heights_.fill));
+  mark(40);
+  poll();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  EXPECT_FALSE(heights_.picture());
+  EXPECT_TRUE(heights_.found().empty());
+  // On its way, too.
+  until([&] { return client_->upright() == client_->history().current(); });
+  previewAll(heights_.lines);
+  poll();
+  mark(50);
+  until([&] { return client_->upright() == client_->history().current(); });
+  untilRest();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  // An undo, and a stroke.
+  previewAll(heights_.fill);
+  untilRest();
+  ASSERT_NE(heights_.previewed(), nullptr);
+  client_->undo();
+  poll();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  until([&] { return client_->upright() == client_->history().current(); });
+  previewAll(heights_.fill);
+  untilRest();
+  ASSERT_NE(heights_.previewed(), nullptr);
+  const engine::Grid& grid = scan_.grid();
+  client_->setTool(haptic::Tool::kSmooth);
+  client_->mouse()->setCursor({100 * grid.spacingXMm(), 25 * grid.spacingYMm(),
+                               static_cast<double>(scan_.reader().heightAt(100, 25)) * grid.height_unit.mm});
+  client_->mouse()->press(haptic::Tool::kSmooth);
+  until([&] { return heights_.previewed() == nullptr; });
+  client_->mouse()->release();
+  EXPECT_NE(engine::contentHash(client_->field()), hash_);
+}
+
+TEST_F(HeightPreview, IsDroppedAndCancelled) {
+  previewAll(heights_.fill);
+  untilRest();
+  heights_.dropPreview();
+  EXPECT_FALSE(heights_.picture());
+  heights_.applyPreview();
+  poll();
+  EXPECT_EQ(steps(), 0) << "there is none";
+  previewAll(heights_.fill);
+  poll();
+  heights_.cancel();
+  untilRest();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  EXPECT_FALSE(heights_.picture());
+  EXPECT_EQ(steps(), 0);
+}
+
+TEST(EarlyState, SaysHowFarAPictureIs) {
+  engine::EarlyPicture picture{roughPart(), 1, 0.4251, std::nullopt};
+  EXPECT_EQ(app::earlyState(picture), "42 % so far");
+  picture.exact = 1.0;
+  EXPECT_EQ(app::earlyState(picture), "exact in view");
+  picture.off = {0.0123, false};
+  EXPECT_EQ(app::earlyState(picture), "approximate, off by 12.3 um rms");
+  picture.off->estimated = true;
+  EXPECT_EQ(app::earlyState(picture), "approximate, off by about 12.3 um rms");
+}
+
+}  // namespace
+}  // namespace fettle::tests
