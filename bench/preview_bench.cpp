@@ -20,17 +20,6 @@ namespace {
 // As the window's thread looks at it, but for drawing.
 constexpr std::chrono::milliseconds kFrame{1};
 
-engine::FieldView viewOf(const engine::Grid& grid, std::int32_t columns, std::int32_t rows) {
-  const auto tilesOf = [](std::int32_t side, std::int32_t seen) {
-    const std::int32_t first = (side - std::min(side, seen)) / 2, end = first + std::min(side, seen);
-    return std::pair{first / engine::kTileSide,
-                     (end + engine::kTileSide - 1) / engine::kTileSide - first / engine::kTileSide};
-  };
-  const auto [c, across] = tilesOf(grid.width, columns);
-  const auto [r, up] = tilesOf(grid.height, rows);
-  return {{c, r, across, up}, grid.width / 2, grid.height / 2};
-}
-
 engine::Result<PreviewBenchRow> preview(const engine::Version& field, const engine::FilterSpec& spec,
                                         const engine::FieldView& seen, double limit_s,
                                         engine::JobControl& job) {
@@ -81,6 +70,17 @@ engine::Result<PreviewBenchRow> preview(const engine::Version& field, const engi
 
 }  // namespace
 
+engine::FieldView middleView(const engine::Grid& grid, std::int32_t columns, std::int32_t rows) {
+  const auto tilesOf = [](std::int32_t side, std::int32_t seen) {
+    const std::int32_t first = (side - std::min(side, seen)) / 2, end = first + std::min(side, seen);
+    return std::pair{first / engine::kTileSide,
+                     (end + engine::kTileSide - 1) / engine::kTileSide - first / engine::kTileSide};
+  };
+  const auto [c, across] = tilesOf(grid.width, columns);
+  const auto [r, up] = tilesOf(grid.height, rows);
+  return {{c, r, across, up}, grid.width / 2, grid.height / 2};
+}
+
 engine::Result<PreviewBenchReport> benchPreviews(const PreviewBenchOptions& options,
                                                  engine::JobControl& job) {
   for (const int side : options.sides)
@@ -99,7 +99,7 @@ engine::Result<PreviewBenchReport> benchPreviews(const PreviewBenchOptions& opti
       const engine::Filter& filter = engine::filterOf(kind);
       if (filter.window.exists()) spec.window = options.window;
       spec.nesting_mm = engine::usualNesting(filter, grid);
-      for (const engine::FieldView& seen : {viewOf(grid, side, side), viewOf(grid, 1280, 800)}) {
+      for (const engine::FieldView& seen : {middleView(grid, side, side), middleView(grid, 1280, 800)}) {
         auto row = preview(field, spec, seen, options.limit_s, job);
         if (!row) return tl::unexpected(row.error());
         row->filter = filter.window.exists() ? fmt::format("{} {}", filter.word, spec.window)
@@ -107,6 +107,8 @@ engine::Result<PreviewBenchReport> benchPreviews(const PreviewBenchOptions& opti
         report.rows.push_back(*std::move(row));
       }
     }
+    if (auto done = benchHeightPreviews(side, options.fill, options.level, report.heights, job); !done)
+      return tl::unexpected(done.error());
   }
   return report;
 }

@@ -1,9 +1,11 @@
 #include "app/commands/bench.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +15,9 @@
 namespace fettle::app {
 
 namespace {
+
+// Beside filters what is previewed, too.
+constexpr std::string_view kFillKind = "fill", kLevelKind = "level";
 
 engine::Result<Report> measurePreviews(const bench::PreviewBenchOptions& options, engine::JobControl& job) {
   const auto measured = bench::benchPreviews(options, job);
@@ -31,7 +36,47 @@ engine::Result<Report> measurePreviews(const bench::PreviewBenchOptions& options
                               {"change_rms", orNone(row.change_rms)},
                               {"exact_seconds", orNone(row.exact)},
                               {"whole_seconds", orNone(row.whole)}});
+  report["heights"] = Report::array();
+  for (const bench::HeightPreviewRow& row : measured->heights)
+    report["heights"].push_back({{"what", row.what},
+                                 {"side", row.side},
+                                 {"samples_in_view", row.seen},
+                                 {"first_seconds", orNone(row.first)},
+                                 {"means_of", row.step},
+                                 {"exact", row.exact},
+                                 {"off_said", row.off_said},
+                                 {"off_is_estimated", row.estimated},
+                                 {"off_rms", row.off_whole},
+                                 {"change_rms", orNone(row.change_rms)},
+                                 {"whole_seconds", row.whole},
+                                 {"alone_seconds", row.alone},
+                                 {"hash", fmt::format("{:016x}", row.hash)}});
   return report;
+}
+
+std::string numberOrDash(const Report& value, const char* form) {
+  return value.is_null() ? std::string("-") : fmt::format(fmt::runtime(form), value.get<double>());
+}
+
+void printHeights(const Report& rows) {
+  if (rows.empty()) return;
+  fmt::print(
+      "\nfirst: a picture is there, of means of n x n samples; exact: what it has of the result's bits; "
+      "said: how far it says it "
+      "is off,\n~ about; off: how far it is; whole: the result is there; alone: without a preview, the same "
+      "bits\n\n");
+  fmt::print("{:<22}{:>7}{:>10}{:>8}{:>7}{:>8}{:>12}{:>11}{:>11}{:>9}{:>9}\n", "", "side", "seen, M", "first",
+             "means", "exact", "said", "off rms", "change rms", "whole", "alone");
+  for (const Report& row : rows)
+    fmt::print("{:<22}{:>7}{:>10.2f}{:>8}{:>7}{:>7.0f}%{:>12}{:>11.3g}{:>11}{:>9.2f}{:>9.2f}\n",
+               row["what"].get<std::string>(), row["side"].get<int>(),
+               1e-6 * static_cast<double>(row["samples_in_view"].get<std::int64_t>()),
+               numberOrDash(row["first_seconds"], "{:.3f}"), row["means_of"].get<int>(),
+               100.0 * row["exact"].get<double>(),
+               fmt::format("{}{:.3g}", row["off_is_estimated"].get<bool>() ? "~" : "",
+                           row["off_said"].get<double>()),
+               row["off_rms"].get<double>(), numberOrDash(row["change_rms"], "{:.3g}"),
+               row["whole_seconds"].get<double>(), row["alone_seconds"].get<double>());
 }
 
 void printBenchPreviews(const Report& report) {
@@ -44,17 +89,16 @@ void printBenchPreviews(const Report& report) {
       report["machine"].get<std::string>(), report["limit_s"].get<double>());
   fmt::print("{:<22}{:>7}{:>10}{:>8}{:>7}{:>11}{:>11}{:>11}{:>9}{:>9}\n", "filter", "side", "seen, M",
              "first", "means", "off rms", "off max", "change rms", "exact", "whole");
-  const auto text = [](const Report& value, const char* form) {
-    return value.is_null() ? std::string("-") : fmt::format(fmt::runtime(form), value.get<double>());
-  };
   for (const Report& row : report["rows"])
-    fmt::print(
-        "{:<22}{:>7}{:>10.2f}{:>8}{:>7}{:>11}{:>11}{:>11}{:>9}{:>9}{}\n", row["filter"].get<std::string>(),
-        row["side"].get<int>(), 1e-6 * static_cast<double>(row["samples_in_view"].get<std::int64_t>()),
-        text(row["first_seconds"], "{:.3f}"), row["means_of"].get<int>(), text(row["off_rms"], "{:.3g}"),
-        text(row["off_max"], "{:.3g}"), text(row["change_rms"], "{:.3g}"),
-        text(row["exact_seconds"], "{:.2f}"), text(row["whole_seconds"], "{:.2f}"),
-        row["off_is_estimated"].get<bool>() ? "  estimated" : "");
+    fmt::print("{:<22}{:>7}{:>10.2f}{:>8}{:>7}{:>11}{:>11}{:>11}{:>9}{:>9}{}\n",
+               row["filter"].get<std::string>(), row["side"].get<int>(),
+               1e-6 * static_cast<double>(row["samples_in_view"].get<std::int64_t>()),
+               numberOrDash(row["first_seconds"], "{:.3f}"), row["means_of"].get<int>(),
+               numberOrDash(row["off_rms"], "{:.3g}"), numberOrDash(row["off_max"], "{:.3g}"),
+               numberOrDash(row["change_rms"], "{:.3g}"), numberOrDash(row["exact_seconds"], "{:.2f}"),
+               numberOrDash(row["whole_seconds"], "{:.2f}"),
+               row["off_is_estimated"].get<bool>() ? "  estimated" : "");
+  printHeights(report["heights"]);
 }
 
 }  // namespace
@@ -62,14 +106,18 @@ void printBenchPreviews(const Report& report) {
 void addBenchPreviews(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::PreviewBenchOptions>();
   Command command = addCommand(
-      bench, chosen, "previews",
-      "Time until a filter's preview is seen, and how far it is off until it is exact",
+      bench, chosen, "previews", "Time until a preview is seen, and how far it is off until it is exact",
       [options](engine::JobControl& job) { return measurePreviews(*options, job); }, printBenchPreviews);
   std::vector<Word> kinds;
   for (const engine::Filter& filter : engine::filters()) kinds.emplace_back(std::string(filter.word));
+  for (const std::string_view word : {kFillKind, kLevelKind}) kinds.emplace_back(std::string(word));
   const auto take_kinds = [options](const std::vector<std::string>& typed) {
     options->kinds.clear();
-    for (const std::string& word : typed) options->kinds.push_back(engine::filterNamed(word)->kind);
+    const auto isAmong = [&](std::string_view word) { return std::ranges::find(typed, word) != typed.end(); };
+    options->fill = isAmong(kFillKind);
+    options->level = isAmong(kLevelKind);
+    for (const std::string& word : typed)
+      if (word != kFillKind && word != kLevelKind) options->kinds.push_back(engine::filterNamed(word)->kind);
   };
   using Words = std::function<void(const std::vector<std::string>&)>;
   command.add({
@@ -80,9 +128,9 @@ void addBenchPreviews(Command bench, Chosen& chosen) {
        .between = ','},
       {.name = "--kind",
        .to = Words(take_kinds),
-       .text = "Filters",
+       .text = "Filters, filled holes, levelled lines",
        .words = kinds,
-       .otherwise = "median, gaussian, tv and tgv",
+       .otherwise = "median, gaussian, tv, tgv, fill and level",
        .between = ','},
       {.name = "--window",
        .to = &options->window,

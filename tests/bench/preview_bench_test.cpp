@@ -14,6 +14,21 @@ TEST(PreviewBench, EachFilterIsSeenWholeAndInPart) {
   const auto report = benchPreviews(options, job);
   ASSERT_TRUE(report) << report.error().line();
   ASSERT_EQ(report->rows.size(), 8U);
+  // Three kinds of holes, two ways to level lines.
+  ASSERT_EQ(report->heights.size(), 2U * 2U * 5U);
+  EXPECT_EQ(report->heights[2].what, "fill discs");
+  EXPECT_EQ(report->heights[8].what, "level matching");
+  for (const HeightPreviewRow& row : report->heights) {
+    EXPECT_GE(row.whole, row.first) << row.what;
+    EXPECT_GT(row.alone, 0.0);
+    const bool fills = row.what.starts_with("fill");
+    // Lines of so small a field are levelled at once; of holes the large one of the smaller field reaches its border.
+    EXPECT_EQ(row.first > 0.0, fills && row.what != "fill one large") << row.what;
+    EXPECT_EQ(row.off_whole, 0.0) << "exact";
+    if (row.first > 0.0) {
+      EXPECT_GT(row.exact, 0.0) << row.what << row.side;
+    }
+  }
   EXPECT_EQ(report->rows[0].filter, "median 5");
   EXPECT_EQ(report->rows[2].filter, "tgv");
   for (std::size_t i = 0; i < report->rows.size(); ++i) {
