@@ -26,6 +26,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=180.0, help="of tests for one plant")
     parser.add_argument("--within", nargs="+", default=[""], help="build and try only the plants in these rooms")
     parser.add_argument("--see", nargs="*", default=["numeric"], help="folders of tests that look beyond their own room")
+    parser.add_argument("--labels", nargs="*", default=[], help="labels of tests that are run too, as draws")
     parser.add_argument("--first", type=int, help="try only the first so many of the plants")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", type=int, nargs="+", help="try these plants again")
@@ -40,11 +41,12 @@ def settings(options: argparse.Namespace) -> dict:
             "sources": planting.run("git", "hash-object", *sources, cwd=planting.ROOT).split()}
 
 
-def mapped(folder: pathlib.Path, out: pathlib.Path, pool: concurrent.futures.Executor) -> tuple[list[dict], set[str]]:
+def mapped(folder: pathlib.Path, labels: list[str], out: pathlib.Path,
+           pool: concurrent.futures.Executor) -> tuple[list[dict], set[str]]:
     """The tests and what each comes past; and the names of those that are new, or whose program is, since the last time."""
     path = out / "map.json"
     before = {t["name"]: t for t in json.loads(path.read_text())} if path.exists() else {}
-    wanted = running.tests_of(folder)
+    wanted = running.tests_of(folder, labels)
     known = [before[t["name"]] for t in wanted
              if t["name"] in before and before[t["name"]]["built"] == t["built"]]
     names = {t["name"] for t in known}
@@ -89,7 +91,7 @@ def main() -> int:
     planting.keep(plants, out)
     print(f"{len(here)} of {len(plants)} plants built, {len(refused)} did not compile", flush=True)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        tests, new = mapped(folder, out, pool)
+        tests, new = mapped(folder, options.labels, out, pool)
         good = [t for t in tests if t["passes"]]
         print(f"{len(good)} of {len(tests)} tests pass without a plant; left out:",
               ", ".join(t["name"] for t in tests if not t["passes"]) or "none", flush=True)

@@ -16,7 +16,7 @@ from planting import grow, refused, run
 
 # The tests of these are built and run where a plant is in them.
 ROOMS = ("engine", "haptic", "render")
-# Labels of tests that measure instructions or the window, that build other things, or that take an hour.
+# Labels of tests that measure instructions or draw, need the window, build other things, or take an hour; --labels runs some.
 LEFT_OUT = {"instructions", "draws", "window", "live", "docs", "end_to_end", "soak"}
 # Tests below this are run many to a process, which is started once for them.
 QUICK_S = 0.5
@@ -50,11 +50,11 @@ def build(out: pathlib.Path, plants: dict[int, places.Place], others: list[str],
             del left[n]
 
 
-def tests_of(folder: pathlib.Path) -> list[dict]:
+def tests_of(folder: pathlib.Path, labels: list[str]) -> list[dict]:
     tests = []
     for row in json.loads(run("ctest", "--show-only=json-v1", cwd=folder))["tests"]:
         properties = {p["name"]: p["value"] for p in row.get("properties", [])}
-        if LEFT_OUT & set(properties.get("LABELS", [])) or "command" not in row:
+        if (LEFT_OUT - set(labels)) & set(properties.get("LABELS", [])) or "command" not in row:
             continue
         command = [c for c in row["command"] if c != "--gtest_also_run_disabled_tests"]
         tests.append({"name": row["name"], "command": command, "folder": properties["WORKING_DIRECTORY"],
