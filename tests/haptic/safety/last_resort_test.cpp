@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
@@ -42,6 +43,7 @@ Ended inAnotherProcess(const std::function<void(FakeDevice&)>& child,
                        const std::function<void(pid_t)>& when_running = {}) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
+  std::fflush(nullptr);  // or a child that exits writes it again
   const pid_t pid = fork();
   if (pid == 0) {
     const rlimit no_core{0, 0};
@@ -181,6 +183,19 @@ TEST(LastResort, ExitSaysZeroAndIgnoredSignalsDoNot) {
     std::_Exit(5);
   });
   EXPECT_EQ(ended.reports, "0");
+  EXPECT_EQ(WEXITSTATUS(ended.status), 5);
+}
+
+TEST(LastResort, AProgramThatEndsByItselfSaysZeroToDevicesThatAreStillRegistered) {
+  const Ended ended = inAnotherProcess([](FakeDevice& device) {
+    if (!LastResort::install()) std::_Exit(78);
+    const auto* const zero =
+        new ZeroOnLastResort(&FakeDevice::zero, &device);  // as of a thread that still runs
+    const ssize_t n = write(device.write_end, "F", 1);
+    std::exit(n == 1 && zero->registered() ? 5 : 6);
+  });
+  EXPECT_EQ(ended.reports, "F0");
+  ASSERT_TRUE(WIFEXITED(ended.status));
   EXPECT_EQ(WEXITSTATUS(ended.status), 5);
 }
 

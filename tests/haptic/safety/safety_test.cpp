@@ -344,6 +344,19 @@ TEST(ForceGuard, MotorsScaleKeepsDirectionAndNonsenseFromItIsZero) {
   EXPECT_FALSE(w.problem()) << *w.problem();
 }
 
+TEST(ForceGuard, OnlyTicksInWhichTheMotorsHoldTheForceBackAreCounted) {
+  static double factor;
+  SafetyLimits limits = woody();
+  limits.motors.factor = [](const void*, const glm::dvec3&) noexcept { return factor; };
+  factor = 1.0;
+  GuardWitness w = active(limits);
+  run(w, pressing(2.0), 50);
+  EXPECT_EQ(w.guard().counters().motor_scaled, 0);
+  factor = 0.5;
+  run(w, pressing(2.0), 7);
+  EXPECT_EQ(w.guard().counters().motor_scaled, 7);
+}
+
 TEST(ForceGuard, MotorsAreNeverWarmerThanTheyMayBe) {
   SafetyLimits limits = woody();
   limits.thermal_tau_s = 2.0;
@@ -386,6 +399,57 @@ TEST(SafetyLimits, OfADeviceWithoutForceGiveNone) {
   run(w, pressing(5.0), 1000);
   EXPECT_EQ(w.peakForce(), 0.0);
   EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(SafetyLimits, FollowWhatTheDeviceStatesOfItself) {
+  DeviceProfile profile;
+  profile.max_force_n = 8.0;
+  profile.max_damping_n_s_per_mm = 0.003;
+  SafetyLimits limits = limitsFor(profile);
+  EXPECT_FALSE(limitsProblem(limits));
+  EXPECT_EQ(limits.peak_force_n, 8.0);
+  EXPECT_DOUBLE_EQ(limits.continuous_force_n, 3.2);  // 0.4 of it
+  EXPECT_DOUBLE_EQ(limits.slew_n_per_ms, 1.6);       // all of it in 5 ms
+  EXPECT_DOUBLE_EQ(limits.small_force_n, 0.1);
+  EXPECT_EQ(limits.damping_n_s_per_mm, 0.003);
+  profile.max_force_n = 1.0;
+  limits = limitsFor(profile);
+  EXPECT_DOUBLE_EQ(limits.slew_n_per_ms, 0.2);
+  EXPECT_DOUBLE_EQ(limits.small_force_n, 0.05);  // a twentieth, of a weak device
+  // The largest values that are believed, and the next.
+  profile.max_force_n = 1000.0;
+  profile.max_damping_n_s_per_mm = 1.0;
+  EXPECT_EQ(limitsFor(profile).peak_force_n, 1000.0);
+  EXPECT_EQ(limitsFor(profile).damping_n_s_per_mm, 1.0);
+  profile.max_force_n = 1001.0;
+  profile.max_damping_n_s_per_mm = 1.01;
+  EXPECT_EQ(limitsFor(profile).peak_force_n, 0.0);
+  EXPECT_EQ(limitsFor(profile).damping_n_s_per_mm, 0.0);
+}
+
+TEST(SafetyLimits, AreRefusedBeyondTheStatedRanges) {
+  struct Range {
+    double SafetyLimits::*limit;
+    double least, most, beyond;
+  };
+  for (const Range& range : {Range{&SafetyLimits::peak_force_n, 2.0, 1000.0, 1001.0},
+                             {&SafetyLimits::continuous_force_n, 0.0, 5.0, 5.01},
+                             {&SafetyLimits::thermal_tau_s, 0.1, 1e6, 1.01e6},
+                             {&SafetyLimits::slew_n_per_ms, 1e-6, 1e6, 1.01e6},
+                             {&SafetyLimits::ramp_s, 0.5, 1.0, 1.01},
+                             {&SafetyLimits::damping_n_s_per_mm, 0.0, 1.0, 1.01},
+                             {&SafetyLimits::small_force_n, 0.0, 1.0, 1.01},
+                             {&SafetyLimits::fault_s, 0.01, 10.0, 10.1}}) {
+    SafetyLimits limits = woody();
+    for (const double good : {range.least, range.most}) {
+      limits.*range.limit = good;
+      EXPECT_FALSE(limitsProblem(limits)) << *limitsProblem(limits);
+    }
+    for (const double bad : {range.least - 0.001, range.beyond, kNaN}) {
+      limits.*range.limit = bad;
+      EXPECT_TRUE(limitsProblem(limits)) << bad;
+    }
+  }
 }
 
 TEST(SafetyLimits, OfAProfileFullOfNonsenseGiveNone) {
