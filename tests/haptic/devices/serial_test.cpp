@@ -21,6 +21,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "haptic/devices/emergency_zero.h"
 #include "haptic/devices/wooden/serial_port.h"
 #include "haptic/devices/wooden/wooden_haptics.h"
 #include "tests/support/eventually.h"
@@ -143,6 +144,19 @@ TEST(SerialDriver, CalibratesFollowsGivesForceAndEndsWithZero) {
   device.stop();
   EXPECT_TRUE(fettle::tests::eventually([&] { return board.ma() == std::array<int, 3>{}; }));
   EXPECT_EQ(board.odd, 0U);
+}
+
+TEST(SerialDriver, AFatalSignalSendsZeroToTheBoardWhileItsPortIsOpenAndToNoneAfterwards) {
+  FakeBoard board;
+  SerialSource source(board.path());
+  std::optional<OpenedPorts> ports = source.open();
+  ASSERT_TRUE(ports);
+  ASSERT_EQ(zeroAllDevices(), 1);
+  EXPECT_TRUE(fettle::tests::eventually([&] { return board.replies > 0; }));
+  ports.reset();
+  const std::uint64_t replies = board.replies;
+  EXPECT_EQ(zeroAllDevices(), 0) << "what is closed is written to: another device may have its number now";
+  EXPECT_EQ(board.replies, replies);
 }
 
 TEST(SerialDriver, BoardsAreFoundByTheirName) {

@@ -119,6 +119,47 @@ TEST(ExchangeSlots, ARunningExchangeIsSeenAsWaiting) {
   EXPECT_FALSE(slots.read().output_pending);
 }
 
+TEST(ExchangeSlots, ACalibrationThatWasAskedForBeforeADeviceCameIsNotDoneOnIt) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.requestCalibration();
+  slots.opened(LinkState::kUncalibrated, 5.0);
+  EXPECT_FALSE(slots.takeCalibrationRequest());
+  slots.requestCalibration();
+  EXPECT_TRUE(slots.takeCalibrationRequest());
+  EXPECT_FALSE(slots.takeCalibrationRequest()) << "once";
+}
+
+TEST(ExchangeSlots, ADeviceThatIsStartedAgainGivesForceAgain) {
+  ExchangeSlots slots;
+  for (int time = 0; time < 2; ++time) {
+    slots.start();
+    slots.opened(LinkState::kConnected, 5.0);
+    slots.write({0.0, 0.0, 1.0});
+    EXPECT_EQ(sendsNow(slots).z, 1.0) << time;
+    slots.requestStop();
+    slots.write({0.0, 0.0, 1.0});
+    EXPECT_EQ(sendsNow(slots), glm::dvec3(0.0)) << time;
+    slots.lost();
+  }
+}
+
+TEST(ExchangeSlots, WhatLeftAndWhatDidNotIsCounted) {
+  ExchangeSlots slots;
+  slots.start();
+  slots.opened(LinkState::kConnected, 5.0);
+  for (int i = 0; i < 3; ++i) {
+    slots.write({0.0, 0.0, 1.0});
+    static_cast<void>(sendsNow(slots));
+  }
+  slots.write({0.0, 0.0, 1.0});
+  static_cast<void>(slots.forceToSend());
+  slots.notSent();
+  EXPECT_TRUE(slots.read().output_pending) << "what did not leave is still to be sent";
+  EXPECT_EQ(slots.counters().outputs, 3U);
+  EXPECT_EQ(slots.counters().failed_outputs, 1U);
+}
+
 // A library call that does not return before it is let go.
 class Hanging final : public Counterpart {
  public:
