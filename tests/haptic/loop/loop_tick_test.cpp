@@ -261,6 +261,46 @@ TEST(LoopTick, AdoptionIsRefusedUnchangedWhenItsBaseIsOldTheHandWentTooFarOrTheP
     if (engine::InnerPool::dropLast(node)) engine::InnerPool::recycle(node);
 }
 
+TEST(LoopTick, AdoptionWithoutAnEditSinceTheSnapshotIsDoneAndCarriesNothing) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
+  const engine::Version result = raised(start);
+  ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [](LoopCommand& c) { c.id = 3; }));
+  bench.tickAt({200.0, 200.0, 9.0});
+  ASSERT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
+    c.id = 3;
+    c.version = result;
+  }));
+  bench.tickAt({200.0, 200.0, 9.0});
+  EXPECT_TRUE(bench.newest(EventKind::kAdopted).version == result);
+  EXPECT_TRUE(bench.field() == result);
+  EXPECT_EQ(bench.loop.state().adopted, 1U);
+  EXPECT_EQ(bench.loop.state().carried, 0U);
+}
+
+// Who follows the events reads and draws what they name: no more than the brush reached, and nothing beside the field.
+TEST(LoopTick, AnEditNamesTheSamplesUnderTheBrushAndNoOthers) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  for (const glm::dvec2 at : {glm::dvec2{50.3, 120.4}, {0.2, 0.3}, {298.6, 298.7}}) {
+    LoopBench bench(start, start, sceneWithBrush(2.0), testOptions(Tool::kMark));
+    for (int i = 0; i < 20; ++i) bench.tickAt({at, -1.0});
+    bench.loop.stop();
+    const engine::SampleRect rect = bench.newest(EventKind::kStrokeEnded).rect;
+    ASSERT_FALSE(rect.empty());
+    EXPECT_LE(rect.columns, 5);
+    EXPECT_LE(rect.rows, 5);
+    EXPECT_GE(rect.column, 0);
+    EXPECT_GE(rect.row, 0);
+    EXPECT_LE(rect.column + rect.columns, kSide);
+    EXPECT_LE(rect.row + rect.rows, kSide);
+    Mirror mirror(start);
+    mirror.take(bench.field(), rect);
+    EXPECT_EQ(mirror.differences(bench.field()), 0U);
+  }
+}
+
 TEST(LoopTick, UndoWhileTouchingIsExactAndRedoHasTheRunningStroke) {
   const engine::Version start = bumpy();
   reserve(start);
@@ -383,6 +423,38 @@ TEST(LoopTick, DisarmOvertakesEveryCommandAndTheArmingsBeforeIt) {
   ASSERT_TRUE(bench.channels.commands.push(bench.channels.armCommand()));
   bench.tickAt({50.0, 50.0, 1.0});
   EXPECT_EQ(bench.loop.guard().state(), SafetyState::kRamping);
+}
+
+// The disarm falls between the tick's look at their number and its taking the command: the tick knows of it by the command alone.
+TEST(LoopTick, AnArmingAfterADisarmThatTheTickHasNotSeenBeginsWithoutForceAndStays) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kFeel));
+  ASSERT_TRUE(bench.channels.commands.push(bench.channels.armCommand()));
+  for (int i = 0; i < 600; ++i) bench.tickAt({50.0, 50.0, 5.0});
+  for (int i = 0; i < 20; ++i) bench.tickAt({50.0, 50.0, -1.0});
+  ASSERT_EQ(bench.loop.guard().state(), SafetyState::kActive);
+  ASSERT_GT(bench.device.force.z, 0.5);
+  ASSERT_TRUE(bench.send(CommandKind::kArm, [](LoopCommand& c) { c.id = 1; }));
+  bench.tickAt({50.0, 50.0, -1.0});
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kArmed) << "a force goes on that was switched off";
+  bench.channels.disarm();  // its number becomes visible
+  for (int i = 0; i < 20; ++i) bench.tickAt({50.0, 50.0, -1.0});
+  EXPECT_EQ(glm::length(bench.device.force), 0.0);
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kArmed) << "the arming after the disarm was lost";
+}
+
+TEST(LoopTick, WhatWasMarkedJustBeforeTheEndIsReportedByTheStop) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  const LoopOptions options = testOptions(Tool::kMark);
+  LoopBench bench(start, start, sceneWithBrush(0.0), options);
+  for (std::uint32_t i = 0; i + 2 < options.publish_ticks; ++i) bench.tickAt({20.0 + 0.1 * i, 30.0, -1.0});
+  ASSERT_TRUE(bench.poll().empty()) << "ticks fewer than those between two reports";
+  bench.loop.stop();
+  const LoopEvent event = bench.newest(EventKind::kStrokeEnded);
+  EXPECT_TRUE(event.version == bench.field());
+  EXPECT_GT(engine::summarize(event.version).marked, 0);
 }
 
 class DeskDevice : public tests::HandDevice {
