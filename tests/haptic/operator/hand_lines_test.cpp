@@ -35,6 +35,22 @@ TEST(HandLines, AreAsFarFromTheEdgeAsThePersonIs) {
   EXPECT_NEAR(std::sqrt(squares / 20001.0), std::hypot(0.124, 0.049), 0.02);
 }
 
+// A hand's motion is one of time: who draws twice as fast has gone twice as far when it is at the same deviation.
+TEST(HandLines, OfAFasterHandHaveTheSameMotionDrawnOut) {
+  const engine::Edge edge = longEdge();
+  OperatorSpec slow, fast;
+  fast.speed_mm_s = 2.0 * slow.speed_mm_s;
+  const std::vector<HandLine> a = handLines({&edge, 1}, tenthGrid(), slow);
+  const std::vector<HandLine> b = handLines({&edge, 1}, tenthGrid(), fast);
+  double most = 0.0;
+  for (std::size_t i = 0; 2 * i < b[0].points.size(); ++i) {
+    // Sums of 0.1 mm that end within 1e-9 mm of each other, and a hand slower than 10 mm/s.
+    ASSERT_NEAR(a[0].points[i].y, b[0].points[2 * i].y, 1e-6) << i;
+    most = std::max(most, std::abs(a[0].points[i].y));
+  }
+  EXPECT_GT(most, 0.1);
+}
+
 TEST(HandLines, FollowSeedAndAmplitude) {
   const engine::Edge edge = longEdge();
   const auto drawn = [&](const OperatorSpec& spec) {
