@@ -51,6 +51,29 @@ TEST(Camera, OrthographicPixelsEqualTheRotationWrittenOut) {
     }
 }
 
+// Of a headset: its eyes see farther to their own side than to the other, and farther down than up.
+TEST(Camera, AnEyesPixelsAreTheTangentsOfWhatItSeesBetweenThoseOfItsEdges) {
+  EyeView eye;
+  eye.position = {1.0, -40.0, 9.0};
+  eye.axes.right = {1.0, 0.0, 0.0};
+  eye.axes.up = {0.0, 0.6, 0.8};
+  eye.axes.to_viewer = {0.0, -0.8, 0.6};
+  eye.left = -1.3, eye.right = 0.9, eye.down = -1.1, eye.up = 0.8;
+  const Camera camera = Camera::ofEye(eye, kBox, kPlot);
+  for (const glm::dvec3& p : corners(kBox)) {
+    const glm::dvec3 d = p - eye.position;
+    const double ahead = -glm::dot(eye.axes.to_viewer, d);
+    ASSERT_GT(ahead, 0.0);
+    const double x = glm::dot(eye.axes.right, d) / ahead, y = glm::dot(eye.axes.up, d) / ahead;
+    const glm::dvec2 pixel = camera.pixelOf(p);
+    EXPECT_NEAR(pixel.x, kPlot.x + kPlot.width * (x - eye.left) / (eye.right - eye.left), 1e-6);
+    EXPECT_NEAR(pixel.y, kPlot.y + kPlot.height * (eye.up - y) / (eye.up - eye.down), 1e-6);
+  }
+  const double middle = -glm::dot(eye.axes.to_viewer, 0.5 * (kBox.low + kBox.high) - eye.position);
+  EXPECT_NEAR(camera.distance(), middle, 1e-9);
+  EXPECT_NEAR(camera.pixelsPerMm() * middle, std::max(kPlot.width / 2.2, kPlot.height / 1.9), 1e-6);
+}
+
 TEST(Camera, EveryCornerOfTheBoxLiesInThePlotAndTouchesItsRim) {
   for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective})
     for (const double a : {0.0, 45.0, 200.0})

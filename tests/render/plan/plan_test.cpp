@@ -125,6 +125,10 @@ TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.centre_z = -101; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.azimuth_deg = std::nan(""); }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.zoom = 0; }));
+  for (const double most : {1e-9, 1e9})
+    EXPECT_FALSE(refused([&](PictureSpec& s) { s.view.vertical_exaggeration = most; })) << most;
+  for (const double beyond : {-1.0, 0.9e-9, 1.1e9})
+    EXPECT_TRUE(refused([&](PictureSpec& s) { s.view.vertical_exaggeration = beyond; })) << beyond;
   EXPECT_TRUE(refused([](PictureSpec& s) { s.marks_opacity = 1.5; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.range = ValueRange{1, 1}; }));
 }
@@ -348,7 +352,8 @@ TEST(Plan, TheNoteNamesTheExtremesOfNowWhateverTheColoursWereChosenBy) {
       fieldOf(gridOf(64, 64), [](int c, int r) { return c == 9 && r == 7 ? -500 : c; })};
   PictureSpec spec;
   const auto decorations = [&](const std::vector<engine::Version>& fields) {
-    return planPicture(spec, fields, spans, layOut(spec.view, spec.decoration, 1, Titles::kNone))->decorations;
+    return planPicture(spec, fields, spans, layOut(spec.view, spec.decoration, 1, Titles::kNone))
+        ->decorations;
   };
   EXPECT_FALSE(decorations(before).below);
   EXPECT_EQ(decorations(before).note, "");
@@ -390,6 +395,14 @@ TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
     const Layout layout = layOut(view, Decoration::kFull, 1, Titles::kAbove, 4.0);
     EXPECT_GE(layout.plots[0].width, 0.5 * w) << w << " x " << h;
     EXPECT_GE(layout.plots[0].height, 0.5 * h) << w << " x " << h;
+  }
+  // As large as three fifths of the picture for the surface allow.
+  for (const auto& [w, h] : {std::pair{1280, 800}, {800, 1100}, {2000, 700}}) {
+    view.width = w;
+    view.height = h;
+    const Rectangle plot = layOut(view, Decoration::kFull, 1, Titles::kAbove, 5.9).plots[0];
+    // Margins are whole pixels each.
+    EXPECT_NEAR(std::min(1.0 * plot.width / w, 1.0 * plot.height / h), 0.6, 2.0 / h) << w << " x " << h;
   }
 }
 

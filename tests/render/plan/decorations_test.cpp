@@ -1,0 +1,133 @@
+// What stands around the surface, from the quads that draw it: what it says is right to the pixel, and nothing is cut in two.
+#include "render/plan/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "render/plan/plan.h"
+
+namespace fettle::render {
+namespace {
+
+class Decorated {
+ public:
+  Decorated() : glyphs_(*Glyphs::create()), palette_(paletteOf(Theme::kLight, ColourMap::kViridis)) {
+    view_.width = 1280;
+    view_.height = 800;
+    content.range = {0.0, 1.0};
+    content.quantity = "height";
+    content.lateral_unit = {"mm", 1.0};
+    content.pixels_per_mm = 4.0;
+  }
+  [[nodiscard]] std::vector<gpu::Quad> quads() {
+    warnings.clear();
+    return decorationQuads(layout(), view_, content, palette_, glyphs_, warnings);
+  }
+  [[nodiscard]] Layout layout() const { return layOut(view_, Decoration::kFull, 1, Titles::kAbove); }
+  [[nodiscard]] const Palette& palette() const { return palette_; }
+  void setWidth(int width) { view_.width = width; }
+
+  DecorationContent content;
+  std::vector<std::string> warnings;
+
+ private:
+  View view_;
+  Glyphs glyphs_;
+  Palette palette_;
+};
+
+bool hasColour(const gpu::Quad& quad, const glm::vec3& colour) {
+  return quad.colour.x == colour.x && quad.colour.y == colour.y && quad.colour.z == colour.z;
+}
+std::size_t letters(const std::vector<gpu::Quad>& quads) {
+  return static_cast<std::size_t>(std::count_if(
+      quads.begin(), quads.end(), [](const gpu::Quad& q) { return q.fill.x == gpu::kFillGlyph; }));
+}
+bool same(const gpu::Quad& a, const gpu::Quad& b) {
+  return a.pixels == b.pixels && a.uv == b.uv && a.colour == b.colour && a.fill == b.fill;
+}
+
+TEST(ScaleBar, IsAsManyPixelsLongAsTheLengthThatItNames) {
+  Decorated picture;
+  const double at = picture.layout().plots[0].x;
+  for (const double pixels_per_mm : {0.37, 4.0, 91.0}) {
+    picture.content.pixels_per_mm = pixels_per_mm;
+    // The longest of 1, 2, 5 times a power of ten in 22 % of the plot's width.
+    const double longest = 0.22 * picture.layout().plots[0].width / pixels_per_mm;
+    const double pixels = std::round(roundDown125(longest) * pixels_per_mm);
+    const std::vector<gpu::Quad> quads = picture.quads();
+    const auto bar = std::find_if(quads.begin(), quads.end(), [&](const gpu::Quad& q) {
+      return q.fill.x == gpu::kFillSolid && q.pixels.x == at && q.pixels.z - q.pixels.x > 20.0F;
+    });
+    ASSERT_NE(bar, quads.end()) << pixels_per_mm;
+    EXPECT_EQ(bar->pixels.z - bar->pixels.x, pixels) << pixels_per_mm;
+    EXPECT_TRUE(hasColour(*bar, picture.palette().ink));
+    // Its ends are marked by strokes that end where it does.
+    const auto ends = std::count_if(quads.begin(), quads.end(), [&](const gpu::Quad& q) {
+      return q.fill.x == gpu::kFillSolid && q.pixels.y < bar->pixels.y && q.pixels.w > bar->pixels.w &&
+             (q.pixels.x == bar->pixels.x || q.pixels.z == bar->pixels.z);
+    });
+    EXPECT_EQ(ends, 2) << pixels_per_mm;
+    EXPECT_TRUE(picture.warnings.empty());
+  }
+}
+
+TEST(Legend, NamesEachSpecialColourThatThePictureHasAndNoOther) {
+  Decorated picture;
+  const auto shown = [&](const glm::vec3& colour) {
+    const std::vector<gpu::Quad> quads = picture.quads();
+    return std::any_of(quads.begin(), quads.end(), [&](const gpu::Quad& q) { return hasColour(q, colour); });
+  };
+  const Palette& palette = picture.palette();
+  const std::size_t without = letters(picture.quads());
+  EXPECT_FALSE(shown(palette.no_data) || shown(palette.marks) || shown(palette.suggested));
+  picture.content.marks = true;
+  EXPECT_TRUE(shown(palette.marks));
+  EXPECT_FALSE(shown(palette.no_data) || shown(palette.suggested));
+  EXPECT_EQ(letters(picture.quads()), without + std::string("marked").size());
+  picture.content.no_data = picture.content.suggested = true;
+  EXPECT_TRUE(shown(palette.no_data) && shown(palette.marks) && shown(palette.suggested));
+  EXPECT_EQ(letters(picture.quads()), without + std::string("markednodatasuggested").size());
+  // A colour without its word would explain nothing: at every width there are both or neither.
+  for (int width = 200; width < 1280; width += 20) {
+    picture.setWidth(width);
+    const std::vector<gpu::Quad> quads = picture.quads();
+    const auto boxes = std::count_if(quads.begin(), quads.end(), [&](const gpu::Quad& q) {
+      return hasColour(q, palette.no_data) || hasColour(q, palette.marks) || hasColour(q, palette.suggested);
+    });
+    for (const gpu::Quad& q : quads) EXPECT_LE(q.pixels.z, static_cast<float>(width)) << width;
+    for (const std::string& warning : picture.warnings)
+      for (const char* word : {"no data", "marked", "suggested"})
+        EXPECT_EQ(warning.find(word), std::string::npos) << width << ": " << warning;
+    EXPECT_LE(boxes, 3);
+  }
+}
+
+// Of more than one byte each: half a letter would be drawn as another one.
+TEST(Titles, ThatAreTooLongEndWithAnEllipsisAfterAWholeLetter) {
+  Decorated picture;
+  const auto titled = [&](const std::string& title) {
+    picture.content.titles = {title};
+    return picture.quads();
+  };
+  const std::size_t others = letters(titled(""));
+  EXPECT_EQ(letters(titled("short")), others + 5);
+  std::string title;
+  for (int i = 0; i < 400; ++i) title += "\u00e9";
+  const std::vector<gpu::Quad> cut = titled(title);
+  const std::size_t drawn = letters(cut) - others;  // the ellipsis is one
+  ASSERT_GT(drawn, 20U);
+  const std::vector<gpu::Quad> shorter = titled(title.substr(0, 2 * (drawn - 1)) + "\u2026");
+  EXPECT_TRUE(std::equal(shorter.begin(), shorter.end(), cut.begin(), cut.end(), same));
+  // As many as there is room for, and no pixel more.
+  const double right = picture.layout().plots[0].x + picture.layout().plots[0].width;
+  const double end = cut[drawn - 1].pixels.z;
+  EXPECT_LE(end, right);
+  const double one = cut[1].pixels.x - cut[0].pixels.x;
+  EXPECT_GT(end + 1.5 * one, right);
+}
+
+}  // namespace
+}  // namespace fettle::render
