@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,14 @@ TEST(Histogram, BinsHoldTheirLowEndAndTheLastItsHighEnd) {
   EXPECT_EQ(h.high, 4.0);
   EXPECT_EQ(h.counts, (Counts{2, 2, 1, 2}));
   EXPECT_EQ(h.lowEnd(3), 3.0);
+}
+
+TEST(Histogram, ItsProgressIsThatOfTheTiles) {
+  JobControl job;
+  ASSERT_TRUE(countHeights(makeField(gridOf(200, 70), std::vector<float>(200 * 70, 1.0F)), 4, job));
+  EXPECT_EQ(job.stage(), std::string("counting heights"));
+  EXPECT_EQ(job.total(), 4U * 2U);
+  EXPECT_EQ(job.done(), job.total());
 }
 
 TEST(Histogram, CountsEverySampleOnceAndSeesTheSign) {

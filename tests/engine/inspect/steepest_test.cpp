@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,14 @@ SteepestCell steepest(const Version& field) {
   const auto cell = findSteepest(field, job);
   EXPECT_TRUE(cell);
   return cell.value_or(SteepestCell{});
+}
+
+TEST(Steepest, ItsProgressIsThatOfTheTiles) {
+  JobControl job;
+  ASSERT_TRUE(findSteepest(makeField(gridOf(200, 70), std::vector<float>(200 * 70, 1.0F)), job));
+  EXPECT_EQ(job.stage(), std::string("finding the steepest cell"));
+  EXPECT_EQ(job.total(), 4U * 2U);
+  EXPECT_EQ(job.done(), job.total());
 }
 
 TEST(Steepest, IsWhereTheGradientOfTheBilinearPatchIsLongest) {

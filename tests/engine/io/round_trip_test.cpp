@@ -56,6 +56,17 @@ TEST_P(Lossless, EveryFloatComesBackBitForBit) {
   }
 }
 
+TEST_P(Lossless, ReadingSaysHowMuchThereIsToDoAndEndsWithAllOfIt) {
+  const TempFolder folder;
+  const std::string path = folder.file(std::string("long") + GetParam());
+  ASSERT_TRUE(save(makeField(gridOf(70, 150), std::vector<float>(70 * 150, 1.5F)), path));
+  JobControl job;
+  ASSERT_TRUE(importField(path, {}, job));
+  EXPECT_EQ(job.stage(), std::string("reading"));
+  EXPECT_GT(job.total(), 0U);
+  EXPECT_EQ(job.done(), job.total());
+}
+
 TEST_P(Lossless, ASingleSampleComesBack) {
   const TempFolder folder;
   const std::string path = folder.file(std::string("one") + GetParam());

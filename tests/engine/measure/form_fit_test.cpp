@@ -251,6 +251,8 @@ TEST(ShapeForms, ASurfaceOverAnotherFormIsWhatTheyDifferBy) {
   JobControl job;
   const auto surface = formSurface(grid, sphere, &plane, job);
   ASSERT_TRUE(surface);
+  EXPECT_EQ(job.total(), 3U * 2U);
+  EXPECT_EQ(job.done(), job.total());
   std::vector<double> a(70 * 65), b(70 * 65);
   for (int c : {0, 64, 129}) {
     const SampleRect rect{c / 64 * 64, 0, std::min(64, 130 - c / 64 * 64), 64};

@@ -141,6 +141,20 @@ TEST_P(LineFormats, WhatTheFormatHoldsComesBack) {
   EXPECT_EQ(back[0].points[12].deviation, 0.0);
 }
 
+// Formats of lines hold one kind for a run of points; that of most of them.
+TEST_P(LineFormats, ALineOfBothKindsIsOfTheKindOfMostOfItsPoints) {
+  if (is(".dxf") || is(".csv")) return;  // no kinds; the kind of each point
+  for (const std::size_t creases : {0U, 1U, 39U, 41U, 80U}) {
+    std::vector<EdgeLine> lines{sampleLines()[1]};
+    for (std::size_t i = 0; i < lines[0].points.size(); ++i)
+      lines[0].points[i].kind = i < creases ? LineKind::kCrease : LineKind::kStep;
+    const std::vector<EdgeLine> back = thereAndBack(lines, fineGrid());
+    ASSERT_EQ(back.size(), 1U);
+    for (const EdgePoint& p : back[0].points)
+      EXPECT_EQ(p.kind, creases > 40 ? LineKind::kCrease : LineKind::kStep) << creases;
+  }
+}
+
 TEST_P(LineFormats, CoordinateSystemsArePlaces) {
   Grid grid = fineGrid();
   grid.lateral_unit = {"m", 1000.0};
