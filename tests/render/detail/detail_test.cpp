@@ -204,6 +204,75 @@ std::vector<int> numbersOf(const PatchTree& tree) {
   return numbers;
 }
 
+// A tower of 10 mm in the picture, of which the camera sees the top alone.
+TEST(PatchTree, WhatReachesIntoThePictureIsDrawnHoweverHeightsAreExaggerated) {
+  for (const double mm_per_unit : {0.1, 1.0, 10.0}) {
+    const double tall = 10.0 / mm_per_unit;
+    const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), [&](int c, int r) {
+      return std::abs(c - 200) < 10 && std::abs(r - 150) < 10 ? tall : 0.0;
+    });
+    DetailMeasure measure;
+    measure.measure(field.reader());
+    PatchQuery q;
+    q.measure = &measure;
+    q.reader = field.reader();
+    q.placing = placingOf(field.grid());
+    q.mm_per_unit = mm_per_unit;
+    q.lowest = -tall, q.highest = 2.0 * tall, q.floor_z = -1.0, q.error_px = 0.5;
+    const glm::dvec2 half = 0.5 * q.placing.extent();
+    View view;
+    view.elevation_deg = 3.0;
+    const Box top{{-1.0, -1.0, 8.0}, {1.0, 1.0, 10.0}}, all{{-half.x, -half.y, -1.0}, {half.x, half.y, 20.0}};
+    q.camera = Camera::fit(view, top, all, {0, 0, 300, 300});
+    const std::vector<PatchLeaf> leaves = PatchTree(q).leaves();
+    const bool drawn = std::any_of(leaves.begin(), leaves.end(), [](const PatchLeaf& leaf) {
+      const int side = DetailMeasure::side(leaf.level);
+      const glm::ivec2 first = leaf.patch * side;
+      return first.x <= 200 && first.x + side >= 200 && first.y <= 150 && first.y + side >= 150;
+    });
+    EXPECT_TRUE(drawn) << mm_per_unit;
+    EXPECT_LT(leaves.size(), 20U) << "the ground below is not seen";
+  }
+}
+
+// What is drawn from pages is divided into squares of some samples: together they are the whole surface, each once.
+TEST(PatchTree, PartsOfItsLeavesCoverTheSurfaceOnce) {
+  const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
+  DetailMeasure measure;
+  measure.measure(field.reader());
+  PatchQuery q;
+  q.measure = &measure;
+  q.reader = field.reader();
+  q.placing = placingOf(field.grid());
+  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 20.0;
+  const glm::dvec2 half = 0.5 * q.placing.extent();
+  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
+  q.camera = Camera::fit(View{}, box, box, {0, 0, 900, 600});
+  const PatchTree tree(q);
+  std::vector<int> covered(399 * 299, 0);  // cells
+  for (const PatchLeaf& part : tree.parts(6)) {
+    const int side = DetailMeasure::side(part.level);
+    ASSERT_LE(side, 64);
+    const glm::ivec2 first = part.patch * side;
+    for (int r = first.y; r < std::min(first.y + side, 299); ++r)
+      for (int c = first.x; c < std::min(first.x + side, 399); ++c)
+        ++covered[static_cast<std::size_t>(r * 399 + c)];
+  }
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), 399 * 299);
+}
+
+TEST(PatchChoice, CountsTheVerticesOfAllThatItDraws) {
+  PatchChoice choice;
+  EXPECT_EQ(choice.vertices(), 0);
+  choice.patches.resize(5);
+  EXPECT_EQ(choice.vertices(), 5 * gpu::kPatchVertices);
+  choice.seams.resize(3);
+  choice.walls.resize(2);
+  EXPECT_EQ(choice.vertices(), 5 * gpu::kPatchVertices + 3 * gpu::kSeamVertices + 2 * gpu::kWallVertices);
+  // Two triangles a cell; a seam joins both sides of its strip.
+  EXPECT_EQ(choice.triangles(), (5 * gpu::kPatchCells + 2 * 3 + 2) * 2 * gpu::kPatchCells);
+}
+
 TEST(PatchTreeCache, AreWhatChoosingAgainGivesAfterEveryChange) {
   const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
   engine::LiveField live(field, engine::Growth::kAllowed);

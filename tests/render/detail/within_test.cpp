@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/detail/damage.h"
 #include "render/detail/patches.h"
 #include "tests/render/support/fields.h"
 
@@ -74,6 +75,46 @@ TEST(HeightsWithin, OfASmallRectangleAreThoseOfTheBlocksThatItTouches) {
     ASSERT_EQ(found.min, low) << first.x << ' ' << first.y << " to " << last.x << ' ' << last.y;
     ASSERT_EQ(found.max, high) << first.x << ' ' << first.y << " to " << last.x << ' ' << last.y;
   }
+}
+
+// Edges of patches are lines of samples, without width: seams and walls are still drawn.
+TEST(Within, TheWholePlotKeepsEveryPatchSeamAndWallAndBesideItNone) {
+  const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), [](int c, int r) {
+    return c < 100 ? 0.3 * std::sin(1.9 * c) * std::cos(2.3 * r) : 0.0;  // fine patches beside coarse ones
+  });
+  DetailMeasure measure;
+  measure.measure(field.reader());
+  PatchQuery q;
+  q.measure = &measure;
+  q.reader = field.reader();
+  q.placing = placingOf(field.grid());
+  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
+  const glm::dvec2 half = 0.5 * q.placing.extent();
+  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
+  const Rectangle plot{0, 0, 900, 600};
+  View view;
+  view.elevation_deg = 40.0;
+  q.camera = Camera::fit(view, box, box, plot);
+  const PatchChoice choice = choosePatches(q);
+  ASSERT_FALSE(choice.seams.empty());
+  ASSERT_FALSE(choice.walls.empty());
+  const PatchChoice all = within(choice, q, plot);
+  EXPECT_EQ(all.patches.size(), choice.patches.size());
+  EXPECT_EQ(all.seams.size(), choice.seams.size());
+  EXPECT_EQ(all.walls.size(), choice.walls.size());
+  EXPECT_EQ(all.whole, choice.whole);
+  // In four quarters each is in one at least.
+  std::size_t patches = 0, seams = 0, walls = 0;
+  for (const Rectangle& quarter :
+       {Rectangle{0, 0, 450, 300}, {450, 0, 450, 300}, {0, 300, 450, 300}, {450, 300, 450, 300}}) {
+    const PatchChoice part = within(choice, q, quarter);
+    EXPECT_LT(part.patches.size(), choice.patches.size());
+    patches += part.patches.size(), seams += part.seams.size(), walls += part.walls.size();
+  }
+  EXPECT_GE(patches, choice.patches.size());
+  EXPECT_GE(seams, choice.seams.size());
+  EXPECT_GE(walls, choice.walls.size());
+  EXPECT_TRUE(within(choice, q, {}).patches.empty());
 }
 
 }  // namespace
