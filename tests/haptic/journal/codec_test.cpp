@@ -5,8 +5,10 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "engine/formats/formats.h"
+#include "engine/session/line_codec.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/journal/session_player.h"
@@ -355,6 +357,39 @@ RC_GTEST_PROP(MarkCodec, ChangesPutOnTheFieldBeforeGiveTheOneAfter, ()) {
   const auto twice = haptic::applyMarkChanges(*back, changes);
   RC_ASSERT(twice.has_value() && engine::contentHash(*twice) == engine::contentHash(after));
   RC_ASSERT(!haptic::applyMarkChanges(before, changes + "x").has_value());
+}
+
+// Locating an edge line and undoing it: lines and marks, to the bit.
+TEST(LineChange, LeadsFromOneVersionToTheOtherAndCutAnywhereToNone) {
+  engine::Grid grid;
+  grid.width = 200;
+  grid.height = 90;
+  std::vector<std::uint8_t> marks(200 * 90, 0), other(marks);
+  marks[4000] = other[17] = other[9000] = 1;
+  const std::vector<float> z(marks.size(), 1.0F);
+  const auto lines = [](double y) {
+    engine::EdgeLine line;
+    line.id = 4;
+    for (int i = 0; i < 20; ++i) {
+      engine::EdgePoint p;
+      p.position = {10.0 + i, y};
+      p.located = i % 3 != 0;
+      line.points.push_back(p);
+    }
+    return std::make_shared<const std::vector<engine::EdgeLine>>(1, line);
+  };
+  const engine::Version before = engine::makeField(grid, z, marks).withLines(lines(30.0));
+  const engine::Version after = engine::makeField(grid, z, other).withLines(lines(41.5));
+  for (const auto& [from, to] : {std::pair{before, after}, {after, before}, {before, before}}) {
+    const std::string change = haptic::packLineChange(from, to);
+    const auto made = haptic::applyLineChange(from, change);
+    ASSERT_TRUE(made) << made.error().line();
+    EXPECT_EQ(engine::contentHash(*made), engine::contentHash(to));
+    ASSERT_NE(made->lines(), nullptr);
+    EXPECT_EQ(engine::packLines(made->lines()), engine::packLines(to.lines()));
+    for (std::size_t size = 0; size < change.size(); ++size)
+      EXPECT_FALSE(haptic::applyLineChange(from, change.substr(0, size))) << size;
+  }
 }
 
 }  // namespace
