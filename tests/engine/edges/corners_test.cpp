@@ -45,6 +45,23 @@ TEST(Corners, TwoEndsMeetWhereTheirDirectionsDo) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(lines[k].points.size(), met[k].points.size());
 }
 
+TEST(Corners, EndsThatMeetAlreadyStayAsTheyAre) {
+  const std::vector<EdgeLine> before{
+      cornerLine({{10.0, 20.0}, {39.98, 20.0}}), cornerLine({{40.0, 50.0}, {40.0, 20.02}}),
+      cornerLine({{60.0, 20.0}, {40.05, 20.0}}),
+      // Its own two ends, around a corner.
+      cornerLine({{70.1, 70.0}, {90.0, 70.0}, {90.0, 90.0}, {70.0, 90.0}, {70.0, 70.1}})};
+  std::vector<EdgeLine> lines = before;
+  extendEnds(lines, 0, 100, 100);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    EXPECT_EQ(backOf(lines[k]), backOf(before[k])) << k;
+    if (k == 3) {
+      EXPECT_EQ(frontOf(lines[k]), frontOf(before[k]));
+    }
+    EXPECT_EQ(lines[k].points.size(), before[k].points.size()) << k;
+  }
+}
+
 TEST(Corners, AnEndMeetsALineAndTheBorder) {
   std::vector<EdgeLine> lines{cornerLine({{2.0, 30.25}, {97.5, 30.25}}),
                               cornerLine({{50.0, 60.0}, {50.0, 33.0}}),

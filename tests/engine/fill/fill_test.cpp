@@ -402,6 +402,29 @@ TEST(Fill, TakesWhatRimThereIs) {
   }
 }
 
+// Behind a line that ends within the hole there is no rim: it is filled around the line's end.
+TEST(Fill, GoesRoundTheEndOfALineIntoWhatHasNoRimOfItsOwn) {
+  const auto plane = [](int c, int r) { return 0.5 * c + 0.25 * r; };
+  const Where all_but_four = [](int c, int r) { return !((c == 20 || c == 25) && (r == 3 || r == 8)); };
+  EdgeLine line;
+  for (int i = 0; i <= 20; ++i) {
+    EdgePoint p;
+    p.position = {9.5, i};
+    p.located = true;
+    line.points.push_back(p);
+  }
+  const Version scan =
+      scanOf(31, 31, plane, all_but_four).withLines(std::make_shared<const std::vector<EdgeLine>>(1, line));
+  for (const FillMethod method : {FillMethod::kMembrane, FillMethod::kCurvature}) {
+    const Filled filled = fill(scan, by(method, true));
+    EXPECT_EQ(summarize(filled.field).no_data, 0);
+    if (method == FillMethod::kMembrane) {
+      EXPECT_GE(summarize(filled.field).min, plane(20, 3) - 1e-4);
+      EXPECT_LE(summarize(filled.field).max, plane(25, 8) + 1e-4);
+    }
+  }
+}
+
 TEST(Fill, FillsRingsInEachOther) {
   const auto bowl = [](int c, int r) {
     return 1e-3 * ((c - 200.0) * (c - 200.0) + (r - 200.0) * (r - 200.0));

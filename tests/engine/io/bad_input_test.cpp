@@ -289,6 +289,18 @@ TEST(BadInput, AsciiGridsSayWhereTheyAreWrong) {
       std::string::npos);
 }
 
+TEST(BadInput, AsciiGridsWithoutAPositiveSpacingAreRefused) {
+  const TempFolder folder;
+  for (const char* spacing :
+       {"cellsize 0", "cellsize -1", "dx 0\ndy 1", "dx 1\ndy 0", "dx -1\ndy 1", "dx 1\ndy -1"})
+    EXPECT_NE(
+        refusalOf(folder, "a.asc",
+                  "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\n" + std::string(spacing) + "\n1 2\n3 4\n")
+            .what.find("no positive cellsize"),
+        std::string::npos)
+        << spacing;
+}
+
 TEST(BadInput, PointFilesSayWhereTheyAreWrong) {
   const TempFolder folder;
   EXPECT_NE(refusalOf(folder, "a.xyz", "1 2 3\n4 5\n").what.find("line 2"), std::string::npos);

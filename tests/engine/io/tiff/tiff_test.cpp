@@ -506,8 +506,12 @@ TEST(Tiff, ACloudOptimisedFileHasOverviewsAndEveryBit) {
   const Version field = makeField(grid, z);
   ExportOptions options;
   options.cloud_optimised = true;
-  const auto written = save(field, folder.file("a.tif"), options);
+  JobControl job;
+  const auto written = exportField(field, folder.file("a.tif"), options, job);
   ASSERT_TRUE(written) << written.error().line();
+  EXPECT_EQ(job.stage(), std::string("overviews"));
+  EXPECT_EQ(job.total(), 100U);
+  EXPECT_EQ(job.done(), job.total());
   FETTLE_LOAD(again, folder.file("a.tif"));
   EXPECT_EQ(contentHash(again.field), contentHash(field));
   EXPECT_EQ(again.field.grid(), grid);
