@@ -447,5 +447,49 @@ TEST(FitRegions, LieBetweenLines) {
   EXPECT_NEAR(left->shape.direction.x, -std::sqrt(0.5), 1e-7);
 }
 
+// Lines in any direction, closed ones and a single point, against the distance of every sample from every segment.
+TEST(FitRegions, AreAllSamplesFartherThanTheMarginFromEveryLine) {
+  const Version field = fieldWith({70, 50, 1.0, 1.0}, [](double x, double y) { return 0.1 * x + 0.05 * y; });
+  const auto lineOf = [](const std::vector<glm::dvec2>& points, bool closed) {
+    EdgeLine line;
+    line.closed = closed;
+    for (const glm::dvec2& p : points) line.points.push_back({.position = p});
+    return line;
+  };
+  const std::vector<EdgeLine> lines{lineOf({{-5.0, 3.3}, {20.2, 31.7}, {26.1, 60.0}}, false),
+                                    lineOf({{40.4, 10.1}, {61.7, 18.3}, {52.2, 39.9}, {38.8, 30.2}}, true),
+                                    lineOf({{66.0, 46.0}}, false),
+                                    lineOf({{30.0, 45.0}, {36.0, 45.0}}, false)};
+  for (const double margin : {1.1, 2.6}) {
+    const auto covered = [&](const glm::dvec2& at) {
+      for (const EdgeLine& line : lines) {
+        const std::size_t n = line.points.size();
+        for (std::size_t i = 0; i < n; ++i) {
+          if (!line.closed && i + 1 == n && n > 1) continue;
+          const glm::dvec2 a = line.points[i].position, way = line.points[(i + 1) % n].position - a;
+          const double square = glm::dot(way, way);
+          const double share = square > 0.0 ? std::clamp(glm::dot(at - a, way) / square, 0.0, 1.0) : 0.0;
+          if (glm::length(at - a - share * way) <= margin) return true;
+        }
+      }
+      return false;
+    };
+    JobControl job;
+    const auto regions = regionsBetween(field, lines, {.margin = margin, .least = 1}, job);
+    ASSERT_TRUE(regions);
+    std::int64_t free = 0, found = 0;
+    for (int r = 0; r < 50; ++r)
+      for (int c = 0; c < 70; ++c) {
+        const glm::dvec2 at(c, r);
+        free += covered(at) ? 0 : 1;
+        EXPECT_EQ(regionAt(*regions, at) < 0, covered(at)) << c << ' ' << r;
+      }
+    for (const auto& region : *regions) found += region.samples;
+    EXPECT_EQ(found, free);
+    EXPECT_GE(regions->size(), 3U) << "within the ring, and on both sides of the line";
+    EXPECT_EQ(job.done(), job.total());
+  }
+}
+
 }  // namespace
 }  // namespace fettle::engine
