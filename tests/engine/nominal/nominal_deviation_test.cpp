@@ -119,6 +119,20 @@ TEST(NominalDeviation, OfASphereIsThatOfTheSphere) {
   EXPECT_GT(vertical->max, 0.09);
 }
 
+TEST(PlacedNominal, IsWhereTheFilesPlaceBothWhateverTheUnitOfThePartIs) {
+  // A part of 10 x 5 mm at (300, -200) mm, stated in micrometres; the mesh is in millimetres.
+  Grid grid = partGrid(101, 51, 100.0, 100.0);
+  grid.lateral_unit = {"um", 1e-3};
+  grid.origin_x = 300'000.0;
+  grid.origin_y = -200'000.0;
+  const NominalMesh mesh = meshOf(surfaceOver(12, 12, 5, 5, slope, 299.0, -202.5));
+  const auto placed = placedAsStored(mesh, grid);
+  ASSERT_TRUE(placed);
+  EXPECT_EQ(placed->place, NominalPlace::kWorld);
+  EXPECT_NEAR(placed->motion.shift.x, -1.0, 1e-9);
+  EXPECT_NEAR(placed->motion.shift.y, -2.5, 1e-9);
+}
+
 TEST(NominalHeights, AreSeenToComeTileByTile) {
   const NominalMesh mesh = meshOf(surfaceOver(5, 5, 5, 5, [](double, double) { return 1.0; }));
   JobControl job;

@@ -66,6 +66,9 @@ TEST(Bands, the_fewest_shards_that_fit_are_found_or_none) {
   EXPECT_GT(memoryOf(found - 1), std::uint64_t{400} << 20);
   EXPECT_EQ(fewestShards(grid, box, false, 2, 1 << 20), 0);
   EXPECT_EQ(fewestShards(grid, box, false, 2, std::uint64_t{1} << 40), 1);
+  // Memory for exactly so many is enough for them.
+  for (const int count : {1, 2, 7, found, 256})
+    EXPECT_LE(fewestShards(grid, box, false, 2, memoryOf(count)), count);
 }
 
 TEST(Bands, filters_of_the_whole_field_are_known_as_such) {

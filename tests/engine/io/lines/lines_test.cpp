@@ -202,6 +202,29 @@ TEST_P(LineFormats, AreRecognisedByTheirFirstBytes) {
   EXPECT_EQ(lineExtensionOf("\x89PNG"), "");
 }
 
+// What other programs style and select lines by.
+TEST(LineFiles, OfGeoJsonSayOfEachRunWhatItIs) {
+  const TempFolder folder;
+  const std::string path = folder.file("lines.geojson");
+  ASSERT_TRUE(exportLines(path, sampleLines(), fineGrid()));
+  const std::string text = readBytes(path);
+  const auto times = [&](std::string_view part) {
+    int n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  const int runs = times("\"Feature\"");
+  EXPECT_GE(runs, 4);
+  EXPECT_EQ(times("\"line\": 7") + times("\"line\": 9"), runs);
+  EXPECT_EQ(times("\"closed\": 1"), 1);
+  EXPECT_EQ(times("\"closed\": 0"), runs - 1);
+  EXPECT_EQ(times("\"located\": 1") + times("\"located\": 0"), runs);
+  EXPECT_EQ(times("\"kind\": \"crease\""), 1);
+  EXPECT_EQ(times("\"kind\": \"step\""), runs - 1);
+  EXPECT_EQ(times("\"deviation\": "), runs);
+  EXPECT_EQ(times("\"step\": "), runs);
+}
+
 TEST(LineFiles, OfASpreadsheetHaveSemicolons) {
   const TempFolder folder;
   const std::string path = folder.file("lines.csv");

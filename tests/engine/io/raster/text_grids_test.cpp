@@ -160,6 +160,7 @@ void makePng(const std::string& path, int width, int height, int bits, int color
     png_set_PLTE(png, info, &red, 1);
   }
   png_write_info(png, info);
+  png_set_packing(png);  // of samples below 8 bits too a byte each is given
   std::vector<std::vector<unsigned char>> rows;
   std::vector<png_bytep> pointers;
   for (int r = 0; r < height; ++r) {
@@ -189,6 +190,21 @@ TEST(Png, InterlacedSixteenBitPicturesKeepTheirBytesInOrder) {
       for (int c = 0; c < 37; ++c)
         ASSERT_EQ(stored(scan.field, r, c), values[static_cast<std::size_t>(r * 37 + c)]) << interlaced;
   }
+}
+
+TEST(Png, SamplesOfOneTwoAndFourBitsAreNumbersAsTheyAreStored) {
+  const TempFolder folder;
+  for (const int bits : {1, 2, 4})
+    for (const bool interlaced : {false, true}) {
+      std::vector<std::uint16_t> values;
+      for (int i = 0; i < 13 * 9; ++i) values.push_back(static_cast<std::uint16_t>(i * 7 % 11 % (1 << bits)));
+      makePng(folder.file("a.png"), 13, 9, bits, PNG_COLOR_TYPE_GRAY, interlaced, values);
+      FETTLE_LOAD(scan, folder.file("a.png"));
+      for (int r = 0; r < 9; ++r)
+        for (int c = 0; c < 13; ++c)
+          ASSERT_EQ(stored(scan.field, r, c), values[static_cast<std::size_t>(r * 13 + c)])
+              << bits << " bits, " << c << ' ' << r;
+    }
 }
 
 TEST(Png, EightBitsAreTakenWithAWarningColourAndPaletteAreRefused) {
