@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -296,6 +297,29 @@ TEST(Hills, OfHardSurfacesAreAFigureOrAReason) {
   job.cancel();
   EXPECT_EQ(segmentHills(surfaceOf(400, 400, [](int c, int r) { return c * r; }), 0.0, job).error().kind,
             ErrorKind::kCancelled);
+}
+
+// Its curvature needs a sample on each side, and no more than that.
+TEST(Features, APeakBesideTheRimHasACurvatureAndOneOnItHasNone) {
+  for (const auto& [column, row, curved] : {std::tuple{4, 3, 1},
+                                            {1, 1, 1},
+                                            {7, 3, 1},
+                                            {4, 5, 1},
+                                            {7, 5, 1},
+                                            {0, 3, 0},
+                                            {8, 3, 0},
+                                            {4, 0, 0},
+                                            {4, 6, 0}}) {
+    Surface surface = surfaceOf(9, 7, [&](int c, int r) {
+      return -0.125 * ((c - column) * (c - column) + 2.0 * (r - row) * (r - row));
+    });
+    const FeatureParameters features = featuresOf(surface, 10.0);
+    EXPECT_EQ(features.hills, 1);
+    EXPECT_EQ(features.curved, curved) << column << ' ' << row;
+    if (curved > 0) {
+      EXPECT_NEAR(features.spc, 0.5 * (0.25 + 0.5), 1e-6) << column << ' ' << row;
+    }
+  }
 }
 
 }  // namespace

@@ -40,6 +40,9 @@ TEST(SpaceMouseCodec, ButtonsAreABitMaskFromByteOneAndLeaveTheAxes) {
   EXPECT_EQ(s.buttons, kSecondaryButton);
   EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 5>{3, 1, 0, 0, 0x80}, s));
   EXPECT_EQ(s.buttons, 0x80000001U);
+  // A longer report: 32 buttons, and bytes that are none.
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 7>{3, 4, 0, 0, 0, 0xFF, 0xFF}, s));
+  EXPECT_EQ(s.buttons, 4U);
   EXPECT_EQ(s.axes[5], 6);
 }
 
