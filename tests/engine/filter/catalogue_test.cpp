@@ -1,5 +1,6 @@
 #include "engine/filter/catalogue.h"
 
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -32,6 +33,54 @@ TEST(Catalogue, TriesOnlySpecsThatAreValid) {
       spec.range_sigma = trial.noises;
       EXPECT_TRUE(validate(spec)) << filter.word << " " << validate(spec).error().line();
     }
+}
+
+TEST(Catalogue, WhatLiesOutsideAStatedRangeIsRefusedAndItsEndsAreNot) {
+  const auto wrong = [](const FilterSpec& spec) {
+    const Status status = validate(spec);
+    EXPECT_TRUE(status || status.error().kind == ErrorKind::kInput);
+    return !status;
+  };
+  for (const Filter& filter : filters()) {
+    FilterSpec spec;
+    spec.kind = filter.kind;
+    if (filter.range_sigma.exists()) spec.range_sigma = filter.range_sigma.most;
+    if (filter.nesting.exists()) {
+      for (const double bad :
+           {0.0, -1.0, 1.5 * filter.nesting.most, std::numeric_limits<double>::quiet_NaN()}) {
+        spec.nesting_mm = bad;
+        EXPECT_TRUE(wrong(spec)) << filter.word << ' ' << bad;
+      }
+      spec.nesting_mm = filter.nesting.most;
+    }
+    EXPECT_FALSE(wrong(spec)) << filter.word;
+    if (filter.range_sigma.exists()) {
+      for (const double good : {filter.range_sigma.least, filter.range_sigma.most}) {
+        spec.range_sigma = good;
+        EXPECT_FALSE(wrong(spec)) << filter.word << ' ' << good;
+      }
+      for (const double bad : {-1.0, 0.5 * filter.range_sigma.least, 1.5 * filter.range_sigma.most,
+                               std::numeric_limits<double>::quiet_NaN()}) {
+        spec.range_sigma = bad;
+        EXPECT_EQ(wrong(spec), bad != filter.range_sigma.least) << filter.word << ' ' << bad;
+      }
+      spec.range_sigma = filter.range_sigma.most;
+    } else {
+      spec.range_sigma = 1.0;
+      EXPECT_TRUE(wrong(spec)) << filter.word;
+      spec.range_sigma = 0.0;
+    }
+    if (!filter.window.exists()) continue;
+    const int least = static_cast<int>(filter.window.least), most = static_cast<int>(filter.window.most);
+    for (const int good : {least, most}) {
+      spec.window = good;
+      EXPECT_FALSE(wrong(spec)) << filter.word << ' ' << good;
+    }
+    for (const int bad : {least - 2, least + 1, most + 2, -3}) {
+      spec.window = bad;
+      EXPECT_TRUE(wrong(spec)) << filter.word << ' ' << bad;
+    }
+  }
 }
 
 TEST(Catalogue, SaysWhatAFilterOfDefaultsIs) {

@@ -318,4 +318,8 @@ HdError hdGetError() {
   return oldest;
 }
 
+const char* hdGetErrorString(unsigned code) {
+  return code == kCommunication ? "communication error" : "another error";
+}
+
 }  // extern "C"
