@@ -407,6 +407,20 @@ TEST_F(Drivers, ZeroOfADyingProgramGoesStraightToTheDevice) {
   EXPECT_EQ(zeroAllDevices(), 0);  // nothing is held any more
 }
 
+TEST_F(Drivers, NamesOfDevicesKeepTheirLetters) {
+  fake::Description description;
+  description.manufacturer = "Müller & Søn";
+  description.product_name = "Stift 5\u00b5m \u20ac \uac00 \U0001d11e";
+  description.serial = "\ufffd1";
+  fake::FakeHid hid(folder(), "named", description);
+  hid.plug();
+  const std::vector<HidInterface> found = hidInterfaces();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].manufacturer, description.manufacturer);
+  EXPECT_EQ(found[0].product_name, description.product_name);
+  EXPECT_EQ(found[0].serial, description.serial);
+}
+
 // A SpaceMouse on a thread of its own, repeating its reports while deflected, as the real ones do.
 class FakeSpaceMouse {
  public:

@@ -35,9 +35,19 @@ int global_error = 0;
 
 constexpr int kWriteTimeoutMs = 5000;
 
+// From UTF-8.
 wchar_t* wide(const std::string& text) {
   auto* copy = static_cast<wchar_t*>(std::calloc(text.size() + 1, sizeof(wchar_t)));
-  for (std::size_t i = 0; i < text.size(); ++i) copy[i] = static_cast<unsigned char>(text[i]);
+  wchar_t* end = copy;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80)
+      *end++ = byte;
+    else if (byte >= 0xC0)
+      *end++ = byte & (byte >= 0xF0 ? 0x07 : byte >= 0xE0 ? 0x0F : 0x1F);
+    else if (end != copy)
+      end[-1] = end[-1] << 6 | (byte & 0x3F);
+  }
   return copy;
 }
 
