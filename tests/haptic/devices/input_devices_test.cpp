@@ -140,7 +140,12 @@ TEST(HidKind, SpaceMiceAreKnownByIdAndTheirKeyboardInterfaceIsNotTaken) {
 // A loop that reads the mouse once a millisecond.
 class MouseLoop {
  public:
-  DeviceInput tick() { return mouse.readAt(++ms_ * kMs); }
+  DeviceInput tick() {
+    const DeviceInput input = mouse.readAt(++ms_ * kMs);
+    EXPECT_EQ(input.tool.has_value(), input.buttons != 0)
+        << "a tool is named during strokes and not between them";
+    return input;
+  }
   DeviceInput ticks(int n) {
     for (int i = 1; i < n; ++i) static_cast<void>(tick());
     return tick();
