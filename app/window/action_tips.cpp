@@ -38,7 +38,9 @@ constexpr Tip kTips[] = {
     {Action::kFillPreview, "Shows it beside the scan and changes nothing."},
     {Action::kLevelPreview, "Shows it beside the scan and changes nothing."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},
-    {Action::kLevelLines, "For scanners whose rows lie at different heights: stripes go."},
+    {Action::kLevelLines,
+     "For scanners whose rows lie at different heights: stripes go. Slow forms from line to line go as well: "
+     "look at a preview first."},
     {Action::kShowMarks, "They count whether they are shown or not."},
     {Action::kKeepWithin, "Strokes move no sample farther than this from the scan."},
 };

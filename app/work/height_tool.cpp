@@ -30,7 +30,7 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
                     const engine::Version& before) {
   const engine::Grid& grid = before.grid();
   if (std::holds_alternative<engine::LineOptions>(maker)) {
-    const ReadAs as = readLengthAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
+    const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
     return fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
   }
   const engine::Filled& filled = heights.filled;
@@ -44,8 +44,8 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   stay(filled.too_many, "have too many samples");
   stay(filled.no_rim, "have no height next to them");
   const engine::BeyondBefore beyond = engine::beyondBefore(before, heights.field);
-  const ReadAs as =
-      readLengthAs(beyond.below + beyond.above, before.grid().height_unit.mm, before.grid().height_unit.name);
+  const ReadAs as = readOnScreenAs(beyond.below + beyond.above, before.grid().height_unit.mm,
+                                   before.grid().height_unit.name);
   if (beyond.below > 0.0)
     text += fmt::format("; down to {:.3g} {} below all else: a membrane stays between the heights of the rim",
                         beyond.below / as.size, as.name);
@@ -95,7 +95,22 @@ void HeightTool::applyPreview() {
 
 void HeightTool::dropPreview() {
   preview_.reset();
+  forgetFound();
+}
+
+void HeightTool::forgetFound() noexcept {
   found_.clear();
+  made_from_.reset();
+  made_ = false;
+}
+
+bool HeightTool::forgetUndone(const LoopClient& client) {
+  if (!made_from_) return false;
+  const bool is_before = client.newest() == *made_from_;
+  made_ |= !is_before;  // the loop takes it in some ticks later
+  if (!is_before || !made_) return false;
+  forgetFound();
+  return true;
 }
 
 void HeightTool::cancel() noexcept {
@@ -137,6 +152,7 @@ bool HeightTool::takeEarly() {
 bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = dropOutdated(client);
   changed |= takeEarly();
+  changed |= forgetUndone(client);
   const bool dropped = working_.cancelling();
   if (auto result = working_.take()) {
     changed = true;
@@ -151,7 +167,9 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   // Under a stroke the field is another one every tick.
   if (done_ && !(step && client.strokeIsUnderWay())) {
     changed = true;
+    forgetFound();
     found_ = foundIn(done_->heights, wanted_.maker, done_->base);
+    if (step) made_from_ = done_->base;
     if (!step)
       preview_ = Preview{wanted_.maker, *std::move(done_)};
     else if (!(done_->base == done_->heights.field) &&
@@ -201,7 +219,7 @@ void HeightTool::clear() {
   cancel();
   preview_.reset();
   base_ = {};
-  found_.clear();
+  forgetFound();
 }
 
 }  // namespace fettle::app

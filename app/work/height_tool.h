@@ -81,8 +81,11 @@ class HeightTool {
   };
   void make(const haptic::HeightsMaker& maker);
   void dropEarly();
+  void forgetFound() noexcept;
   [[nodiscard]] bool dropOutdated(const LoopClient& client);
   [[nodiscard]] bool takeEarly();
+  /// What was found goes with the step, when it is undone.
+  [[nodiscard]] bool forgetUndone(const LoopClient& client);
   void start(LoopClient& client);
 
   std::optional<Wanted> asked_;  // to be worked out
@@ -93,6 +96,8 @@ class HeightTool {
   std::shared_ptr<Slot> slot_;
   std::optional<engine::EarlyPicture> early_;
   std::string found_;
+  std::optional<engine::Version> made_from_;  // by the step that was found; nothing: it was none
+  bool made_ = false;                         // and the step is there
   Background<Work> working_;
 };
 

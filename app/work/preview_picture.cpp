@@ -7,7 +7,7 @@
 namespace fettle::app {
 
 std::string offText(double rms, bool estimated, const engine::Grid& grid) {
-  const ReadAs as = readLengthAs(rms, grid.height_unit.mm, grid.height_unit.name);
+  const ReadAs as = readOnScreenAs(rms, grid.height_unit.mm, grid.height_unit.name);
   return fmt::format("approximate, off by {}{:.3g} {} rms", estimated ? "about " : "", rms / as.size,
                      as.name);
 }

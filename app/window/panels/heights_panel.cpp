@@ -28,25 +28,35 @@ void linesFields(engine::LineOptions& lines) {
     const char* name;
     engine::LineMethod method;
     int degree;
+    const char* says;
   };
-  constexpr Row kRows[] = {{"median", engine::LineMethod::kMedian, 0},
-                           {"mean", engine::LineMethod::kPolynomial, 0},
-                           {"straight line", engine::LineMethod::kPolynomial, 1},
-                           {"polynomial 2", engine::LineMethod::kPolynomial, 2},
-                           {"polynomial 3", engine::LineMethod::kPolynomial, 3},
-                           {"difference", engine::LineMethod::kDifference, 0},
-                           {"matching", engine::LineMethod::kMatching, 0}};
+  constexpr Row kRows[] = {
+      {"median", engine::LineMethod::kMedian, 0,
+       "All lines get the same median height: what fills less than half of a line does not count."},
+      {"mean", engine::LineMethod::kPolynomial, 0,
+       "All lines get the same mean height: everything on a line counts."},
+      {"straight line", engine::LineMethod::kPolynomial, 1, "All lines get the same mean height and slope."},
+      {"polynomial 2", engine::LineMethod::kPolynomial, 2, "The same mean height, slope and bend."},
+      {"polynomial 3", engine::LineMethod::kPolynomial, 3, "The same with one bend more."},
+      {"difference", engine::LineMethod::kDifference, 0,
+       "From line to line by the middle of their differences: features may fill a line."},
+      {"matching", engine::LineMethod::kMatching, 0,
+       "From line to line by what is alike in both: best where there is noise."}};
   int chosen = 0;
   for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
   beginFields();
   (void)field("by", [&] {
-    if (!ImGui::BeginCombo("##lines by", kRows[chosen].name)) return false;
-    for (const Row& row : kRows)
+    const bool open = ImGui::BeginCombo("##lines by", kRows[chosen].name);
+    explain(kRows[chosen].says);
+    if (!open) return false;
+    for (const Row& row : kRows) {
       if (ImGui::Selectable(row.name, &row == &kRows[chosen])) {
         lines.method = row.method;
         lines.degree = row.degree;
       }
+      explain(row.says);
+    }
     ImGui::EndCombo();
     return true;
   });

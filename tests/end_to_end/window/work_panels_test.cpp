@@ -112,7 +112,9 @@ TEST_F(WindowTest, holes_are_filled_and_lines_levelled_as_steps) {
   EXPECT_NE(after["heights_found"].get<std::string>().find("holes filled"), std::string::npos);
   EXPECT_EQ(user.key("alt+r")["steps"], 2);
   (void)user.key("ctrl+z");
-  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  const State undone = user.key("ctrl+z");
+  EXPECT_EQ(undone["steps"], 0);
+  EXPECT_EQ(undone["heights_found"], "") << "nothing is filled any more";
   (void)user.key("ctrl+shift+z");
   saveAs(user, work);
   user.at({20, 790});
@@ -147,7 +149,9 @@ TEST_F(WindowTest, filled_holes_and_levelled_lines_are_previewed_beside_the_scan
   const State filled = user.click("Fill holes");
   EXPECT_EQ(filled["steps"], 1);
   EXPECT_TRUE(filled["heights_preview"].is_null());
-  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  const State undone = user.key("ctrl+z");
+  EXPECT_EQ(undone["steps"], 0);
+  EXPECT_EQ(undone["heights_found"], "");
   EXPECT_EQ(user.key("ctrl+r")["heights_preview"], "Level rows: median");
   user.at({20, 790});
   (void)user.look("levelled beside the scan");
