@@ -453,7 +453,7 @@ TEST(LoopTick, WhatWasMarkedJustBeforeTheEndIsReportedByTheStop) {
   ASSERT_TRUE(bench.poll().empty()) << "ticks fewer than those between two reports";
   bench.loop.stop();
   const LoopEvent event = bench.newest(EventKind::kStrokeEnded);
-  EXPECT_TRUE(event.version == bench.field());
+  ASSERT_TRUE(event.version == bench.field());
   EXPECT_GT(engine::summarize(event.version).marked, 0);
 }
 
