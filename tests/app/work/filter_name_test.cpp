@@ -33,7 +33,8 @@ TEST(FilterName, a_preview_says_what_it_is_until_it_is_exact) {
   picture.off->estimated = true;
   picture.exact = 0.12;
   picture.untouched = 0.002;
-  EXPECT_EQ(previewState(picture, grid), "approximate, off by about 238 \u00b5m rms, 12 % exact, 1 % to come");
+  EXPECT_EQ(previewState(picture, grid),
+            "approximate, off by about 238 \u00b5m rms, 12 % exact, 1 % to come");
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ class HandTools : public WindowTest {
   // Only these panels are open.
   void openOnly(const std::vector<std::string>& names, const State& others = State::object()) const {
     State panels;
-    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan"})
-      panels[closed] = false;
+    for (const char* closed : {"Tool", "Filters", "Steps", "Change since the scan"}) panels[closed] = false;
     for (const std::string& name : names) panels[name] = true;
     State settings{{"edge_lines", false}, {"panels", panels}};
     settings.update(others);

@@ -100,8 +100,7 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   const auto program = startHand();
   User user(display, *program, "panel");
   program->until("force", givesForce);
-  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"})
-    (void)user.click(header);
+  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
   (void)user.click("Haptics");
   for (const char* text : {"simulated hand", "connected", "force, 0 to", "per second", "0.5 ms"})
     EXPECT_TRUE(user.reads(text)) << text;
@@ -140,8 +139,7 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
   const auto program = startHand();
   User user(display, *program, "stiffness");
   program->until("force", givesForce);
-  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"})
-    (void)user.click(header);
+  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
   (void)user.click("Haptics");
   EXPECT_EQ(program->now()["stiffness_n_per_mm"], 1.0);
   EXPECT_TRUE(user.readsScrolled("6 N/mm at most")) << "next to the field";
@@ -177,8 +175,7 @@ TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
   ASSERT_TRUE(has(opened_with, "smoothing"));
   ASSERT_FALSE(has(opened_with, "friction"));
   (void)user.key("7");
-  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"})
-    (void)user.click(header);
+  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
   (void)user.click("Haptics");
   EXPECT_TRUE(has(user.click("friction"), "friction"));
   EXPECT_TRUE(has(user.click("edge snap"), "edge_snap"));

@@ -20,8 +20,7 @@ using State = User::State;
 // Only this panel is open.
 void openPanel(const TempFolder& folder, const char* name) {
   State panels;
-  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan"})
-    panels[other] = false;
+  for (const char* other : {"Tool", "Filters", "Steps", "Change since the scan"}) panels[other] = false;
   panels[name] = true;
   std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};
 }

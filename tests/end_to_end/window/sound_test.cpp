@@ -34,8 +34,7 @@ class SoundTest : public WindowTest {
   // That panel alone.
   static State openHaptics(User& user) {
     (void)user.key("7");
-    for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"})
-      (void)user.click(header);
+    for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
     return user.click("Haptics");
   }
 };
