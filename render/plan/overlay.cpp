@@ -252,7 +252,7 @@ Layout layOut(const View& view, Decoration decoration, int panels, Titles titles
   layout.text_px = std::max(10, static_cast<int>(std::lround(15.0 * layout.scale)));
   const bool above = titles == Titles::kAbove;
   layout.title_px = static_cast<int>(std::lround(layout.text_px * (above ? 1.2 : 1.0)));
-  layout.title_above = (above ? 14.0 : 5.0) * layout.scale;
+  layout.title_above = (above ? 14.0 : 3.0) * layout.scale;
   const double s = layout.scale;
   // Below this size the decorations would leave no room for the surface.
   layout.decorated = decoration == Decoration::kFull && view.width >= 200 && view.height >= 140;

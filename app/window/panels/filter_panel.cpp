@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
+#include "app/work/read_units.h"
 
 namespace fettle::app {
 namespace {
@@ -132,7 +133,7 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
   }
 }
 
-void previewList(const render::FieldUnits& units, bool anything_marked, FilterPreview& filters) {
+void previewList(bool anything_marked, FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -142,10 +143,12 @@ void previewList(const render::FieldUnits& units, bool anything_marked, FilterPr
     // Broken here, or a narrow panel would break a number at its point.
     const bool nothing_marked =
         v.spec.scope == engine::FilterScope::kOnlyMarks && v.result.report.changed == 0 && !anything_marked;
+    const engine::LengthUnit& unit = v.base.grid().height_unit;
+    const ReadAs as = readOnScreenAs(v.result.report.max_change, unit.mm, unit.name);
     const std::string came = nothing_marked
                                  ? "nothing is marked: with \"only marks\" nothing changes"
-                                 : fmt::format("{} changed, max {}", v.result.report.changed,
-                                               lengthText(v.result.report.max_change, units.change, 3));
+                                 : fmt::format("{} changed, max {:.3g} {}", v.result.report.changed,
+                                               v.result.report.max_change / as.size, as.name);
     ImGui::TextUnformatted(fmt::format("{}\n{}", filterName(v.spec), came).c_str());
     ImGui::PopTextWrapPos();
   }
@@ -176,7 +179,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);
-  previewList(context.units, context.client.field().reader().root().marked_children != 0, filters);
+  previewList(context.client.field().reader().root().marked_children != 0, filters);
   if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
 }
 

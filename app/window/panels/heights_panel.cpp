@@ -93,7 +93,9 @@ void makeButtons(const PanelContext& context, const HeightTool& heights, const h
                  const ButtonsOf& buttons) {
   const bool same = heights.filledLast() == std::holds_alternative<engine::FillOptions>(maker);
   const std::string preview = heights.previews(maker) ? "Drop preview" : "Preview";
-  actionButton((preview + "##" + buttons.name).c_str(), buttons.preview, context.act);
+  // As wide with either word, so that the button beside it stays where it is.
+  const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  actionButton((preview + "##" + buttons.name).c_str(), buttons.preview, context.act, wide);
   sameLineIfFits(buttons.name);
   actionButton(buttons.name, buttons.make, context.act);
   if (!same) return;

@@ -40,6 +40,10 @@ void workBar(const WorkProgress& progress, float width, const char* what) {
 
 void explain(std::string_view says) {
   if (says.empty() || !ImGui::IsItemHovered()) return;
+  // Beside a panel: over it the tip would hide what the field below says.
+  const float beside = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x;
+  if (beside > (kTip + 2.0F) * ImGui::GetFontSize())
+    ImGui::SetNextWindowPos(ImVec2(beside, ImGui::GetItemRectMin().y), ImGuiCond_Always, ImVec2(1.0F, 0.0F));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(kTip * ImGui::GetFontSize());
   ImGui::TextUnformatted(says.data(), says.data() + says.size());
@@ -53,8 +57,8 @@ void tip(Action action) {
   explain(fmt::format("{}: {}{}{}", s.name, keyText(s.key, s.modifiers), says.empty() ? "" : "\n", says));
 }
 
-void actionButton(const char* name, Action action, const Act& act) {
-  if (ImGui::Button(name)) act(action);
+void actionButton(const char* name, Action action, const Act& act, float width) {
+  if (ImGui::Button(name, ImVec2(width, 0.0F))) act(action);
   tip(action);
 }
 

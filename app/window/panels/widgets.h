@@ -25,14 +25,14 @@ void workBar(const WorkProgress& progress, float width, const char* what);
 /// Receives the actions of buttons, tick boxes and menus.
 using Act = std::function<void(Action)>;
 
-/// A tip of the last item, below it.
+/// A tip of the last item: to the left of its panel where there is room, else below it.
 void explain(std::string_view says);
 /// Shows what an action does and its keys as a tip of the last item.
 void tip(Action action);
 /// Text as wide as there is room.
 void writeWrapped(const std::string& text);
-/// A button and a tick box for an action, with its tip.
-void actionButton(const char* name, Action action, const Act& act);
+/// A button and a tick box for an action, with its tip. `width`: 0: as its name needs.
+void actionButton(const char* name, Action action, const Act& act, float width = 0.0F);
 void actionTick(const char* name, bool ticked, Action action, const Act& act);
 
 /// Puts the next button or tick box, with the label `text`, next to the last item where there is room for it,
