@@ -14,7 +14,7 @@ constexpr std::int64_t kAgain_ns = 25'000'000;  // between two frames of the win
 
 engine::Status HeadsetRoom::start(render::HeadsetOptions options, RoomScale scale,
                                   LoopClientOptions& client) {
-  client.controllers = controllersBeside(client.device);
+  client.controllers = controllers_ = controllersBeside(client.device);
   auto started = HeadsetView::start({std::move(options), scale, client.controllers, &render::Window::wake});
   if (!started) return tl::unexpected(started.error());
   headset_ = *std::move(started);
@@ -45,15 +45,18 @@ void HeadsetRoom::follow(Parts& parts, const DrawOptions& options, std::uint64_t
   if (!headset_) return;
   const HeadsetView::State state = headset_->state();
   note(state);
+  if (controllers_) controllers_->asked.store(parts.feedback.questions.pending(), std::memory_order_relaxed);
   if (!state.over) {
     if (!parts.document.isOpen()) return;
     HeadsetView::Picture picture = headsetPicture(parts, options);
     picture.field = document;
     picture.tip = tipLookOf(parts);
+    if (controllers_) picture.reader = controllers_->reader.load(std::memory_order_relaxed);
     headset_->show(std::move(picture));
     return;
   }
-  // The window goes on without it, and nothing that was done is lost.
+  // The window goes on without it, and nothing that was done is lost. The last of its input ends what hands held there.
+  takeInput(parts.window);
   parts.feedback.notices.push_back(
       state.error
           ? Notice{state.error->what, "the window continues; start fettle view --xr again for the headset"}

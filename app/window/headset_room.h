@@ -35,7 +35,8 @@ class HeadsetRoom {
  private:
   void note(const HeadsetView::State& state);
 
-  std::unique_ptr<HeadsetView> headset_;  // null without one
+  std::unique_ptr<HeadsetView> headset_;                 // null without one
+  std::shared_ptr<haptic::ControllerLink> controllers_;  // null: they are no tip
   HeadsetFigures figures_;
   std::int64_t shown_ns_ = 0;  // when the window's frame was last shown there
 };

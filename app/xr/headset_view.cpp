@@ -8,9 +8,6 @@ namespace {
 
 // A runtime that does not end the session when asked has this long.
 constexpr auto kEnding = std::chrono::seconds(2);
-// Cursor positions that the window has not taken: of a window that does not answer, the newest count.
-constexpr std::size_t kMostInput = 4096;
-
 constexpr std::uint8_t kRayOpacity = 150;
 
 // A ray's picture, the same all over.
@@ -97,7 +94,7 @@ engine::Status HeadsetView::takePicture() {
   }
   if (!next) return {};
   if (auto updated = picture_->update(next->shown); !updated) return updated;
-  if (!has_picture_ || next->field != now_.field) table_ = RoomTable(table_.scale());
+  if (!has_picture_ || next->field != now_.field) table_.remove();
   now_ = *std::move(next);
   now_.shown = {};  // the picture holds it
   has_picture_ = true;
@@ -126,16 +123,13 @@ void HeadsetView::follow(const render::RoomHands& hands) {
   last_frame_ = now;
   hands_ = ending_ ? render::RoomHands{} : hands;
   uses_.follow(hands_, seconds, screen_);
-  render::RoomHands hold = hands_;
-  for (std::size_t i = 0; i < hold.size(); ++i)
-    if (uses_.carries(i)) hold[i].squeeze = 0.0;
-  table_.follow(hold);
-  tip_.follow(hands_, uses_, table_, framing_);
+  table_.follow(uses_.holding());
+  tip_.follow(hands_, uses_, table_, framing_, now_.reader);
   for (std::size_t i = 0; i < hands_.size(); ++i) headset_->vibrate(i, tip_.vibration(i));
   if (uses_.input().empty() && !tip_.works()) return;
   {
     const std::lock_guard lock(mutex_);
-    if (input_.size() < kMostInput) input_.insert(input_.end(), uses_.input().begin(), uses_.input().end());
+    for (const ScreenInput& input : uses_.input()) appendInput(input, input_);
   }
   if (wake_) wake_();
 }
@@ -210,7 +204,8 @@ void HeadsetView::run(const std::stop_token& stop) {
     status = headset_->frame(frame);
     note();
   }
-  tip_.leave();
+  // What hands hold ends with it.
+  follow({});
   // The runtime and its device end here, where they were used.
   picture_.reset();
   std::vector<std::string> messages = headset_->validationMessages();

@@ -46,6 +46,7 @@ class HeadsetView {
     render::FrameInput input;
     std::uint64_t field = 0;
     TipLook tip;
+    std::uint64_t reader = 0;  ///< who reads the tip on this field: ControllerLink::reader
   };
   void show(Picture picture);
   /// The window's frame, for the screen in the room.

@@ -68,6 +68,7 @@ void RoomTable::place(const render::Framing& framing, const render::RoomPose& he
 }
 
 void RoomTable::putAt(const render::Framing& framing) {
+  ++placements_;
   const double side = std::max(framing.longerSide(), 1e-6);
   metres_per_mm_ = scale_ == RoomScale::kTrue ? 1e-3 : kSide_m / side;
   glm::dvec3 below = framing.middle();

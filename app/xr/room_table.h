@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include <glm/vec3.hpp>
@@ -26,7 +27,12 @@ class RoomTable {
 
   /// Puts a field before the head: where it is shown for the first time, or another follows. `on_floor`: the room's origin is.
   void place(const render::Framing& framing, const render::RoomPose& head, bool on_floor);
+  /// Until it is placed again there is none.
+  void remove() noexcept { placed_ = false; }
   [[nodiscard]] bool placed() const noexcept { return placed_; }
+  /// How often it was put anywhere, by place() and by the button: a hand that rests is elsewhere on it then. Not counted: what hands
+  /// that hold it do.
+  [[nodiscard]] std::uint64_t placements() const noexcept { return placements_; }
   [[nodiscard]] RoomScale scale() const noexcept { return scale_; }
   /// Metres of the room for a millimetre of the scene.
   [[nodiscard]] double metresPerMm() const noexcept { return metres_per_mm_; }
@@ -45,6 +51,7 @@ class RoomTable {
 
   RoomScale scale_;
   bool placed_ = false;
+  std::uint64_t placements_ = 0;
   render::Framing framing_;  // of the field placed
   render::RoomPose head_;    // when it was placed
   bool on_floor_ = false;

@@ -1,5 +1,7 @@
 #include "app/xr/room_tip.h"
 
+#include <utility>
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
@@ -8,8 +10,9 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kPen_m = 0.14;        // of a hand's pen
-constexpr double kFullForce_m = 0.08;  // of the arrow of the largest force
+constexpr double kPen_m = 0.14;                       // of a hand's pen
+constexpr double kFullForce_m = 0.08;                 // of the arrow of the largest force
+constexpr std::int64_t kTouchLasts_ns = 100'000'000;  // as the vibration lasts (render/xr/hands)
 constexpr float kPen_px = 6.0F, kPenRim_px = 9.0F;
 constexpr glm::vec3 kRim{0.01F, 0.01F, 0.01F}, kOtherHand{0.25F, 0.25F, 0.28F};
 
@@ -26,23 +29,40 @@ void RoomTip::leave() {
   hand_.reset();
   pressed_ = false;
   touched_ = {};
-  if (link_) link_->hand.publish({});
+  if (!link_) return;
+  haptic::ControllerHand none;
+  none.press = press_;
+  link_->hand.publish(none);
+}
+
+// Whether the room's coordinates are others on the field than in the last frame, but for what hands that hold it do.
+bool RoomTip::jumps(const RoomTable& table, const render::Framing& framing) {
+  const Coordinates now{table.placements(), framing.first, framing.reference_mm, framing.exaggeration};
+  const Coordinates before = std::exchange(coordinates_, now);
+  return before != now;
 }
 
 void RoomTip::follow(const render::RoomHands& hands, const RoomHandUses& uses, const RoomTable& table,
-                     const render::Framing& framing) {
+                     const render::Framing& framing, std::uint64_t reader) {
   if (!link_) return;
+  const bool presses = uses.tip() && uses.tip()->pressed;
+  const bool jumped = jumps(table, framing);
+  jumps_ += jumped ? 1 : 0;
+  // A stroke does not go on elsewhere: what is pressed then has to be pressed again.
+  spent_ = presses && (jumped || spent_);
   if (!uses.tip() || !table.placed()) {
     leave();
     return;
   }
   hand_ = uses.tip()->hand;
-  pressed_ = uses.tip()->pressed;
+  pressed_ = presses && !spent_;
   const render::RoomPose& aim = hands[*hand_].aim;
   const auto axis = [&](const glm::dvec3& own) { return table.directionInScene(aim.turn * own); };
   haptic::ControllerHand hand;
   hand.tip = true;
   hand.pressed = pressed_;
+  hand.press = press_ = uses.tip()->press + jumps_;
+  hand.reader = reader;
   hand.when_ns = engine::steadyNs();
   hand.position_mm = framing.fieldOf(table.sceneOf(aim.position_m));
   // Its z runs from the tip to the hand, as that of an aim pose does.
@@ -50,6 +70,8 @@ void RoomTip::follow(const render::RoomHands& hands, const RoomHandUses& uses, c
       glm::quat_cast(glm::dmat3(axis({1.0, 0.0, 0.0}), axis({0.0, 1.0, 0.0}), axis({0.0, 0.0, 1.0}))));
   link_->hand.publish(hand);
   if (link_->touched.take()) touched_ = link_->touched.latest();
+  // A loop that stands still touches nothing.
+  if (hand.when_ns - touched_.when_ns > kTouchLasts_ns) touched_ = {};
 }
 
 std::optional<std::size_t> RoomTip::hand() const noexcept {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "app/xr/room_hands.h"
@@ -29,9 +31,9 @@ class RoomTip {
  public:
   explicit RoomTip(std::shared_ptr<haptic::ControllerLink> link) : link_(std::move(link)) {}
 
-  /// The hands of a frame: publishes the one that may be the tip.
+  /// The hands of a frame: publishes the one that may be the tip, in coordinates of the field of `reader` (ControllerHand::reader).
   void follow(const render::RoomHands& hands, const RoomHandUses& uses, const RoomTable& table,
-              const render::Framing& framing);
+              const render::Framing& framing, std::uint64_t reader);
   /// No hand is the tip: the session ends, or another program has the hands.
   void leave();
   /// What the hand is to be told by vibration now, 0 .. 1.
@@ -48,8 +50,20 @@ class RoomTip {
  private:
   [[nodiscard]] bool leads() const noexcept { return link_ && link_->leads.load(std::memory_order_relaxed); }
 
+  [[nodiscard]] bool jumps(const RoomTable& table, const render::Framing& framing);
+
   std::shared_ptr<haptic::ControllerLink> link_;
   std::optional<std::size_t> hand_;  // published
+  // What a place of the room is on the field by.
+  struct Coordinates {
+    std::uint64_t placements = 0;
+    glm::dvec2 first{0.0};
+    double reference_mm = 0.0, exaggeration = 1.0;
+    friend bool operator==(const Coordinates&, const Coordinates&) = default;
+  };
+  Coordinates coordinates_;
+  std::uint64_t jumps_ = 0, press_ = 0;  // ControllerHand::press
+  bool spent_ = false;                   // the press that goes on was before a jump
   bool pressed_ = false;
   haptic::Touched touched_;
 };

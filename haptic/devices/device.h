@@ -93,6 +93,7 @@ struct Touched {
   glm::dvec3 proxy_mm{0.0};  ///< field coordinates; of a tick with contact
   glm::dvec3 force_n{0.0};   ///< the scene's, field frame
   double strength = 0.0;     ///< 0 .. 1 of the scene's largest force; 0 while the device is disarmed
+  std::int64_t when_ns = 0;  ///< engine::steadyNs() of the tick
 };
 
 /// One haptic or input device.

@@ -209,11 +209,11 @@ std::optional<glm::dvec3> LoopTick::stylusAxis(const DeviceInput& input) const n
   return device_.profile().space == DeviceSpace::kField ? axis : workspace_.directionToField(axis);
 }
 
-Touched LoopTick::touched(const ForceSample& force) const noexcept {
+Touched LoopTick::touched(const ForceSample& force, std::int64_t now_ns) const noexcept {
   if (!force.contact) return {};
   const bool armed = guard_.state() == SafetyState::kRamping || guard_.state() == SafetyState::kActive;
   const double share = glm::length(force.force_n) / scene_->scene.force_limit_n;
-  return {true, force.proxy_mm, force.force_n, armed && share > 0.0 ? std::min(share, 1.0) : 0.0};
+  return {true, force.proxy_mm, force.force_n, armed && share > 0.0 ? std::min(share, 1.0) : 0.0, now_ns};
 }
 
 void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept {
@@ -331,7 +331,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
       {1e-9 * static_cast<double>(since_ns), age_s, input.link, command, motion_.velocity(), disturbance_,
        1e-9 * static_cast<double>(input.output_waits_ns), at_rest, input.output_pending});
   device_.write(given);
-  device_.show(touched(force));
+  device_.show(touched(force, now_ns));
 
   sound(since_ns);
   ++state_.tick;

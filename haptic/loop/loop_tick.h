@@ -163,7 +163,7 @@ class LoopTick {
 
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
   [[nodiscard]] std::optional<glm::dvec3> stylusAxis(const DeviceInput& input) const noexcept;
-  [[nodiscard]] Touched touched(const ForceSample& force) const noexcept;
+  [[nodiscard]] Touched touched(const ForceSample& force, std::int64_t now_ns) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void sound(std::int64_t since_ns) noexcept;
   [[nodiscard]] bool samplesArePrefetched(const glm::dvec3& tip_mm) noexcept;

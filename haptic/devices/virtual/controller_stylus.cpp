@@ -19,11 +19,15 @@ constexpr std::int64_t kFramesStayAway_ns = 2'000'000'000;
 }  // namespace
 
 ControllerStylus::ControllerStylus(const MouseFeel& feel, std::shared_ptr<ControllerLink> link)
-    : mouse_(feel), link_(std::move(link)), profile_(mouse_.profile()) {
+    : mouse_(feel),
+      link_(std::move(link)),
+      profile_(mouse_.profile()),
+      number_(link_->reader.fetch_add(1, std::memory_order_relaxed) + 1) {
   profile_.name = "mouse and controllers";
 }
 
 void ControllerStylus::lead(bool leads) noexcept {
+  if (leads_ && !leads) spent_press_ = press_;
   leads_ = leads;
   tip_mm_.reset();
   link_->leads.store(leads, std::memory_order_relaxed);
@@ -32,6 +36,7 @@ void ControllerStylus::lead(bool leads) noexcept {
 void ControllerStylus::stop() noexcept {
   chosen_ = false;
   lead(false);
+  spent_press_.reset();
   link_->touched.publish({});
 }
 
@@ -55,8 +60,10 @@ DeviceInput ControllerStylus::readAt(std::int64_t now_ns) noexcept {
   DeviceInput mouse = mouse_.readAt(now_ns);
   static_cast<void>(link_->hand.take());
   const ControllerHand& hand = link_->hand.latest();
-  const bool seen = hand.tip && now_ns - hand.when_ns < kFramesStayAway_ns && finite(hand.position_mm);
-  const bool presses = seen && hand.pressed;
+  if (!spent_press_ || link_->asked.load(std::memory_order_relaxed)) spent_press_ = hand.press;
+  const bool seen = hand.tip && hand.reader == number_ && now_ns - hand.when_ns < kFramesStayAway_ns &&
+                    finite(hand.position_mm);
+  const bool presses = seen && hand.pressed && hand.press != *spent_press_;
   const bool mouse_presses = mouse.buttons != 0;
   // Where neither presses, or both do, all stays as it is.
   if (presses != mouse_presses) chosen_ = presses;
@@ -66,6 +73,7 @@ DeviceInput ControllerStylus::readAt(std::int64_t now_ns) noexcept {
   lifted.arrival_ns = now_ns;
   if (const bool leads = chosen_ && seen; leads != leads_) {
     lead(leads);
+    press_ = hand.press;
     return numbered(lifted);
   }
   // A mouse that was never over the field after a hand has led: there is no tip, and nothing was unplugged.
@@ -76,12 +84,16 @@ DeviceInput ControllerStylus::readAt(std::int64_t now_ns) noexcept {
     mouse.sequence = sequence_;
     return mouse;
   }
+  if (std::exchange(press_, hand.press) != hand.press) {
+    tip_mm_.reset();
+    return numbered(lifted);
+  }
   // First-order follow, exact for any step: stable however late the loop is.
   tip_mm_ = tip_mm_ ? *tip_mm_ + (hand.position_mm - *tip_mm_) * -std::expm1(-passed_s / kFollows_s)
                     : hand.position_mm;
   DeviceInput input;
   input.position_mm = *tip_mm_;
-  input.buttons = hand.pressed ? kPrimaryButton : 0U;
+  input.buttons = presses ? kPrimaryButton : 0U;
   input.orientation = hand.orientation;
   input.link = LinkState::kConnected;
   input.arrival_ns = now_ns;

@@ -121,12 +121,15 @@ TEST_F(RoomHandUsesTest, a_trigger_elsewhere_makes_the_hand_the_tip) {
 TEST_F(RoomHandUsesTest, the_last_hand_to_press_is_the_tip) {
   at(0, -kAway, 0.0);
   at(1, kAway, 0.0);
+  (void)follow();
   hands[1].trigger = 1.0;
   (void)follow();
   hands[1].trigger = 0.0;
   hands[0].trigger = 1.0;
   (void)follow();
   EXPECT_EQ(uses.tip()->hand, 0U);
+  hands[0].trigger = 0.0;
+  (void)follow();
   hands[0].squeeze = 1.0;
   (void)follow();
   EXPECT_FALSE(uses.tip()) << "it holds the field";
@@ -134,6 +137,150 @@ TEST_F(RoomHandUsesTest, the_last_hand_to_press_is_the_tip) {
   hands[0].tracked = false;
   (void)follow();
   EXPECT_FALSE(uses.tip()) << "it is not seen";
+}
+
+TEST_F(RoomHandUsesTest, the_tip_stays_with_the_hand_that_presses) {
+  at(0, -kAway, 0.0);
+  at(1, kAway, 0.0);
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  const std::uint64_t press = uses.tip()->press;
+  hands[0].trigger = 1.0;
+  (void)follow();
+  EXPECT_EQ(uses.tip()->hand, 1U);
+  EXPECT_EQ(uses.tip()->press, press);
+  hands[1].trigger = 0.0;
+  (void)follow();
+  EXPECT_EQ(uses.tip()->hand, 1U) << "what was pressed beside it begins nothing";
+  EXPECT_FALSE(uses.tip()->pressed);
+  hands[0].trigger = 0.0;
+  (void)follow();
+  hands[0].trigger = 1.0;
+  (void)follow();
+  EXPECT_EQ(uses.tip()->hand, 0U);
+  EXPECT_EQ(uses.tip()->press, press + 1);
+  hands[0].trigger = 0.0;
+  (void)follow();
+  hands[0].trigger = 1.0;
+  (void)follow();
+  EXPECT_EQ(uses.tip()->press, press + 2) << "each press has a number of its own";
+}
+
+TEST_F(RoomHandUsesTest, a_trigger_held_while_the_hand_was_not_seen_is_no_press) {
+  at(1, kAway, 0.0);
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  const std::uint64_t press = uses.tip()->press;
+  hands[1].tracked = false;
+  (void)follow();
+  EXPECT_FALSE(uses.tip());
+  hands[1].tracked = true;
+  (void)follow();
+  EXPECT_FALSE(uses.tip()->pressed);
+  hands[1].trigger = 0.4;
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  EXPECT_FALSE(uses.tip()->pressed) << "not let go yet";
+  hands[1].trigger = 0.0;
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  EXPECT_TRUE(uses.tip()->pressed);
+  EXPECT_EQ(uses.tip()->press, press + 1);
+}
+
+TEST_F(RoomHandUsesTest, a_hand_that_appears_with_a_held_trigger_clicks_nothing) {
+  at(1, 0.0, 0.0);
+  hands[1].trigger = 1.0;
+  const auto input = follow();
+  ASSERT_EQ(input.size(), 1U);
+  EXPECT_EQ(input[0].kind, Kind::kMove);
+}
+
+TEST_F(RoomHandUsesTest, a_squeeze_during_a_stroke_neither_ends_it_nor_holds_the_field) {
+  at(1, kAway, 0.0);
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  hands[1].squeeze = 1.0;
+  (void)follow();
+  ASSERT_TRUE(uses.tip());
+  EXPECT_TRUE(uses.tip()->pressed);
+  EXPECT_EQ(uses.holding()[1].squeeze, 0.0);
+  hands[1].trigger = 0.0;
+  (void)follow();
+  (void)follow();
+  EXPECT_EQ(uses.holding()[1].squeeze, 0.0) << "the field does not jump to the hand after it";
+  hands[1].squeeze = 0.0;
+  (void)follow();
+  hands[1].squeeze = 1.0;
+  (void)follow();
+  EXPECT_EQ(uses.holding()[1].squeeze, 1.0);
+  hands[1].trigger = 1.0;
+  (void)follow();
+  hands[1].squeeze = 0.0;
+  (void)follow();
+  EXPECT_FALSE(uses.tip()->pressed) << "letting go begins no stroke";
+}
+
+TEST_F(RoomHandUsesTest, the_button_does_nothing_under_a_tip_that_is_pressed) {
+  at(0, -kAway, 0.0);
+  at(1, kAway, 0.0);
+  (void)follow();
+  hands[0].button = true;
+  (void)follow();
+  EXPECT_TRUE(uses.holding()[0].button);
+  hands[0].button = false;
+  hands[1].trigger = 1.0;
+  (void)follow();
+  hands[0].button = true;
+  (void)follow();
+  EXPECT_FALSE(uses.holding()[0].button);
+  hands[1].trigger = 0.0;
+  (void)follow();
+  EXPECT_FALSE(uses.holding()[0].button) << "nor after it, until it is pressed again";
+  hands[0].button = false;
+  (void)follow();
+  hands[0].button = true;
+  (void)follow();
+  EXPECT_TRUE(uses.holding()[0].button);
+}
+
+TEST_F(RoomHandUsesTest, hands_that_vanish_let_go_of_what_they_hold_on_the_screen) {
+  at(1, 0.0, 0.0);
+  (void)follow();
+  hands[1].trigger = 1.0;
+  (void)follow();
+  hands = {};
+  const auto input = follow();
+  ASSERT_EQ(input.size(), 2U);
+  EXPECT_EQ(input[0].kind, Kind::kUp);
+  EXPECT_EQ(input[1].kind, Kind::kLeave);
+}
+
+TEST(ScreenInput, what_waits_loses_places_and_no_release) {
+  std::vector<ScreenInput> waiting;
+  for (int i = 0; i < 100; ++i) appendInput({Kind::kMove, 0.01 * i, 0.5, 0.0}, waiting);
+  ASSERT_EQ(waiting.size(), 1U);
+  EXPECT_NEAR(waiting[0].x, 0.99, 1e-12);
+  appendInput({Kind::kDown, 0.99, 0.5, 0.0}, waiting);
+  appendInput({Kind::kMove, 0.2, 0.5, 0.0}, waiting);
+  appendInput({Kind::kUp, 0.2, 0.5, 0.0}, waiting);
+  ASSERT_EQ(waiting.size(), 4U);
+  EXPECT_NEAR(waiting[0].x, 0.99, 1e-12) << "where it was pressed";
+  while (waiting.size() < 100'000) {
+    const std::size_t before = waiting.size();
+    appendInput({Kind::kDown}, waiting);
+    if (waiting.size() == before) break;
+  }
+  ASSERT_LT(waiting.size(), 100'000U) << "it has an end";
+  appendInput({Kind::kUp}, waiting);
+  appendInput({Kind::kLeave}, waiting);
+  EXPECT_EQ(waiting[waiting.size() - 2].kind, Kind::kUp);
+  EXPECT_EQ(waiting.back().kind, Kind::kLeave);
 }
 
 TEST_F(RoomHandUsesTest, a_thumbstick_scrolls_by_time) {

@@ -15,20 +15,26 @@ struct ControllerStylusTest : ::testing::Test {
   std::shared_ptr<ControllerLink> link = std::make_shared<ControllerLink>();
   ControllerStylus device{MouseFeel{}, link};
   std::int64_t now_ns = kTick_ns;
+  ControllerHand last;
 
+  void SetUp() override { tick(); }  // before any press
   DeviceInput tick() { return device.readAt(now_ns += kTick_ns); }
   DeviceInput ticks(int count) {
     DeviceInput last;
     for (int i = 0; i < count; ++i) last = tick();
     return last;
   }
+  // Its number rises with each press, as the headset's thread counts.
   void hand(const glm::dvec3& at, bool pressed) {
-    ControllerHand hand;
+    ControllerHand hand = last;
     hand.tip = true;
+    hand.press += pressed && !last.pressed ? 1 : 0;
+    hand.reader = link->reader;
     hand.pressed = pressed;
     hand.when_ns = now_ns;
     hand.position_mm = at;
     link->hand.publish(hand);
+    last = hand;
   }
 };
 
@@ -139,6 +145,92 @@ TEST_F(ControllerStylusTest, what_is_touched_is_shown_to_the_hand_that_touches_a
   ASSERT_TRUE(link->touched.take());
   EXPECT_EQ(link->touched.latest().strength, 0.0);
   EXPECT_FALSE(link->leads);
+}
+
+TEST_F(ControllerStylusTest, another_press_lifts_it_and_it_goes_on_there) {
+  hand({1.0, 2.0, -3.0}, true);
+  ticks(20);
+  // The other hand's press, or a jump of the coordinates: the tip is elsewhere, and nothing lies between.
+  ++last.press;
+  hand({50.0, 2.0, -3.0}, true);
+  const DeviceInput lifted = tick();
+  EXPECT_TRUE(std::isnan(lifted.position_mm.x));
+  EXPECT_EQ(lifted.buttons, 0U);
+  const DeviceInput there = tick();
+  EXPECT_EQ(there.position_mm, glm::dvec3(50.0, 2.0, -3.0)) << "not on the way";
+  EXPECT_EQ(there.buttons, kPrimaryButton);
+  EXPECT_TRUE(link->leads);
+}
+
+TEST_F(ControllerStylusTest, a_press_held_over_frames_that_stayed_away_draws_nothing_more) {
+  hand({1.0, 2.0, 3.0}, true);
+  ticks(2100);
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, 0U) << "the same press";
+  EXPECT_TRUE(link->leads) << "it feels the surface";
+  hand({1.0, 2.0, 3.0}, false);
+  ticks(5);
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, kPrimaryButton);
+}
+
+TEST_F(ControllerStylusTest, a_press_held_while_the_hand_was_no_tip_draws_nothing_more) {
+  hand({1.0, 2.0, 3.0}, true);
+  ticks(5);
+  link->hand.publish({});
+  ticks(5);
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, 0U);
+}
+
+TEST_F(ControllerStylusTest, another_field_takes_no_press_and_no_place_of_the_last_one) {
+  hand({1.0, 2.0, 3.0}, true);
+  ticks(5);
+  device.stop();
+  ControllerStylus next{MouseFeel{}, link};
+  const auto read = [&](int count) {
+    DeviceInput input;
+    for (int i = 0; i < count; ++i) input = next.readAt(now_ns += kTick_ns);
+    return input;
+  };
+  read(5);
+  EXPECT_FALSE(link->leads) << "a place on the last field";
+  hand({7.0, 8.0, 9.0}, true);  // of the next one from here on
+  EXPECT_EQ(read(5).buttons, 0U);
+  EXPECT_FALSE(link->leads) << "a press of the last one";
+  hand({7.0, 8.0, 9.0}, false);
+  read(5);
+  hand({7.0, 8.0, 9.0}, true);
+  const DeviceInput begun = read(5);
+  EXPECT_EQ(begun.buttons, kPrimaryButton);
+  EXPECT_EQ(begun.position_mm, glm::dvec3(7.0, 8.0, 9.0));
+}
+
+TEST_F(ControllerStylusTest, a_loop_that_starts_again_takes_no_press_held_meanwhile) {
+  hand({1.0, 2.0, 3.0}, true);
+  ticks(5);
+  device.stop();
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, 0U);
+  EXPECT_FALSE(link->leads);
+}
+
+TEST_F(ControllerStylusTest,
+       while_a_question_is_asked_a_trigger_does_nothing_and_what_was_held_neither_after_it) {
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, kPrimaryButton);
+  link->asked = true;
+  EXPECT_EQ(tick().buttons, 0U);
+  hand({1.0, 2.0, 3.0}, false);
+  ticks(5);
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, 0U);
+  link->asked = false;
+  EXPECT_EQ(ticks(5).buttons, 0U) << "pressed while it was asked";
+  hand({1.0, 2.0, 3.0}, false);
+  ticks(5);
+  hand({1.0, 2.0, 3.0}, true);
+  EXPECT_EQ(ticks(5).buttons, kPrimaryButton);
 }
 
 TEST_F(ControllerStylusTest, its_numbers_never_fall_whoever_leads) {

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "haptic/devices/virtual/controller_stylus.h"
 #include "haptic/sound/sound_stream.h"
 #include "tests/haptic/loop/allocation_guard.h"
 #include "tests/haptic/loop/hand_device.h"
@@ -115,6 +117,46 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
   EXPECT_GE(scenes, kTicks / 20000);
   EXPECT_GT(stream.counters().ticks, kTicks / 4) << "with sound, too";
   EXPECT_EQ(bench.loop.state().tick, kTicks);
+}
+
+// Mouse and controller in turn, as a person uses both: presses, jumps, questions, frames that stay away, hands that are no tip.
+TEST(MillionTicks, NoneAllocatesWithAControllerInTheMousesPlace) {
+  if (!fettle::tests::allocationGuardWorks()) GTEST_SKIP() << "a sanitizer brings its own allocator";
+  const auto link = std::make_shared<ControllerLink>();
+  ControllerStylus device{MouseFeel{}, link};
+  std::int64_t now_ns = 1;
+  ControllerHand hand;
+  hand.tip = true;
+  hand.reader = link->reader;
+  std::uint64_t led = 0, pressed = 0, lifted = 0;
+  const std::uint64_t calls_before = fettle::tests::AllocationGuard::calls();
+  for (std::uint64_t i = 0; i < kTicks; ++i) {
+    // The window's and the headset's side, who may allocate.
+    if (i % 11 == 0) {
+      const bool presses = i % 2000 < 1200;
+      hand.press += (presses && !hand.pressed) || i % 7001 < 11 ? 1 : 0;
+      hand.pressed = presses;
+      hand.when_ns = now_ns;
+      hand.position_mm = sweep(i, 100.0, 0.0, 1.0);
+      link->asked = i % 50'000 > 45'000;
+      if (i % 30'000 < 25'000) link->hand.publish(i % 9000 < 500 ? ControllerHand{} : hand);
+    }
+    if (i % 16 == 0) device.mouse().setCursor(sweep(i, 100.0, 0.0, 0.0));
+    if (i % 40'000 == 26'000) device.mouse().press(Tool::kSmooth);
+    if (i % 40'000 == 27'500) device.mouse().release();
+    now_ns += i % 20'011 == 0 ? 2'500'000'000 : 1'000'000;
+    const fettle::tests::AllocationGuard guard;
+    const DeviceInput input = device.readAt(now_ns);
+    device.show({!std::isnan(input.position_mm.x), input.position_mm, {0.0, 0.0, 1.0}, 0.5, now_ns});
+    led += link->leads ? 1 : 0;
+    pressed += link->leads && input.buttons != 0 ? 1 : 0;
+    lifted += std::isnan(input.position_mm.x) ? 1 : 0;
+  }
+  EXPECT_EQ(fettle::tests::AllocationGuard::calls(), calls_before);
+  EXPECT_GT(led, kTicks / 4);
+  EXPECT_LT(led, kTicks - kTicks / 50) << "the mouse has its turn";
+  EXPECT_GT(pressed, kTicks / 8);
+  EXPECT_GT(lifted, kTicks / 2000);
 }
 
 // The proxy of every tick lies on the surface as the edits of the tick before left it, never below. The
