@@ -1,6 +1,7 @@
 #include "render/xr/hands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -11,6 +12,11 @@ namespace {
 constexpr std::array<const char*, 2> kHands{"/user/hand/left", "/user/hand/right"};
 constexpr XrDuration kVibration_ns =
     100'000'000;  // longer than a frame takes; it ends by itself when frames stop
+
+bool finitePose(const XrPosef& p) noexcept {
+  const auto& [q, at] = p;
+  return std::isfinite(q.x + q.y + q.z + q.w) && std::isfinite(at.x + at.y + at.z);
+}
 
 }  // namespace
 
@@ -121,9 +127,11 @@ XrResult Hands::read(XrSpace room, XrTime time, RoomHands& hands) {
     const auto locate = [&](XrSpace space, RoomPose& pose) {
       XrSpaceLocation at{XR_TYPE_SPACE_LOCATION, nullptr, 0, {}};
       const XrResult result = xr_->LocateSpace(space, room, time, &at);
-      constexpr XrSpaceLocationFlags kKnown =
-          XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
-      if (XR_FAILED(result) || (at.locationFlags & kKnown) != kKnown) return false;
+      // A place that is valid and not tracked is a guess, by a model of the arm or the last one seen: no tool may follow it.
+      constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_POSITION_VALID_BIT |
+                                              XR_SPACE_LOCATION_ORIENTATION_VALID_BIT |
+                                              XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+      if (XR_FAILED(result) || (at.locationFlags & kKnown) != kKnown || !finitePose(at.pose)) return false;
       pose = roomPose(at.pose);
       return true;
     };

@@ -18,9 +18,10 @@ class Hands {
   /// Makes and attaches the actions; once for a session.
   [[nodiscard]] XrResult make(const XrCalls& calls, XrInstance instance, XrSession session);
   void destroy();
-  /// As of `time`, in `room`.
+  /// As of `time`, in `room`. Not tracked: one whose place is not seen but guessed, or no number; without the focus both.
   [[nodiscard]] XrResult read(XrSpace room, XrTime time, RoomHands& hands);
-  /// 0 .. 1 until the next call, at most a tenth of a second; 0 stops it. Cheap where nothing changes.
+  /// 0 .. 1 until the next call, at most a tenth of a second; 0 stops it. Only 0 after 0 asks nothing of the runtime: any other is sent
+  /// again, since it would end by itself.
   [[nodiscard]] XrResult vibrate(std::size_t hand, double amplitude);
 
  private:

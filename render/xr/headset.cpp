@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -52,6 +53,7 @@ struct Headset::Impl {
   std::array<XrPicture, kRoomPictures> pictures;
   Hands hands;
   bool running = false, ended = false;
+  std::optional<XrTime> room_moves_at;  // the origin of `room` is another from then on
   XrTime shown_at = 0;
   std::array<XrView, 2> views{};
   std::uint64_t drawn = 0;
@@ -225,6 +227,8 @@ engine::Status Headset::Impl::takeEvents() {
   while ((result = xr.PollEvent(instance, &event)) == XR_SUCCESS) {
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING)
       return tl::unexpected(lost("the session", XR_ERROR_INSTANCE_LOST));
+    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING)
+      room_moves_at = reinterpret_cast<const XrEventDataReferenceSpaceChangePending*>(&event)->changeTime;
     if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) {
       const auto& changed = *reinterpret_cast<const XrEventDataSessionStateChanged*>(&event);
       if (changed.state == XR_SESSION_STATE_READY) {
@@ -267,6 +271,7 @@ XrResult Headset::Impl::locateEyes() {
 engine::Status Headset::Impl::drawEyes(const HeadsetFrame& frame, bool& complete) {
   XrImages::One image;
   XrResult result = eye_images.acquire(image);
+  if (result == XR_TIMEOUT_EXPIRED) return {};  // a frame without a picture
   if (XR_SUCCEEDED(result)) result = locateEyes();
   if (XR_FAILED(result)) return tl::unexpected(lost("getting an image for the eyes", result));
   LiveTarget target;
@@ -284,6 +289,8 @@ engine::Status Headset::Impl::drawEyes(const HeadsetFrame& frame, bool& complete
 engine::Status Headset::Impl::frame(const HeadsetFrame& frame) {
   if (auto status = takeEvents(); !status) return status;
   if (!running) {
+    // What hands did before ends here.
+    if (frame.hands) frame.hands({});
     std::this_thread::sleep_for(kBetweenEvents);
     return {};
   }
@@ -298,6 +305,11 @@ engine::Status Headset::Impl::frame(const HeadsetFrame& frame) {
   RoomHands seen;
   result = hands.read(room, shown_at, seen);
   if (XR_FAILED(result)) return tl::unexpected(lost("reading the controllers", result));
+  // A hand is not followed from one origin to another.
+  if (room_moves_at && shown_at >= *room_moves_at) {
+    room_moves_at.reset();
+    seen = {};
+  }
   if (frame.hands) frame.hands(seen);
 
   bool complete = false;

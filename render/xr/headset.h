@@ -22,7 +22,8 @@ struct HeadsetOptions {
 
 /// What a frame of a headset calls, in this order; all on the calling thread.
 struct HeadsetFrame {
-  /// The hands, as they will be when the frame is seen. Also called while nothing is drawn.
+  /// The hands, as they will be when the frame is seen. Also called while nothing is drawn; with none while the session does not run,
+  /// and in a frame in which the room's origin moves.
   std::function<void(const RoomHands&)> hands;
   /// Draws both eyes into the two layers of the target, in an image of Headset::colourFormat(). Called only where the
   /// picture is seen; empty: nothing is drawn yet. Headset::eyes() may be called by it, as late as it likes.

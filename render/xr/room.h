@@ -24,7 +24,7 @@ struct RoomEye {
 
 /// A hand with a controller or a stylus.
 struct RoomHand {
-  bool tracked = false;
+  bool tracked = false;  ///< seen where it is now; one that is only guessed at is not
   RoomPose grip;         ///< in the palm
   RoomPose aim;          ///< points along its -z; its origin is the tip
   double trigger = 0.0;  ///< 0 .. 1

@@ -1,6 +1,12 @@
 #include "render/xr/xr_images.h"
 
 namespace fettle::render {
+namespace {
+
+// For an image that a runtime holds: some frames. Longer, and the thread could not be ended meanwhile.
+constexpr XrDuration kLongestWait_ns = 200'000'000;
+
+}  // namespace
 
 XrResult XrImages::make(const XrCalls& calls, XrSession session, const Context& context, vk::Format format,
                         vk::Extent2D extent, std::uint32_t layers) {
@@ -37,6 +43,7 @@ XrResult XrImages::make(const XrCalls& calls, XrSession session, const Context& 
 }
 
 void XrImages::destroy() {
+  awaited_.reset();
   views_.clear();
   images_.clear();
   if (swapchain_ != XR_NULL_HANDLE) (void)xr_->DestroySwapchain(swapchain_);
@@ -44,13 +51,18 @@ void XrImages::destroy() {
 }
 
 XrResult XrImages::acquire(One& one) {
-  std::uint32_t index = 0;
-  const XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO, nullptr};
-  if (const XrResult result = xr_->AcquireSwapchainImage(swapchain_, &acquire, &index); XR_FAILED(result))
-    return result;
-  const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
+  if (!awaited_) {
+    std::uint32_t index = 0;
+    const XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO, nullptr};
+    if (const XrResult result = xr_->AcquireSwapchainImage(swapchain_, &acquire, &index); XR_FAILED(result))
+      return result;
+    awaited_ = index;
+  }
+  const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, kLongestWait_ns};
   const XrResult result = xr_->WaitSwapchainImage(swapchain_, &wait);
-  if (XR_SUCCEEDED(result)) one = {images_[index], *views_[index]};
+  if (XR_FAILED(result) || result == XR_TIMEOUT_EXPIRED) return result;
+  one = {images_[*awaited_], *views_[*awaited_]};
+  awaited_.reset();
   return result;
 }
 

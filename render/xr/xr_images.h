@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "render/vulkan/context.h"
@@ -17,7 +18,8 @@ class XrImages {
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
   [[nodiscard]] XrSwapchain handle() const noexcept { return swapchain_; }
 
-  /// The next image, free to be written.
+  /// The next image, free to be written. XR_TIMEOUT_EXPIRED, which is no failure: the runtime still reads it; the next call waits for
+  /// the same one, and nothing may be released.
   struct One {
     vk::Image image;
     vk::ImageView view;
@@ -33,6 +35,7 @@ class XrImages {
   vk::Extent2D extent_;
   std::vector<vk::Image> images_;
   std::vector<vk::raii::ImageView> views_;
+  std::optional<std::uint32_t> awaited_;  // acquired, and not free yet
 };
 
 }  // namespace fettle::render

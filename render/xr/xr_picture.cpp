@@ -37,7 +37,8 @@ XrResult XrPicture::set(const XrCalls& calls, XrSession session, Context& contex
     if (XR_FAILED(made)) return made;
   }
   XrImages::One image;
-  if (const XrResult result = images_.acquire(image); XR_FAILED(result)) return result;
+  if (const XrResult result = images_.acquire(image); XR_FAILED(result) || result == XR_TIMEOUT_EXPIRED)
+    return result;
   const Buffer bytes(context, vk::DeviceSize{4} * extent.width * extent.height,
                      vk::BufferUsageFlagBits::eTransferSrc);
   opaque_ = fill(picture, format, reinterpret_cast<std::byte*>(bytes.data()));

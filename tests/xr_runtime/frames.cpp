@@ -16,6 +16,7 @@ void advance(Runtime& r) {
     if (word == "hide") r.seen = false;
     if (word == "show") r.seen = true;
     if (word == "stop") r.asked_exit = true;
+    if (word == "recentre") r.moveRoom();
     if (word == "lose") {
       r.lost = true;
       r.enter(XR_SESSION_STATE_LOSS_PENDING);
@@ -168,10 +169,14 @@ XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
   if (!r.running) return r.wrong("a frame is ended without a running session", XR_ERROR_SESSION_NOT_RUNNING);
   if (!r.begun) return r.wrong("a frame is ended that was not begun");
   r.begun = false;
+  const auto events = r.script.events(r.frame);
+  if (std::find(events.begin(), events.end(), "end") != events.end())
+    for (const XrSessionState next :
+         {XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING})
+      r.enter(next);
   if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
     return XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED;
   if (info->displayTime != r.shown) (void)r.wrong("a frame is ended for another time than was waited for");
-  const auto events = r.script.events(r.frame);
   const bool kept = !r.keep.empty() && std::find(events.begin(), events.end(), "keep") != events.end();
   int quads = 0;
   std::string layers;

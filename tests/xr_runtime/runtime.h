@@ -95,6 +95,8 @@ struct Runtime {
   /// Notes a call that is not allowed; returns what the call returns.
   XrResult wrong(const std::string& what, XrResult result = XR_ERROR_CALL_ORDER_INVALID);
   void enter(XrSessionState next);
+  /// Says that the room has another origin from now on.
+  void moveRoom();
   [[nodiscard]] std::string pathOf(XrPath path) const;
 };
 

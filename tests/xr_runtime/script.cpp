@@ -8,8 +8,9 @@
 namespace fettle::tests::xr {
 
 bool Script::understand(const std::string& line, long frame_now) {
-  static const std::set<std::string> kEvents{"keep", "hide", "show", "stop", "lose"};
-  static const std::set<std::string> kValues{"trigger", "squeeze", "scroll", "button"};
+  static const std::set<std::string> kEvents{"keep", "hide", "show",     "stop",
+                                             "lose", "end",  "recentre", "busy"};
+  static const std::set<std::string> kValues{"trigger", "squeeze", "scroll", "button", "infer", "broken"};
   std::istringstream words(line.substr(0, line.find('#')));
   std::string first, what, next;
   if (!(words >> first)) return true;

@@ -19,8 +19,12 @@ struct Place {
 ///   0 head 0 1.6 0 0 -30             place from this frame on; between two such lines on the straight way
 ///   0 left ... / right ...           the same of a hand; one without a place is not tracked
 ///   10 right trigger 0.7             from this frame on; also squeeze, scroll (-1 .. 1), and button 0 or 1
+///   10 right infer 1                 its place is guessed, and not tracked, until "infer 0"; "broken 1": it is no number
 ///   20 keep                          the pictures of this frame become files
 ///   30 hide, show, stop, lose        the session: no longer seen, seen again, asked to end, lost
+///   30 end                           it ends after this frame at once: no frame between its focus and its end
+///   30 busy                          it still reads its images in this frame: they are not free to be written
+///   30 recentre                      the room has another origin from this frame on, as the program is told
 ///
 /// Frames are counted by xrWaitFrame, from 1. Lines may be appended while it runs, with frames as "+3": the third after the one
 /// in which they are read.

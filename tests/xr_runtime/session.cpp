@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -31,6 +32,8 @@ const char* nameOf(XrSessionState state) {
 }
 
 const XrSession kSession = reinterpret_cast<XrSession>(0x2);
+// The program ends within seconds whatever its headset does.
+constexpr XrDuration kLongestTimeout_ns = 1'000'000'000;
 
 XRAPI_ATTR XrResult XRAPI_CALL createSession(XrInstance, const XrSessionCreateInfo* info,
                                              XrSession* session) {
@@ -178,13 +181,17 @@ XRAPI_ATTR XrResult XRAPI_CALL acquireImage(XrSwapchain handle, const XrSwapchai
   return XR_SUCCESS;
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL waitImage(XrSwapchain handle, const XrSwapchainImageWaitInfo*) {
+XRAPI_ATTR XrResult XRAPI_CALL waitImage(XrSwapchain handle, const XrSwapchainImageWaitInfo* info) {
   Runtime& r = runtime();
   const std::lock_guard lock(r.mutex);
   if (r.lost) return XR_ERROR_SESSION_LOST;
   Swapchain& swapchain = *of(handle);
   if (swapchain.state != Swapchain::Image::kAcquired)
     return r.wrong("an image is waited for that is not acquired");
+  if (info->timeout > kLongestTimeout_ns)
+    return r.wrong("an image is waited for longer than a thread that ends may");
+  const auto events = r.script.events(r.frame);
+  if (std::find(events.begin(), events.end(), "busy") != events.end()) return XR_TIMEOUT_EXPIRED;
   swapchain.state = Swapchain::Image::kWaited;
   return XR_SUCCESS;
 }
@@ -212,6 +219,18 @@ void Runtime::enter(XrSessionState next) {
   event.session = kSession;
   event.state = next;
   event.time = nowNs();
+  std::memcpy(&buffer, &event, sizeof(event));
+  events.push_back(buffer);
+}
+
+void Runtime::moveRoom() {
+  say("room moved");
+  XrEventDataBuffer buffer{};
+  XrEventDataReferenceSpaceChangePending event{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING};
+  event.session = kSession;
+  event.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_STAGE;
+  event.changeTime = nowNs();
+  event.poseInPreviousSpace = {{0, 0, 0, 1}, {0, 0, 0}};
   std::memcpy(&buffer, &event, sizeof(event));
   events.push_back(buffer);
 }

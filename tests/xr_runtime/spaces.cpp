@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/xr_runtime/runtime.h"
@@ -77,8 +78,12 @@ XRAPI_ATTR XrResult XRAPI_CALL locateSpace(XrSpace space, XrSpace base, XrTime t
   if (!inRoom(*of(space), a) || !inRoom(*of(base), b)) return XR_SUCCESS;
   location->pose = times(inverse(b), a);
   location->locationFlags = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
-                            XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT |
-                            XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+                            XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+  const std::string& hand = of(space)->hand;
+  if (hand.empty() || r.script.value(hand + " infer", r.frame) <= 0.5)
+    location->locationFlags |= XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+  if (!hand.empty() && r.script.value(hand + " broken", r.frame) > 0.5)
+    location->pose.position.y = std::numeric_limits<float>::quiet_NaN();
   return XR_SUCCESS;
 }
 

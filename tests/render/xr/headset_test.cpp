@@ -266,6 +266,53 @@ TEST(Headset, hands_are_where_the_script_has_them) {
   stage.expectSilence();
 }
 
+TEST(Headset, a_hand_whose_place_is_guessed_or_no_number_is_not_tracked) {
+  const XrStage stage(std::string(kBefore) +
+                      "5 right 0.1 0.2 -0.3 0 0\n10 right infer 1\n15 right infer 0\n"
+                      "20 right broken 1\n25 right broken 0\n30 stop\n");
+  stage.set();
+  const Ran shown = show(wall(), Stereo::Passes::kBest);
+  ASSERT_GT(shown.hands.size(), 28U);
+  for (const auto& [frame, tracked] : {std::pair{8, true}, {12, false}, {17, true}, {22, false}, {27, true}})
+    EXPECT_EQ(shown.hands[static_cast<std::size_t>(frame - 1)][1].tracked, tracked) << "frame " << frame;
+  stage.expectSilence();
+}
+
+TEST(Headset, a_session_that_ends_at_once_leaves_no_hand) {
+  const XrStage stage(std::string(kBefore) + "5 right 0.1 0.2 -0.3 0 0\n10 right trigger 1\n20 end\n");
+  stage.set();
+  const Ran shown = show(wall(), Stereo::Passes::kBest);
+  EXPECT_TRUE(shown.ended);
+  ASSERT_EQ(shown.hands.size(), 21U);
+  EXPECT_TRUE(shown.hands[19][1].tracked);
+  EXPECT_FALSE(shown.hands[20][1].tracked);
+  EXPECT_EQ(shown.hands[20][1].trigger, 0.0);
+  stage.expectSilence();
+}
+
+TEST(Headset, a_room_that_moves_has_no_hand_for_a_frame) {
+  const XrStage stage(std::string(kBefore) + "5 right 0.1 0.2 -0.3 0 0\n20 recentre\n30 stop\n");
+  stage.set();
+  const Ran shown = show(wall(), Stereo::Passes::kBest);
+  ASSERT_GT(shown.hands.size(), 28U);
+  int without = 0;
+  for (std::size_t frame = 10; frame < 28; ++frame) without += shown.hands[frame][1].tracked ? 0 : 1;
+  EXPECT_EQ(without, 1);
+  stage.expectSilence();
+}
+
+TEST(Headset, frames_whose_images_are_not_free_have_no_picture_and_the_next_ones_have) {
+  const XrStage stage(std::string(kBefore) + "12 keep\n12 busy\n13 busy\n13 keep\n20 keep\n24 stop\n");
+  stage.set();
+  const Ran shown = show(wall(), Stereo::Passes::kBest, Image{1, 1, {255, 0, 0, 255}});
+  EXPECT_TRUE(shown.end) << shown.end.error().line();
+  EXPECT_TRUE(shown.ended);
+  for (const char* without : {"frame 12\n", "frame 13\n", "frame 20 projection quad\n"})
+    EXPECT_EQ(stage.count(without), 1) << without << stage.log();
+  EXPECT_TRUE(shown.vulkan.empty()) << shown.vulkan.front();
+  stage.expectSilence();
+}
+
 TEST(Headset, a_panel_hangs_in_the_room_with_its_own_picture) {
   const XrStage stage(std::string(kBefore) + "10 keep\n12 stop\n");
   stage.set();
