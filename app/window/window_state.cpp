@@ -409,14 +409,15 @@ Report runReport(const Parts& parts, const RunFigures& run) {
     r["session_named"] = parts.document.keeper()->named();
     r["unsaved_changes"] = parts.document.unsaved();
   }
-  if (!run.headset.name.empty()) {
-    r["headset"] = run.headset.name;
-    r["headset_frames"] = run.headset.frames;
-  }
-  std::vector<std::string> messages = parts.window.validationMessages();
-  messages.insert(messages.end(), run.headset.validation.begin(), run.headset.validation.end());
-  r["validation_messages"] = messages;
+  r["validation_messages"] = parts.window.validationMessages();
   return r;
+}
+
+void noteHeadset(const HeadsetFigures& headset, Report& report) {
+  if (headset.name.empty()) return;
+  report["headset"] = headset.name;
+  report["headset_frames"] = headset.frames;
+  for (const std::string& message : headset.validation) report["validation_messages"].push_back(message);
 }
 
 }  // namespace fettle::app

@@ -45,5 +45,7 @@ void logState(EventLog& log, const Parts& parts, const Input& input, const RunFi
 
 /// The report of `fettle view` at its end.
 [[nodiscard]] Report runReport(const Parts& parts, const RunFigures& run);
+/// Adds to it what is known of the headset, once its session has ended.
+void noteHeadset(const HeadsetFigures& headset, Report& report);
 
 }  // namespace fettle::app

@@ -89,7 +89,6 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     const double lived = watch.seconds();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
-  headset_.finish();
   Report report = runReport(parts_, figures());
   // A user who quits has saved what was to be saved. Otherwise there was no question: unsaved work is
   // restored when the scan is opened again.
@@ -100,6 +99,9 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
   if (kept)
     warn(fmt::format("{}: unsaved work is stored; open the scan again to continue it",
                      parts_.document.path()));
+  // Last: a runtime that does not answer may keep its thread, and the work is safe by then.
+  headset_.finish();
+  noteHeadset(figures().headset, report);
   return report;
 }
 
