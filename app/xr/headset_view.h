@@ -66,7 +66,8 @@ class HeadsetView {
     std::vector<std::string> validation;  ///< of Vulkan's layers, once it is over
   };
   [[nodiscard]] State state() const;
-  /// Ends the session in the runtime's own order, for two seconds at most, and waits for that.
+  /// Ends the session in the runtime's own order, for two seconds at most, and waits for that; longer where the runtime does not
+  /// come back from its wait for a frame, which has no limit.
   void finish();
 
  private:

@@ -221,27 +221,47 @@ void UiLayer::noteButton(int button, bool down, float x, float y) {
 
 // A click that came and went in one slow frame, its cursor somewhere else by now, is a press in this frame and a release in
 // the next, both at their place. What waits when a dialog opens was meant for what it covers.
-void UiLayer::holdClick() {
+bool UiLayer::holdClick() {
   ImGuiIO& io = ImGui::GetIO();
   const bool dialog = ImGui::GetTopMostPopupModal() != nullptr;
   if (dialog && !std::exchange(dialog_, dialog)) {
     for (const Click& click : clicks_) down_[static_cast<std::size_t>(click.button)] = false;
     clicks_.clear();
+    // What waits was pressed before it could be seen.
+    for (std::optional<Pointed>& next : pointed_)
+      if (next && next->down) next->down = false;
   }
   dialog_ = dialog;
-  if (!clicks_.empty()) {
+  const bool acts = !clicks_.empty();
+  // What the pointer holds it lets go first: two hands never move one thing.
+  if (!clicks_.empty() && !pointerIsDown()) {
     const Click click = clicks_.front();
     clicks_.erase(clicks_.begin());
     down_[static_cast<std::size_t>(click.button)] = click.down;
     io.MousePos = ImVec2(click.x, click.y);
   }
   std::copy(down_.begin(), down_.end(), std::begin(io.MouseDown));
+  return acts || std::any_of(down_.begin(), down_.end(), [](bool down) { return down; });
+}
+
+void UiLayer::point(const Pointed& at) {
+  const bool moves = !at.down && !pointed_.empty() && pointed_.back() && !pointed_.back()->down;
+  if (!moves) {
+    pointed_.push_back(at);
+    return;
+  }
+  // Positions between others are not needed, steps of a wheel are.
+  const double wheel = pointed_.back()->wheel + at.wheel;
+  pointed_.back() = at;
+  pointed_.back()->wheel = wheel;
 }
 
 // After ImGui's back end, which sets position and buttons from the window's cursor.
-void UiLayer::followPointer() {
+void UiLayer::followPointer(bool mouse_acts) {
   ImGuiIO& io = ImGui::GetIO();
-  const bool was_down = pointer_ && pointer_->down.value_or(false);
+  const bool was_down = pointerIsDown();
+  // The mouse goes first, unless the pointer is at something.
+  if (mouse_acts && !was_down) return;
   bool edge = false;
   while (!pointed_.empty() && !edge) {
     const std::optional<Pointed> next = pointed_.front();
@@ -273,8 +293,7 @@ void UiLayer::beginFrame() {
     io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  holdClick();
-  followPointer();
+  followPointer(holdClick());
   const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
   for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;

@@ -44,13 +44,14 @@ class UiLayer {
   /// begins: with this call it gets each press and each release where it was, one a frame.
   void noteButton(int button, bool down, float x, float y);
   /// A pointer in the mouse's place until it leaves (Window::point): where it is (GLFW's coordinates), whether its button went
-  /// down or up there, and steps of its wheel. A frame takes one press or release, the next the next one.
+  /// down or up there, and steps of its wheel. A frame takes one press or release, the next the next one. Neither it nor the
+  /// mouse moves what the other holds, and where both wait the mouse is first. A press that waits while a dialog opens is dropped.
   struct Pointed {
     double x = 0.0, y = 0.0;
     std::optional<bool> down{};
     double wheel = 0.0;
   };
-  void point(const Pointed& at) { pointed_.push_back(at); }
+  void point(const Pointed& at);
   void leavePointer() { pointed_.push_back(std::nullopt); }
   /// Whether presses or characters wait for a later frame.
   [[nodiscard]] bool behind() const noexcept {
@@ -86,10 +87,12 @@ class UiLayer {
     float x, y;
   };
   void makeStyle(double scale) const;
-  void holdClick();
+  /// Whether this frame is the mouse's: a press or release of it comes, or a button of it is down.
+  [[nodiscard]] bool holdClick();
   [[nodiscard]] bool wantsKeys() const noexcept;
   [[nodiscard]] std::vector<int> holdShortPresses();
-  void followPointer();
+  void followPointer(bool mouse_acts);
+  [[nodiscard]] bool pointerIsDown() const noexcept { return pointer_ && pointer_->down.value_or(false); }
 
   Context* context_ = nullptr;
   bool entered_ = false;

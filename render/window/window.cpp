@@ -389,7 +389,9 @@ std::vector<InputEvent> Window::takeInput() {
 }
 void Window::point(InputEvent event) {
   Impl& w = *impl_;
-  if (!w.usable) return;
+  // A window without a picture begins nothing, and ends what was begun.
+  const bool ends = event.kind == InputKind::kButtonUp || event.kind == InputKind::kLeave;
+  if (!ends && (!w.usable || minimised())) return;
   const glm::dvec2 at = glm::dvec2(event.x, event.y) / w.framePixels();
   if (event.kind == InputKind::kLeave) {
     w.ui->leavePointer();

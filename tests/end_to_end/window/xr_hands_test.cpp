@@ -162,6 +162,12 @@ TEST_F(XrHands, the_tip_is_lifted_and_its_vibration_stopped_when_the_focus_is_lo
   tipIs(*program, "left");
   (void)keep();
   EXPECT_GT(strongest("left", hidden), 0.1) << "it is the tip again";
+  // The trigger was held meanwhile: that is no second press.
+  stage.act(over("left", 0.1, 0.755, kTableZ_m, 10) + over("left", 0.1, 0.95, kTableZ_m, 20) +
+            set("left trigger", 0, 22));
+  (void)program->until("off", [](const State& s) { return s["touching"] == false; });
+  (void)keep(24);
+  EXPECT_EQ(program->now()["steps"], 1);
   (void)quitWithoutSaving(user);
   EXPECT_NE(lastWord("left").find("stopped"), std::string::npos) << "at the end: " << lastWord("left");
   stage.expectSilence();
@@ -178,6 +184,132 @@ TEST_F(XrHands, a_stroke_of_the_mouse_takes_the_tip_and_a_trigger_takes_it_back)
   stage.act(set("right trigger", 1) + set("right trigger", 0, 6));
   tipIs(*program, "right");
   (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, a_stroke_stays_with_its_hand_whatever_the_other_presses) {
+  const auto program = startIn();
+  User user(display, *program, "xr two triggers");
+  (void)user.key("s");
+  stage.act(over("right", 0.05, 0.95) + over("left", -0.15, 0.755) + set("right trigger", 1, 3) +
+            over("right", 0.05, 0.755, kTableZ_m, 12));
+  tipIs(*program, "right");
+  (void)program->until("contact", [](const State& s) { return s["touching"] == true; });
+  stage.act(set("left trigger", 1) + set("right trigger", 0, 12) + set("left trigger", 0, 18));
+  const State stroked = program->until("a step", [](const State& s) { return s["steps"] == 1; });
+  EXPECT_EQ(stroked["room"]["tip"], "right");
+  (void)keep(20);
+  EXPECT_EQ(program->now()["steps"], 1);
+  EXPECT_EQ(program->now()["room"]["tip"], "right");
+  const std::string session = folder.file("two.fettle");
+  saveAs(user, session);
+  (void)quit(user);
+  stage.expectSilence();
+  // All of it under the right hand: 0.2 m of 0.6 m lie between them.
+  const Differences d = compare(load(session), load(scan));
+  EXPECT_GT(d.changed, 0);
+  EXPECT_LT(d.last_column - d.first_column, 30);
+}
+
+TEST_F(XrHands, a_trigger_held_while_a_scan_is_opened_again_draws_nothing_on_it) {
+  const auto program = startIn();
+  User user(display, *program, "xr another field");
+  (void)user.key("s");
+  stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 2));
+  tipIs(*program, "right");
+  (void)user.key("ctrl+1");
+  // No hand leads on it: it would have to press.
+  tipIs(*program, State());
+  (void)user.key("s");
+  stage.act(over("right", 0.0, 0.755, kTableZ_m, 10) + over("right", 0.1, 0.755, kTableZ_m, 20) +
+            over("right", 0.1, 0.95, kTableZ_m, 26) + set("right trigger", 0, 28));
+  (void)keep(32);
+  EXPECT_EQ(program->now()["steps"], 0);
+  EXPECT_TRUE(program->now()["room"]["tip"].is_null());
+  stage.act(set("right trigger", 1, 2) + over("right", 0.1, 0.95, kTableZ_m, 4) +
+            over("right", 0.1, 0.755, kTableZ_m, 12));
+  (void)program->until("contact", [](const State& s) { return s["touching"] == true; });
+  stage.act(set("right trigger", 0, 4));
+  (void)program->until("a step", [](const State& s) { return s["steps"] == 1; });
+  (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, a_question_in_the_window_stops_the_tool_of_a_controller) {
+  const auto program = startIn();
+  User user(display, *program, "xr question");
+  (void)user.key("s");
+  (void)user.key("F1");
+  ASSERT_EQ(program->now()["dialog"], "shortcuts");
+  stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 3) + over("right", 0.0, 0.755, kTableZ_m, 12) +
+            over("right", 0.1, 0.755, kTableZ_m, 24));
+  (void)keep(26);
+  (void)user.key("Escape");
+  ASSERT_EQ(program->now()["dialog"], "none");
+  stage.act(over("right", 0.1, 0.755) + over("right", 0.0, 0.755, kTableZ_m, 10) +
+            set("right trigger", 0, 12));
+  (void)keep(14);
+  EXPECT_EQ(program->now()["steps"], 0) << "pressed while it was asked";
+  stage.act(set("right trigger", 1) + over("right", 0.0, 0.755) + over("right", 0.1, 0.755, kTableZ_m, 12) +
+            set("right trigger", 0, 14));
+  (void)program->until("a step", [](const State& s) { return s["steps"] == 1; });
+  (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, a_headset_lost_while_a_panel_is_held_lets_go_of_it) {
+  const auto program = startIn();
+  User user(display, *program, "xr lost on a panel");
+  stage.act("+1 head 0 1.45 -0.05 0 -12\n");
+  State button;
+  const State now = program->now();
+  for (const State& t : now["texts"])
+    if (t["text"] == "Smooth") button = t["at"];
+  ASSERT_TRUE(button.is_array()) << now["texts"].dump();
+  const int x = button[0].get<int>() + button[2].get<int>() / 2;
+  const int y = button[1].get<int>() + button[3].get<int>() / 2;
+  stage.act(at("right", x, y));
+  (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
+  const int buttons = program->now()["buttons"];
+  stage.act(set("right trigger", 1));
+  (void)program->until("held", [&](const State& s) { return s["buttons"] == buttons + 1; });
+  stage.act("+1 lose\n");
+  (void)program->until("let go",
+                       [&](const State& s) { return s["headset"] == "over" && s["buttons"] == buttons + 2; });
+  (void)user.rest();
+  // The mouse has the window.
+  EXPECT_EQ(user.click("Smooth")["tool"], "smooth");
+  EXPECT_EQ(user.stroke({330, 400}, {380, 400}, 3)["steps"], 1);
+  (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, a_headset_lost_in_a_stroke_on_the_frame_ends_the_stroke) {
+  const auto program = startIn();
+  User user(display, *program, "xr lost on the picture");
+  EXPECT_EQ(user.click("Smooth")["tool"], "smooth");
+  stage.act("+1 head 0 1.45 -0.05 0 -12\n" + at("right", 330, 400));
+  (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
+  stage.act(set("right trigger", 1) + at("right", 330, 400, 2) + at("right", 380, 400, 12));
+  (void)program->until("a stroke", [](const State& s) { return s["touching"] == true; });
+  stage.act("+1 lose\n");
+  (void)program->until("its end", [](const State& s) { return s["headset"] == "over" && s["steps"] == 1; });
+  (void)user.rest();
+  EXPECT_EQ(user.click("Mark")["tool"], "mark");
+  EXPECT_EQ(program->now()["steps"], 1);
+  (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
+TEST_F(XrHands, the_mouse_clicks_where_it_is_while_a_hand_points_elsewhere) {
+  const auto program = startIn();
+  User user(display, *program, "xr mouse beside a hand");
+  stage.act("+1 head 0 1.45 -0.05 0 -12\n" + at("right", 600, 400));
+  (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
+  EXPECT_EQ(user.click("Smooth")["tool"], "smooth");
+  EXPECT_EQ(program->now()["room"]["points"], true);
+  EXPECT_EQ(program->now()["steps"], 0);
+  (void)quit(user);
   stage.expectSilence();
 }
 
