@@ -15,7 +15,7 @@ struct ControllerStylusTest : ::testing::Test {
   std::shared_ptr<ControllerLink> link = std::make_shared<ControllerLink>();
   ControllerStylus device{MouseFeel{}, link};
   std::int64_t now_ns = kTick_ns;
-  ControllerHand last;
+  ControllerHand hand_now;
 
   void SetUp() override { tick(); }  // before any press
   DeviceInput tick() { return device.readAt(now_ns += kTick_ns); }
@@ -26,15 +26,15 @@ struct ControllerStylusTest : ::testing::Test {
   }
   // Its number rises with each press, as the headset's thread counts.
   void hand(const glm::dvec3& at, bool pressed) {
-    ControllerHand hand = last;
+    ControllerHand hand = hand_now;
     hand.tip = true;
-    hand.press += pressed && !last.pressed ? 1 : 0;
+    hand.press += pressed && !hand_now.pressed ? 1 : 0;
     hand.reader = link->reader;
     hand.pressed = pressed;
     hand.when_ns = now_ns;
     hand.position_mm = at;
     link->hand.publish(hand);
-    last = hand;
+    hand_now = hand;
   }
 };
 
@@ -151,7 +151,7 @@ TEST_F(ControllerStylusTest, another_press_lifts_it_and_it_goes_on_there) {
   hand({1.0, 2.0, -3.0}, true);
   ticks(20);
   // The other hand's press, or a jump of the coordinates: the tip is elsewhere, and nothing lies between.
-  ++last.press;
+  ++hand_now.press;
   hand({50.0, 2.0, -3.0}, true);
   const DeviceInput lifted = tick();
   EXPECT_TRUE(std::isnan(lifted.position_mm.x));
