@@ -193,9 +193,9 @@ TEST(EarlyState, SaysHowFarAPictureIs) {
   picture.exact = 1.0;
   EXPECT_EQ(app::earlyState(picture), "exact in view");
   picture.off = {0.0123, false};
-  EXPECT_EQ(app::earlyState(picture), "approximate, off by 12.3 um rms");
+  EXPECT_EQ(app::earlyState(picture), "approximate, off by 12.3 \u00b5m rms");
   picture.off->estimated = true;
-  EXPECT_EQ(app::earlyState(picture), "approximate, off by about 12.3 um rms");
+  EXPECT_EQ(app::earlyState(picture), "approximate, off by about 12.3 \u00b5m rms");
 }
 
 }  // namespace
