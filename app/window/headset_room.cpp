@@ -15,7 +15,7 @@ constexpr std::int64_t kAgain_ns = 25'000'000;  // between two frames of the win
 engine::Status HeadsetRoom::start(render::HeadsetOptions options, RoomScale scale,
                                   LoopClientOptions& client) {
   client.controllers = controllers_ = controllersBeside(client.device);
-  auto started = HeadsetView::start({std::move(options), scale, client.controllers, &render::Window::wake});
+  auto started = HeadsetView::start({options, scale, client.controllers, &render::Window::wake});
   if (!started) return tl::unexpected(started.error());
   headset_ = *std::move(started);
   return {};

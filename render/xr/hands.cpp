@@ -39,6 +39,7 @@ XrPath Hands::path(const std::string& text) const {
 
 XrResult Hands::suggest(const char* profile, const std::vector<std::pair<XrAction, std::string>>& bindings) {
   std::vector<XrActionSuggestedBinding> suggested;
+  suggested.reserve(bindings.size());
   for (const auto& [action, where] : bindings) suggested.push_back({action, path(where)});
   XrInteractionProfileSuggestedBinding info{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr,
                                             path(profile), static_cast<std::uint32_t>(suggested.size()),

@@ -24,18 +24,6 @@ bool says(const State& s, const std::string& what) {
   return false;
 }
 
-// Into the field that shows `now`, in place of what is there.
-void write(User& user, const std::string& now, const std::string& text) {
-  (void)user.click(now);
-  user.program().until("a field", [](const State& s) { return s["text_field"] == true; });
-  (void)user.press("ctrl+a");
-  user.write(text);
-  user.program().until(text, [&](const State& s) {
-    return std::any_of(s["texts"].begin(), s["texts"].end(),
-                       [&](const State& t) { return t["text"] == text; });
-  });
-}
-
 // A raster of counts without a unit, with an undeclared number for its holes.
 std::string writeCounts(const std::string& path) {
   std::ofstream file(path);
@@ -92,12 +80,12 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   EXPECT_TRUE(says(page, "96 x 64 samples"));
   EXPECT_TRUE(says(page, "9999 are holes"));
   (void)user.look("the page");
-  write(user, "as in the file, else 1", "0.001");
-  write(user, "1 in the file", "0");
+  user.writeOver("as in the file, else 1", "0.001");
+  user.writeOver("1 in the file", "0");
   (void)user.press("Return");
   program->until("a spacing of 0 is refused",
                  [](const State& s) { return s["dialog"] == "import" && says(s, "give a number above 0"); });
-  write(user, "0", "0.05");
+  user.writeOver("0", "0.05");
   (void)user.click("9999 are holes");
   (void)user.look("read as said");
   (void)user.key("Return");
@@ -112,7 +100,7 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   // Another unit later, without looking for the file again; what was said before stands there.
   (void)user.press("ctrl+shift+o");
   program->until("the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
-  write(user, "0.001", "0.002");
+  user.writeOver("0.001", "0.002");
   (void)user.key("Return");
   const State again = program->until("twice as high", [&](const State& s) {
     return s["settled"] == true && s["dialog"] == "none" && s["colours"][1].get<double>() > 0.2;

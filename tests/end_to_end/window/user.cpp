@@ -188,6 +188,17 @@ bool User::typeIn(const std::string& name, const std::string& value) {
   return true;
 }
 
+void User::writeOver(const std::string& now, const std::string& text) {
+  (void)click(now);
+  program_.until("a field", [](const State& s) { return s["text_field"] == true; });
+  (void)press("ctrl+a");
+  write(text);
+  program_.until(text, [&](const State& s) {
+    return std::any_of(s["texts"].begin(), s["texts"].end(),
+                       [&](const State& t) { return t["text"] == text; });
+  });
+}
+
 User::State User::click(const std::string& text, int count) {
   if (!pointAt(text)) return program_.now();
   for (int i = 0; i < count; ++i) {

@@ -48,6 +48,8 @@ class User {
   State enter(const std::string& name, const std::string& value);
   /// The same, and the field is not left. Whether it was found.
   bool typeIn(const std::string& name, const std::string& value);
+  /// Into the field that shows `now`, in place of what is there; the field is not left.
+  void writeOver(const std::string& now, const std::string& text);
   /// Until nothing moves any more and everything asked for was done.
   State rest(const std::string& what = "rest");
   /// Whether a text is on the panels.
