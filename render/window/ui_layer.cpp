@@ -117,6 +117,8 @@ void UiLayer::makeStyle(double scale) const {
   style.WindowBorderSize = 0.0F;
   // The background of a dialog is darkened; ImGui's own light grey would remove the colours of the picture.
   style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0F, 0.0F, 0.0F, 0.45F);
+  // Nothing shines through what is read: tips, lists, dialogs.
+  style.Colors[ImGuiCol_PopupBg].w = 1.0F;
   style.ScaleAllSizes(static_cast<float>(scale));
 }
 

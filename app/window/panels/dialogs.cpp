@@ -206,13 +206,7 @@ std::optional<Answer> dialog(Parts& parts) {
   if (question->kind == Kind::kShortcuts)
     ImGui::SetNextWindowSize(
         ImVec2(720.0F * static_cast<float>(parts.window.scale()), 0.8F * ImGui::GetIO().DisplaySize.y));
-  // Nothing shines through what is read.
-  ImVec4 background = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
-  background.w = 1.0F;
-  ImGui::PushStyleColor(ImGuiCol_PopupBg, background);
-  const bool begun = questions.begin();
-  ImGui::PopStyleColor();
-  if (!begun) return std::nullopt;
+  if (!questions.begin()) return std::nullopt;
   std::optional<Answer> answer;
   if (const auto choice = layOut(*question, parts)) answer = Answer{*choice, questions.close()};
   questions.end();
