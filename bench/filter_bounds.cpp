@@ -1,7 +1,6 @@
 #include "bench/filter_bounds.h"
 
 #include <array>
-#include <ctime>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -19,16 +18,10 @@ namespace {
 #define FETTLE_KERNEL "bench/filter_bounds-inl.h"
 #include "engine/simd/each_cpu-inl.h"
 
-double processorTime() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
-
 double secondsFor(auto&& work) {
-  const double begin = processorTime();
+  const double begin = processorSeconds();
   work();
-  return processorTime() - begin;
+  return processorSeconds() - begin;
 }
 
 // Tiles of a pool are taken before the clock runs, as many as the field has: the least is written into memory that no cache holds.

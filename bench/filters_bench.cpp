@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <limits>
 #include <map>
 #include <memory>
@@ -28,12 +27,6 @@ struct Seconds {
   double wall = 0.0;
   double cpu = 0.0;
 };
-
-double processorSeconds() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
 
 Seconds timed(auto&& work) {
   const double cpu = processorSeconds();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ctime>
+
 #include <algorithm>
 #include <functional>
 #include <vector>
@@ -16,6 +18,13 @@ inline constexpr double kSpacingMm = 0.05;
   const engine::Stopwatch watch;
   work();
   return watch.seconds();
+}
+
+/// Processor time of this process so far [s], of all its threads.
+[[nodiscard]] inline double processorSeconds() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
 /// The middle one of repeated times, the upper of two. `values` is not empty.

@@ -15,22 +15,7 @@ inline int widen(const float* heights, double* value, int n) noexcept {
   return static_cast<int>(count);
 }
 
-// As weigh() in gaussian_plane-inl.h.
-inline void weighLine(const float* heights, const float* middle, double limit, double* value, double* weight,
-                      int n) noexcept {
-  const Doubles inverse = spread(1.0 / limit);
-  for (int i = 0; i < n; i += 8) {
-    const Doubles z = widened(load<HalfFloats>(heights + i));
-    Doubles w = spread(1.0);
-    if (middle != nullptr) {
-      const Doubles r = (z - widened(load<HalfFloats>(middle + i))) * inverse;
-      const Doubles rest = spread(1.0) - r * r;
-      w = rest > 0.0 ? rest * rest : Doubles{};
-    }
-    store(value + i, z == z ? z * w : Doubles{});
-    store(weight + i, z == z ? w : Doubles{});
-  }
-}
+#include "engine/filter/gaussian_weigh-inl.h"
 
 // out[i] = sum over t of weights[t] * in[i + t], i in 0 .. 64.
 inline void alongStrip(const double* in, const double* weights, int taps, double* out) noexcept {

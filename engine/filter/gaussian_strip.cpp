@@ -24,7 +24,7 @@ constexpr std::int32_t kTogether = 4;  // rows of downStrip
 void GaussianStrips::sumRows(const FieldReader& field, const SampleWeights& weights, const SampleRect& strip,
                              std::int32_t count, Scratch& scratch) const {
   const auto widenRow = FETTLE_AT_LEVEL(level_, widen);
-  const auto weighRow = FETTLE_AT_LEVEL(level_, weighLine);
+  const auto weighRow = FETTLE_AT_LEVEL(level_, weigh);
   const auto along = FETTLE_AT_LEVEL(level_, alongStrip);
   const std::int32_t left = strip.column - x_.far, n = (kStrip + 2 * x_.far + 7) / 8 * 8;
   const std::int32_t c0 = std::max(left, 0), inside = std::min(left + n, field.width()) - c0;
