@@ -24,7 +24,7 @@ class Files {
   std::vector<FilePlace> shown_places;
   ImportForm form;      ///< as typed so far
   ScanOptions reading;  ///< the last of them that could be read
-  /// Of the page's file, as far as it was read: what stays while it is read anew.
+  /// Of the page's file, as far as it was read: what stays while it is read again.
   std::optional<engine::Grid> found_grid;
   std::vector<std::string> found_warnings;
   FieldsThatApply apply;
