@@ -53,10 +53,10 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
   view_ = vk::raii::ImageView(context.device(), view);
 }
 
-GpuImage pictureImage(const Context& context, vk::Extent2D extent) {
+GpuImage pictureImage(const Context& context, vk::Extent2D extent, vk::Format format) {
   using Usage = vk::ImageUsageFlagBits;
   return {context,
-          kColourFormat,
+          format,
           extent,
           1,
           GpuImage::Kind::kPlane,

@@ -70,7 +70,8 @@ class GpuImage {
 };
 
 /// An image that a picture is drawn to and copied out of. Throws.
-[[nodiscard]] GpuImage pictureImage(const Context& context, vk::Extent2D extent);
+[[nodiscard]] GpuImage pictureImage(const Context& context, vk::Extent2D extent,
+                                    vk::Format format = kColourFormat);
 
 /// Records the copy of a finished colour image (in layout eTransferSrcOptimal) to a buffer of 4 bytes per
 /// pixel that the host reads once the commands are completed.

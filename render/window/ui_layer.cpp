@@ -41,6 +41,21 @@ vk::raii::RenderPass makePass(const vk::raii::Device& device) {
   return {device, info.setAttachments(colour).setSubpasses(subpass)};
 }
 
+// What of a place lies outside another: four rectangles at most.
+std::vector<Rectangle> outside(const Rectangle& place, const Rectangle& other) {
+  const Rectangle common = cut(place, other);
+  if (empty(common)) return {place};
+  const int right = common.x + common.width, bottom = common.y + common.height;
+  std::vector<Rectangle> parts{
+      {place.x, place.y, place.width, common.y - place.y},
+      {place.x, bottom, place.width, place.y + place.height - bottom},
+      {place.x, common.y, common.x - place.x, common.height},
+      {right, common.y, place.x + place.width - right, common.height},
+  };
+  std::erase_if(parts, [](const Rectangle& part) { return empty(part); });
+  return parts;
+}
+
 }  // namespace
 
 UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_file)
@@ -102,6 +117,7 @@ void UiLayer::leave() noexcept {
   }
   ImGui_ImplVulkan_Shutdown();
   framebuffer_ = nullptr;
+  damage_.forget();
   image_ = GpuImage();
   pass_ = nullptr;
   descriptors_ = nullptr;
@@ -127,6 +143,7 @@ void UiLayer::fit(vk::Extent2D extent) {
   using Usage = vk::ImageUsageFlagBits;
   context_->device().waitIdle();
   framebuffer_.clear();
+  damage_.forget();
   image_ = GpuImage(*context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
                     Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc,
                     vk::ImageAspectFlagBits::eColor);
@@ -332,29 +349,100 @@ void UiLayer::endFrame() {
   ImGui::Render();
 }
 
-void UiLayer::clear(const vk::raii::CommandBuffer& commands) const {
-  change(commands, image_, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal, Stage::eAllTransfer,
-         Access::eTransferRead, Stage::eAllTransfer, Access::eTransferWrite);
-  commands.clearColorImage(image_.image(), ImageLayout::eTransferDstOptimal,
-                           vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}),
-                           image_.range());
-  // Two transfer writes in a row need a barrier.
-  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eTransferDstOptimal,
-         Stage::eAllTransfer, Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
+// The pixels to be drawn again.
+std::vector<Rectangle> UiLayer::changedPlaces(const ImDrawData& panels, const Below& below) {
+  const vk::Extent2D extent = image_.extent();
+  const Rectangle frame{0, 0, static_cast<int>(extent.width), static_cast<int>(extent.height)};
+  const Rectangle picture = below.picture != nullptr ? cut(below.place, frame) : Rectangle{};
+  Places places;
+  const bool moved = std::exchange(below_, picture) != picture;
+  const bool known = damage_.next(panels, places);
+  // Panels in other units than pixels are not cut to pixels.
+  const bool pixels = panels.FramebufferScale.x == 1.0F && panels.FramebufferScale.y == 1.0F &&
+                      panels.DisplayPos.x == 0.0F && panels.DisplayPos.y == 0.0F;
+  if (!known || moved || !pixels) return {frame};
+  if (below.changed) places.add(picture);
+  std::vector<Rectangle> all = places.take();
+  for (Rectangle& place : all) place = cut(place, frame);
+  std::erase_if(all, [](const Rectangle& place) { return empty(place); });
+  return all;
 }
 
-void UiLayer::draw(const vk::raii::CommandBuffer& commands) const {
-  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
-         Stage::eAllTransfer, Access::eTransferWrite, Stage::eColorAttachmentOutput,
-         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
-  vk::RenderPassBeginInfo begin;
-  begin.setRenderPass(*pass_).setFramebuffer(*framebuffer_).setRenderArea({{0, 0}, image_.extent()});
-  commands.beginRenderPass(begin, vk::SubpassContents::eInline);
-  ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
-  commands.endRenderPass();
+void UiLayer::draw(const vk::raii::CommandBuffer& commands, const Below& below) {
+  ImDrawData& panels = *ImGui::GetDrawData();
+  const bool first = !damage_.known();
+  const std::vector<Rectangle> places = changedPlaces(panels, below);
+  if (places.empty()) return;
+  std::vector<vk::ImageCopy> copies;
+  for (const Rectangle& place : places) {
+    const Rectangle part = cut(place, below_);
+    if (empty(part)) continue;
+    // A copy of code values: sRGB is reinterpreted as UNORM without a change.
+    vk::ImageCopy copy;
+    copy.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setSrcOffset({part.x - below.place.x, part.y - below.place.y, 0})
+        .setDstOffset({part.x, part.y, 0})
+        .setExtent({static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 1});
+    copies.push_back(copy);
+  }
+  const Barriers::Access panels_drawn{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+                                      Access::eColorAttachmentRead | Access::eColorAttachmentWrite};
+  const Barriers::Access shown{first ? ImageLayout::eUndefined : ImageLayout::eTransferSrcOptimal,
+                               Stage::eAllTransfer, Access::eTransferRead};
+  if (copies.empty()) {
+    Barriers begin;
+    begin.add(image_.image(), image_.range(), shown, panels_drawn);
+    begin.record(commands);
+  } else {
+    const Barriers::Access written{ImageLayout::eTransferDstOptimal, Stage::eAllTransfer,
+                                   Access::eTransferWrite};
+    Barriers begin;
+    begin.add(image_.image(), image_.range(), shown, written);
+    // The picture was drawn by an earlier submission of this queue, whose last barrier does not include this copy.
+    begin.add(below.picture->image(), below.picture->range(),
+              {ImageLayout::eTransferSrcOptimal, Stage::eAllCommands, Access::eMemoryWrite},
+              {ImageLayout::eTransferSrcOptimal, Stage::eAllTransfer, Access::eTransferRead});
+    begin.record(commands);
+    commands.copyImage(below.picture->image(), ImageLayout::eTransferSrcOptimal, image_.image(),
+                       ImageLayout::eTransferDstOptimal, copies);
+    Barriers copied;
+    copied.add(image_.image(), image_.range(), written, panels_drawn);
+    copied.record(commands);
+  }
+  drawPanels(commands, panels, places, below_);
   change(commands, image_, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eAllTransfer,
          Access::eTransferRead);
+}
+
+void UiLayer::drawPanels(const vk::raii::CommandBuffer& commands, ImDrawData& panels,
+                         const std::vector<Rectangle>& places, const Rectangle& picture) const {
+  vk::RenderPassBeginInfo begin;
+  begin.setRenderPass(*pass_).setFramebuffer(*framebuffer_).setRenderArea({{0, 0}, image_.extent()});
+  commands.beginRenderPass(begin, vk::SubpassContents::eInline);
+  std::vector<vk::ClearRect> beside;
+  for (const Rectangle& place : places)
+    for (const Rectangle& part : outside(place, picture))
+      beside.push_back({{{part.x, part.y},
+                         {static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height)}},
+                        0,
+                        1});
+  if (!beside.empty()) {
+    const vk::ClearAttachment ground(vk::ImageAspectFlagBits::eColor, 0,
+                                     vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}));
+    commands.clearAttachments(ground, beside);
+  }
+  std::vector<ImVector<ImDrawCmd>> whole;
+  for (int i = 0; i < panels.CmdListsCount; ++i) {
+    ImVector<ImDrawCmd>& list = panels.CmdLists[i]->CmdBuffer;
+    whole.push_back(list);
+    list = cutTo(list, places);
+  }
+  ImGui_ImplVulkan_RenderDrawData(&panels, *commands);
+  for (int i = 0; i < panels.CmdListsCount; ++i)
+    panels.CmdLists[i]->CmdBuffer = whole[static_cast<std::size_t>(i)];
+  commands.endRenderPass();
 }
 
 }  // namespace fettle::render

@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "render/vulkan/memory.h"
+#include "render/window/panel_damage.h"
 
 struct GLFWwindow;
 
@@ -22,7 +23,9 @@ namespace fettle::render {
 /// Threading: main thread. Throws vk::SystemError.
 class UiLayer {
  public:
-  static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Unorm;
+  /// In the order of most displays, for which the image is then copied as it is; and that of pictures for it.
+  static constexpr vk::Format kFormat = vk::Format::eB8G8R8A8Unorm,
+                              kPictureFormat = vk::Format::eB8G8R8A8Srgb;
 
   /// `scale`: of the display. `layout_file`: where ImGui stores the positions of the panels; empty: nowhere.
   /// The state of the panels (positions, text being typed) lives as long as this, independent of devices.
@@ -71,9 +74,17 @@ class UiLayer {
   /// Ends the frame's panels and stores their draw lists.
   void endFrame();
 
-  /// The image is first the target of transfers, then of the panels (draw()), then ready to be copied from.
-  void clear(const vk::raii::CommandBuffer& commands) const;
-  void draw(const vk::raii::CommandBuffer& commands) const;
+  /// A picture below the panels: in eTransferSrcOptimal, written by earlier commands.
+  struct Below {
+    const GpuImage* picture = nullptr;  ///< of kPictureFormat; null: there is none
+    Rectangle place;                    ///< where it lies [px]
+    bool changed = true;                ///< since the last frame
+  };
+  /// Draws what changed since the last frame - of the picture, and where panels look different - and leaves image() in
+  /// eTransferSrcOptimal.
+  void draw(const vk::raii::CommandBuffer& commands, const Below& below);
+  /// In the next frame all is drawn again.
+  void forget() noexcept { damage_.forget(); }
   [[nodiscard]] const GpuImage& image() const noexcept { return image_; }
 
  private:
@@ -87,6 +98,9 @@ class UiLayer {
     float x, y;
   };
   void makeStyle(double scale) const;
+  [[nodiscard]] std::vector<Rectangle> changedPlaces(const ImDrawData& panels, const Below& below);
+  void drawPanels(const vk::raii::CommandBuffer& commands, ImDrawData& panels,
+                  const std::vector<Rectangle>& places, const Rectangle& picture) const;
   /// Whether this frame is the mouse's: a press or release of it comes, or a button of it is down.
   [[nodiscard]] bool holdClick();
   [[nodiscard]] bool wantsKeys() const noexcept;
@@ -108,6 +122,8 @@ class UiLayer {
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;
   GpuImage image_;
+  PanelDamage damage_;  // of image_
+  Rectangle below_;     // the place of the picture in it; of size zero: none
   vk::raii::Framebuffer framebuffer_ = nullptr;
 };
 

@@ -158,9 +158,10 @@ struct Window::Impl {
   std::unique_ptr<Swapchain> swapchain;
   GpuImage picture;
   LiveTarget target;
-  bool drawn = false;   // something was drawn to `picture`
-  bool usable = false;  // according to the last present()
-  bool seen = false;    // the window is on the screen
+  bool drawn = false;            // something was drawn to `picture`
+  bool picture_changed = false;  // since the last frame
+  bool usable = false;           // according to the last present()
+  bool seen = false;             // the window is on the screen
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
   std::vector<InputEvent> input;
@@ -212,7 +213,6 @@ struct Window::Impl {
     return {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
             held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT), held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
   }
-  void copyPicture(const vk::raii::CommandBuffer& commands) const;
   engine::Status enterDevice();
   void leaveDevice() noexcept;
 };
@@ -223,7 +223,7 @@ engine::Status Window::Impl::enterDevice() {
   context = *std::move(made);
   device_name = context->name();
   try {
-    swapchain = std::make_unique<Swapchain>(*context);
+    swapchain = std::make_unique<Swapchain>(*context, UiLayer::kFormat);
     ui->enter(*context);
   } catch (const std::exception& error) {
     const engine::Error why = lost(device_name, error.what());
@@ -510,7 +510,7 @@ const Rectangle& Window::pictureArea() const {
   return impl_->area;
 }
 std::uint32_t Window::pictureFormat() {
-  return static_cast<std::uint32_t>(kColourFormat);
+  return static_cast<std::uint32_t>(UiLayer::kPictureFormat);
 }
 
 engine::Result<LiveTarget*> Window::pictureTarget() try {
@@ -519,13 +519,13 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
                             static_cast<std::uint32_t>(w.area.height)};
   if (w.picture.extent() != extent) {
     w.context->device().waitIdle();
-    w.picture = pictureImage(*w.context, extent);
+    w.picture = pictureImage(*w.context, extent, UiLayer::kPictureFormat);
   }
   w.target.image = w.picture.image();
   w.target.view = w.picture.view();
   w.target.extent = extent;
   w.target.leaves_as = ImageLayout::eTransferSrcOptimal;
-  w.drawn = true;
+  w.drawn = w.picture_changed = true;
   return &w.target;
 } catch (const std::exception& error) {
   // The old image may be destroyed without a new one in its place.
@@ -536,24 +536,6 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
 
 void Window::clearPicture() noexcept {
   impl_->drawn = false;
-}
-
-void Window::Impl::copyPicture(const vk::raii::CommandBuffer& commands) const {
-  // Drawn by an earlier submission of this queue; its last barrier does not include this copy.
-  change(commands, picture, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
-         Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer, Access::eTransferRead);
-  const vk::Extent2D frame = ui->image().extent(), size = picture.extent();
-  const int left = std::max(area.x, 0), top = std::max(area.y, 0);
-  if (left >= static_cast<int>(frame.width) || top >= static_cast<int>(frame.height)) return;
-  // A copy of code values: sRGB is reinterpreted as UNORM without a change.
-  vk::ImageCopy copy;
-  copy.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-      .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-      .setDstOffset({left, top, 0})
-      .setExtent({std::min(size.width, frame.width - static_cast<std::uint32_t>(left)),
-                  std::min(size.height, frame.height - static_cast<std::uint32_t>(top)), 1});
-  commands.copyImage(picture.image(), ImageLayout::eTransferSrcOptimal, ui->image().image(),
-                     ImageLayout::eTransferDstOptimal, copy);
 }
 
 engine::Result<PresentReport> Window::present() {
@@ -576,9 +558,11 @@ engine::Result<PresentReport> Window::present() {
       const bool shown = w.swapchain->show(
           w.ui->image().image(),
           [&](const vk::raii::CommandBuffer& commands) {
-            w.ui->clear(commands);
-            if (w.drawn) w.copyPicture(commands);
-            w.ui->draw(commands);
+            w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
+                                  {std::max(w.area.x, 0), std::max(w.area.y, 0),
+                                   static_cast<int>(w.picture.extent().width),
+                                   static_cast<int>(w.picture.extent().height)},
+                                  std::exchange(w.picture_changed, false)});
           },
           while_waiting,
           [&w] {
@@ -619,7 +603,10 @@ engine::Result<Image> Window::capture() {
     Image image{static_cast<int>(extent.width), static_cast<int>(extent.height), {}};
     image.rgba.resize(bytes);
     std::memcpy(image.rgba.data(), buffer.data(), bytes);
-    for (std::size_t i = 3; i < bytes; i += 4) image.rgba[i] = 255;
+    for (std::size_t i = 0; i < bytes; i += 4) {
+      std::swap(image.rgba[i], image.rgba[i + 2]);
+      image.rgba[i + 3] = 255;
+    }
     return image;
   } catch (const std::exception& error) {
     return tl::unexpected(lost(w.device_name, error.what()));

@@ -21,7 +21,7 @@ vk::SurfaceFormatKHR chooseFormat(const std::vector<vk::SurfaceFormatKHR>& offer
 
 }  // namespace
 
-Swapchain::Swapchain(Context& context) : context_(context) {
+Swapchain::Swapchain(Context& context, vk::Format source) : context_(context), source_format_(source) {
   format_ = chooseFormat(context_.physical().getSurfaceFormatsKHR(context_.surface()));
   const vk::raii::Device& device = context_.device();
   pool_ = vk::raii::CommandPool(device,
@@ -74,6 +74,23 @@ bool Swapchain::fit(vk::Extent2D wanted) {
   return true;
 }
 
+// As it is where the display has the same order of channels, which for a processor that draws is a tenth of the work.
+void Swapchain::copyOrConvert(vk::Image source, std::uint32_t index) {
+  constexpr vk::ImageSubresourceLayers kColour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+  if (format_.format == source_format_) {
+    const vk::ImageCopy copy(kColour, {}, kColour, {}, {extent_.width, extent_.height, 1});
+    commands_.copyImage(source, ImageLayout::eTransferSrcOptimal, images_[index],
+                        ImageLayout::eTransferDstOptimal, copy);
+    return;
+  }
+  const std::array<vk::Offset3D, 2> all{
+      vk::Offset3D{0, 0, 0},
+      vk::Offset3D{static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height), 1}};
+  const vk::ImageBlit blit(kColour, all, kColour, all);
+  commands_.blitImage(source, ImageLayout::eTransferSrcOptimal, images_[index],
+                      ImageLayout::eTransferDstOptimal, blit, vk::Filter::eNearest);
+}
+
 bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
                      const std::function<void()>& while_waiting,
                      const std::function<void()>& before_showing) {
@@ -99,17 +116,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
   record(commands_);
   change(commands_, images_[index], ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
          Stage::eAllTransfer, {}, Stage::eAllTransfer, Access::eTransferWrite);
-  vk::ImageBlit blit;
-  const std::array<vk::Offset3D, 2> all{
-      vk::Offset3D{0, 0, 0},
-      vk::Offset3D{static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height), 1}};
-  blit.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-      .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-      .setSrcOffsets(all)
-      .setDstOffsets(all);
-  // A blit, not a copy: it also converts to the channel order of the display.
-  commands_.blitImage(source, ImageLayout::eTransferSrcOptimal, images_[index],
-                      ImageLayout::eTransferDstOptimal, blit, vk::Filter::eNearest);
+  copyOrConvert(source, index);
   change(commands_, images_[index], ImageLayout::eTransferDstOptimal, ImageLayout::ePresentSrcKHR,
          Stage::eAllTransfer, Access::eTransferWrite, Stage::eNone, {});
   commands_.end();

@@ -15,7 +15,8 @@ namespace fettle::render {
 /// Threading: as Context. Throws vk::SystemError; vk::OutOfDateKHRError never.
 class Swapchain {
  public:
-  explicit Swapchain(Context& context);
+  /// For pictures of this format.
+  Swapchain(Context& context, vk::Format source);
 
   /// Fits the images to a frame of this size, or to the surface's own size where the window system dictates
   /// one. False while there is nothing to show on (minimised).
@@ -33,7 +34,10 @@ class Swapchain {
   [[nodiscard]] double waitedMs() const noexcept { return waited_ms_; }
 
  private:
+  void copyOrConvert(vk::Image source, std::uint32_t index);
+
   Context& context_;
+  vk::Format source_format_;
   vk::SurfaceFormatKHR format_;
   vk::Extent2D extent_;
   double waited_ms_ = 0.0;

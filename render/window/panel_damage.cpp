@@ -1,0 +1,197 @@
+#include "render/window/panel_damage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace fettle::render {
+namespace {
+
+Rectangle around(const Rectangle& a, const Rectangle& b) {
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+double area(const Rectangle& r) {
+  return static_cast<double>(r.width) * r.height;
+}
+
+bool within(const Rectangle& inner, const Rectangle& outer) {
+  return inner.x >= outer.x && inner.y >= outer.y && inner.x + inner.width <= outer.x + outer.width &&
+         inner.y + inner.height <= outer.y + outer.height;
+}
+
+// Whether one pass over both is cheaper than two.
+bool near(const Rectangle& a, const Rectangle& b) {
+  constexpr double kSpare_px = 4096.0;  // as much as it costs to begin
+  return !empty(cut(a, b)) || area(around(a, b)) <= area(a) + area(b) + kSpare_px;
+}
+
+// A triangle of a list, with what it is cut to.
+struct Triangle {
+  std::array<const ImDrawVert*, 3> corners{};
+  const ImDrawCmd* command = nullptr;
+};
+
+bool sameLook(const ImDrawCmd& a, const ImDrawCmd& b) {
+  return std::memcmp(&a.ClipRect, &b.ClipRect, sizeof(a.ClipRect)) == 0 && a.TextureId == b.TextureId;
+}
+
+bool operator==(const Triangle& a, const Triangle& b) {
+  if (!sameLook(*a.command, *b.command)) return false;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::memcmp(a.corners[k], b.corners[k], sizeof(ImDrawVert)) != 0) return false;
+  return true;
+}
+
+Rectangle placeOf(const Triangle& t) {
+  const ImVec4& clip = t.command->ClipRect;
+  ImVec2 low = t.corners[0]->pos, high = low;
+  for (const ImDrawVert* corner : t.corners) {
+    low = {std::min(low.x, corner->pos.x), std::min(low.y, corner->pos.y)};
+    high = {std::max(high.x, corner->pos.x), std::max(high.y, corner->pos.y)};
+  }
+  // A pixel more on each side: whatever the rounding.
+  const int x0 = static_cast<int>(std::floor(std::max(low.x, clip.x))) - 1;
+  const int y0 = static_cast<int>(std::floor(std::max(low.y, clip.y))) - 1;
+  const int x1 = static_cast<int>(std::ceil(std::min(high.x, clip.z))) + 1;
+  const int y1 = static_cast<int>(std::ceil(std::min(high.y, clip.w))) + 1;
+  return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
+}
+
+// All triangles of a panel.
+std::vector<Triangle> trianglesOf(const ImDrawCmd* commands, int count, const ImDrawVert* corners,
+                                  const ImDrawIdx* order) {
+  std::vector<Triangle> all;
+  for (const ImDrawCmd* c = commands; c != commands + count; ++c)
+    for (unsigned int i = 0; i + 3 <= c->ElemCount; i += 3) {
+      const ImDrawIdx* const at = order + c->IdxOffset + i;
+      const ImDrawVert* const first = corners + c->VtxOffset;
+      all.push_back({{first + at[0], first + at[1], first + at[2]}, c});
+    }
+  return all;
+}
+
+bool sameBytes(const void* a, const void* b, std::size_t bytes) {
+  return bytes == 0 || std::memcmp(a, b, bytes) == 0;
+}
+
+}  // namespace
+
+void Places::add(const Rectangle& place) {
+  if (empty(place)) return;
+  for (const Rectangle& known : places_)
+    if (within(place, known)) return;
+  Rectangle grown = place;
+  // Each that is taken in may make it reach others.
+  for (std::size_t k = 0; k < places_.size();) {
+    if (!near(grown, places_[k])) {
+      ++k;
+      continue;
+    }
+    grown = around(grown, places_[k]);
+    places_[k] = places_.back();
+    places_.pop_back();
+    k = 0;
+  }
+  places_.push_back(grown);
+  if (places_.size() <= kMost) return;
+  // The two whose common rectangle costs least.
+  std::size_t a = 0, b = 1;
+  const auto cost = [&](std::size_t i, std::size_t j) {
+    return area(around(places_[i], places_[j])) - area(places_[i]) - area(places_[j]);
+  };
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    for (std::size_t j = i + 1; j < places_.size(); ++j)
+      if (cost(i, j) < cost(a, b)) {
+        a = i;
+        b = j;
+      }
+  const Rectangle both = around(places_[a], places_[b]);
+  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(b));
+  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(a));
+  add(both);
+}
+
+std::vector<Rectangle> Places::take() {
+  return std::exchange(places_, {});
+}
+
+bool PanelDamage::Panel::same(const ImDrawList& now) const noexcept {
+  const auto count = [](const auto& v) { return static_cast<std::size_t>(v.Size); };
+  if (commands.size() != count(now.CmdBuffer) || corners.size() != count(now.VtxBuffer) ||
+      order.size() != count(now.IdxBuffer))
+    return false;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const ImDrawCmd &a = commands[i], &b = now.CmdBuffer[static_cast<int>(i)];
+    if (!sameLook(a, b) || a.ElemCount != b.ElemCount || a.IdxOffset != b.IdxOffset ||
+        a.VtxOffset != b.VtxOffset)
+      return false;
+  }
+  return sameBytes(corners.data(), now.VtxBuffer.Data, corners.size() * sizeof(ImDrawVert)) &&
+         sameBytes(order.data(), now.IdxBuffer.Data, order.size() * sizeof(ImDrawIdx));
+}
+
+void PanelDamage::Panel::keep(const ImDrawList& now) {
+  commands.assign(now.CmdBuffer.begin(), now.CmdBuffer.end());
+  corners.assign(now.VtxBuffer.begin(), now.VtxBuffer.end());
+  order.assign(now.IdxBuffer.begin(), now.IdxBuffer.end());
+}
+
+void PanelDamage::compare(const Panel& before, const ImDrawList& now, Places& places) {
+  const std::vector<Triangle> old =
+      trianglesOf(before.commands.data(), static_cast<int>(before.commands.size()), before.corners.data(),
+                  before.order.data());
+  const std::vector<Triangle> fresh =
+      trianglesOf(now.CmdBuffer.Data, now.CmdBuffer.Size, now.VtxBuffer.Data, now.IdxBuffer.Data);
+  std::size_t first = 0, old_end = old.size(), fresh_end = fresh.size();
+  if (old.size() == fresh.size()) {
+    for (; first < old_end; ++first)
+      if (!(old[first] == fresh[first])) {
+        places.add(placeOf(old[first]));
+        places.add(placeOf(fresh[first]));
+      }
+    return;
+  }
+  while (first < old_end && first < fresh_end && old[first] == fresh[first]) ++first;
+  while (old_end > first && fresh_end > first && old[old_end - 1] == fresh[fresh_end - 1]) {
+    --old_end;
+    --fresh_end;
+  }
+  for (std::size_t i = first; i < old_end; ++i) places.add(placeOf(old[i]));
+  for (std::size_t i = first; i < fresh_end; ++i) places.add(placeOf(fresh[i]));
+}
+
+bool PanelDamage::next(const ImDrawData& panels, Places& places) {
+  const bool known = std::exchange(known_, true);
+  const auto count = static_cast<std::size_t>(panels.CmdListsCount);
+  const std::size_t before = known ? panels_.size() : 0;
+  panels_.resize(std::max(count, panels_.size()));
+  static const ImDrawList kNothing(nullptr);
+  for (std::size_t i = 0; i < panels_.size(); ++i) {
+    const ImDrawList& now = i < count ? *panels.CmdLists[i] : kNothing;
+    if (i < before && panels_[i].same(now)) continue;
+    if (known) compare(i < before ? panels_[i] : Panel{}, now, places);
+    panels_[i].keep(now);
+  }
+  panels_.resize(count);
+  return known;
+}
+
+ImVector<ImDrawCmd> cutTo(const ImVector<ImDrawCmd>& commands, const std::vector<Rectangle>& places) {
+  ImVector<ImDrawCmd> cut;
+  for (const ImDrawCmd& command : commands)
+    for (const Rectangle& place : places) {
+      ImDrawCmd part = command;
+      part.ClipRect.x = std::max(command.ClipRect.x, static_cast<float>(place.x));
+      part.ClipRect.y = std::max(command.ClipRect.y, static_cast<float>(place.y));
+      part.ClipRect.z = std::min(command.ClipRect.z, static_cast<float>(place.x + place.width));
+      part.ClipRect.w = std::min(command.ClipRect.w, static_cast<float>(place.y + place.height));
+      if (part.ClipRect.x < part.ClipRect.z && part.ClipRect.y < part.ClipRect.w) cut.push_back(part);
+    }
+  return cut;
+}
+
+}  // namespace fettle::render
