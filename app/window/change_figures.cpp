@@ -21,7 +21,7 @@ bool ChangeFigures::poll(const LoopClient& client, bool working) {
   const engine::Version now = client.upright();
   if (!measuring_.busy() && !(measured_ == now) && !working) {
     measured_ = now;
-    measuring_.start([original = client.original(), now](engine::JobControl& job) {
+    measuring_.replace([original = client.original(), now](engine::JobControl& job) {
       return engine::compareFields(original, now, job);
     });
   }

@@ -88,7 +88,7 @@ bool ColourRange::poll(const render::Shown& shown, bool needed, bool working) {
   Values now{shown.versions, shown.original};
   if (now == measured_) return changed;
   measured_ = std::move(now);
-  measuring_.start([versions = measured_.versions, original = measured_.original](engine::JobControl& job) {
+  measuring_.replace([versions = measured_.versions, original = measured_.original](engine::JobControl& job) {
     return sampleOf(versions, original, job);
   });
   return changed;

@@ -15,6 +15,7 @@
 #include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
 #include "app/window/scene_edits.h"
+#include "app/work/behind_the_window.h"
 #include "engine/base/stopwatch.h"
 #include "render/plan/number_text.h"
 
@@ -58,6 +59,7 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   if (options.xr) render::Headset::silenceLoader();
   render::WindowOptions window = options.window;
   window.layout_file = settingsPath("/layout.ini");
+  putWorkersBehindTheWindow();
   auto opened = render::Window::create(window);
   if (!opened) return tl::unexpected(opened.error());
   std::unique_ptr<Workstation> station(new Workstation(options, std::move(*opened)));

@@ -7,8 +7,10 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "app/terminal.h"
+#include "app/work/behind_the_window.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/base/stopwatch.h"
@@ -22,8 +24,8 @@ struct WorkProgress {
 };
 
 /// A long job on its own thread, polled by the main thread once per frame. Starting another cancels the
-/// running one and waits until it stops (JobControl: about 50 ms); so does the destructor. Threading: the
-/// main thread calls everything.
+/// running one and waits until it stops (JobControl: about 50 ms of the processor); so does the destructor. Threading: the
+/// main thread calls everything; the work goes behind it (behind_the_window.h).
 template <class T>
 class Background {
  public:
@@ -35,17 +37,16 @@ class Background {
   void start(Work work) {
     cancel();
     thread_ = {};
-    run_ = std::make_unique<Run>();
-    thread_ = std::jthread([run = run_.get(), work = std::move(work)] {
-      try {
-        run->result.emplace(work(run->job));
-      } catch (const std::bad_alloc&) {
-        run->result.emplace(
-            engine::failure("memory ran out", "", "close other programs or take a smaller scan"));
-      }
-      // Release: publishes the result.
-      run->done.store(true, std::memory_order_release);
-    });
+    begin(std::move(work));
+  }
+
+  /// The same without waiting: the running one ends beside the new one, and its result is dropped. Only where work uses
+  /// nothing but what it was given.
+  void replace(Work work) {
+    cancel();
+    std::erase_if(left_, [](const Left& left) { return left.run->done.load(std::memory_order_acquire); });
+    if (run_) left_.push_back({std::move(run_), std::move(thread_)});
+    begin(std::move(work));
   }
 
   void cancel() noexcept {
@@ -87,6 +88,27 @@ class Background {
     std::optional<engine::Result<T>> result;
     std::atomic<bool> done{false};
   };
+  struct Left {
+    std::unique_ptr<Run> run;
+    std::jthread thread;
+  };
+
+  void begin(Work work) {
+    run_ = std::make_unique<Run>();
+    thread_ = std::jthread([run = run_.get(), work = std::move(work)] {
+      goBehindTheWindow();
+      try {
+        run->result.emplace(work(run->job));
+      } catch (const std::bad_alloc&) {
+        run->result.emplace(
+            engine::failure("memory ran out", "", "close other programs or take a smaller scan"));
+      }
+      // Release: publishes the result.
+      run->done.store(true, std::memory_order_release);
+    });
+  }
+
+  std::vector<Left> left_;  // cancelled, ending
   std::unique_ptr<Run> run_;
   std::jthread thread_;  // last: joined before the data it uses is destroyed
 };

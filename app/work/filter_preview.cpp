@@ -56,8 +56,8 @@ void FilterPreview::compute(LoopClient& client, Keep keep, const engine::FieldVi
   view_ = std::make_shared<engine::FilterView>(client.field(), original, view);
   of_view_ = spec;
   begun_ = looked_ = Clock::now();
-  computing_.start([base = client.field(), id = client.noteFilterBase(), filtering = view_,
-                    asked = spec](engine::JobControl& job) -> engine::Result<Variant> {
+  computing_.replace([base = client.field(), id = client.noteFilterBase(), filtering = view_,
+                      asked = spec](engine::JobControl& job) -> engine::Result<Variant> {
     auto done = filtering->run(asked, job);
     if (!done) return tl::unexpected(done.error());
     return Variant{asked, done->spec, base, std::move(done->filtered), id};

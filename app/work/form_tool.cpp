@@ -29,17 +29,18 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
 
 void FormTool::measure(const LoopClient& client) {
   dropApproximation();
-  working_.start([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-    auto fit = fitOf(field, what, job);
-    if (!fit) return tl::unexpected(fit.error());
-    return Work{*std::move(fit), std::nullopt, std::nullopt};
-  });
+  working_.replace(
+      [field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+        auto fit = fitOf(field, what, job);
+        if (!fit) return tl::unexpected(fit.error());
+        return Work{*std::move(fit), std::nullopt, std::nullopt};
+      });
 }
 
 void FormTool::preview(const LoopClient& client) {
   slot_ = std::make_shared<Slot>();
-  working_.start([field = client.newest(), what = options,
-                  slot = slot_](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([field = client.newest(), what = options,
+                    slot = slot_](engine::JobControl& job) -> engine::Result<Work> {
     if (field.formOver() == nullptr && formTakesLong(field.grid())) {
       // Its errors are those of the whole, which will report them.
       if (auto coarse = coarseForm(field, what, job)) {
@@ -73,8 +74,8 @@ void FormTool::dropApproximation() {
 
 void FormTool::takeOut(const LoopClient& client) {
   dropApproximation();
-  working_.start([field = client.newest(), scan = client.scan(),
-                  what = options](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([field = client.newest(), scan = client.scan(),
+                    what = options](engine::JobControl& job) -> engine::Result<Work> {
     auto fit = fitOf(field, what, job);
     if (!fit) return tl::unexpected(fit.error());
     auto change = makeFormChange(FormStep::kTakeOut, fit->form, field, scan, job);
@@ -87,7 +88,7 @@ void FormTool::takeOut(const LoopClient& client) {
 void FormTool::start(const LoopClient& client, FormStep step) {
   if (client.newest().formOver() == nullptr) return;
   dropApproximation();
-  working_.start(
+  working_.replace(
       [field = client.newest(), scan = client.scan(), step](engine::JobControl& job) -> engine::Result<Work> {
         auto change = makeFormChange(step, nullptr, field, scan, job);
         if (!change) return tl::unexpected(change.error());
@@ -130,8 +131,8 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
                        "of those that come nearest to them it is the flattest"});
   if (!work.change || client.changeForm(*work.change)) return true;
   // The field was filtered meanwhile: once more, near what is known.
-  working_.start([field = client.newest(),
-                  work = std::move(work)](engine::JobControl& job) mutable -> engine::Result<Work> {
+  working_.replace([field = client.newest(),
+                    work = std::move(work)](engine::JobControl& job) mutable -> engine::Result<Work> {
     if (auto moved = work.change->moveTo(field, job); !moved) return tl::unexpected(moved.error());
     return Work{std::nullopt, std::move(work.change), std::nullopt};
   });

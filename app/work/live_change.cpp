@@ -8,7 +8,7 @@ void LiveChange::begin(const engine::Version& original) {
   deviation_.reset();
   figures_.reset();
   measured_ = {};
-  working_.start([original](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([original](engine::JobControl& job) -> engine::Result<Work> {
     auto deviation = engine::LiveDeviation::create(original, job);
     if (!deviation) return tl::unexpected(deviation.error());
     return Work{std::make_shared<engine::LiveDeviation>(std::move(*deviation)), std::nullopt, 0.0};
@@ -29,7 +29,7 @@ bool LiveChange::poll(const LoopClient& client) {
   engine::Version now = client.upright();
   if (now == measured_) return changed;
   measured_ = now;
-  working_.start([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {
     const engine::Stopwatch watch;
     auto figures = deviation->update(now, job);
     // Without memory the figures do not change; the next computation may succeed.

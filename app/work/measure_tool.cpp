@@ -89,8 +89,8 @@ engine::Result<Report> measuredState(const engine::Version& field, const Measure
 }  // namespace
 
 void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen) {
-  working_.start([field = client.newest(), scan = client.original(), seen,
-                  what = options](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([field = client.newest(), scan = client.original(), seen,
+                    what = options](engine::JobControl& job) -> engine::Result<Work> {
     Work work{field, {}};
     work.figures.options = what;
     work.figures.before = engine::measureChange(scan, field).tiles > 0;

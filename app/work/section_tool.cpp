@@ -149,8 +149,8 @@ void SectionTool::start(const LoopClient& client) {
   due_ = false;
   taken_ = client.newest();
   const std::optional<double> known = noise_of_ == client.original() ? noise_mm_ : std::nullopt;
-  working_.start([field = taken_, scan = client.original(), kept = *section(),
-                  known](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([field = taken_, scan = client.original(), kept = *section(),
+                    known](engine::JobControl& job) -> engine::Result<Work> {
     engine::SectionOptions options;
     options.width_mm = kept.width_mm;
     const glm::dvec2 points[] = {kept.from, kept.to};
@@ -174,7 +174,7 @@ void SectionTool::start(const LoopClient& client) {
 
 void SectionTool::startFigures() {
   figures_due_ = false;
-  measuring_.start(
+  measuring_.replace(
       [profiles = *profiles_, wants = wantsOf(*section())](engine::JobControl&) -> engine::Result<Figures> {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         addSpanOf(profiles.now, low, high);

@@ -238,7 +238,7 @@ class Run {
   void computing() {
     constexpr int kFilters = 20;  // more than there are
     for (int i = 0; i < kFilters; ++i) {
-      if (program_.now()["filter"].get<std::string>().starts_with("median")) break;
+      if (program_.now()["filter"].get<std::string>().starts_with("Median")) break;
       press('n');
     }
     press('p');

@@ -1,0 +1,48 @@
+#include "app/work/behind_the_window.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include "app/work/background.h"
+
+namespace fettle::app {
+namespace {
+
+int nice() {
+  return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
+}
+
+TEST(BehindTheWindow, AllWorkersAreAndTheThreadThatAsksIsNot) {
+  const int before = nice();
+  EXPECT_EQ(putWorkersBehindTheWindow(), tbb::info::default_concurrency() - 1);
+  EXPECT_EQ(nice(), before);
+  const std::thread::id here = std::this_thread::get_id();
+  std::mutex mutex;
+  std::set<int> of_workers;
+  tbb::parallel_for(0, 10000, [&](int) {
+    if (std::this_thread::get_id() == here) return;
+    const std::lock_guard lock(mutex);
+    of_workers.insert(nice());
+  });
+  for (const int worker : of_workers) EXPECT_EQ(worker, std::max(before, 10));
+}
+
+TEST(BehindTheWindow, ALongJobIs) {
+  Background<int> job;
+  job.start([](engine::JobControl&) -> engine::Result<int> { return nice(); });
+  const auto done = job.wait();
+  ASSERT_TRUE(done);
+  ASSERT_TRUE(*done);
+  EXPECT_EQ(**done, std::max(nice(), 10));
+}
+
+}  // namespace
+}  // namespace fettle::app
