@@ -29,10 +29,11 @@ constexpr std::size_t kPage = 4096;
   for (std::size_t i = 0; i < bytes; i += kPage) stack[i] = 0;
 }
 
+// Negative where none is allowed.
 int lastCore(const cpu_set_t& allowed) {
-  for (int core = CPU_SETSIZE - 1; core >= 0; --core)
-    if (CPU_ISSET(core, &allowed)) return core;
-  return -1;
+  int core = CPU_SETSIZE - 1;
+  while (core >= 0 && !CPU_ISSET(core, &allowed)) --core;
+  return core;
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class Descent {
  private:
   // Outcome of a search around the present point.
   enum class Outcome : std::uint8_t { kMoved, kRests, kSlides };
+  static constexpr int kNoSide = -1;
 
   [[gnu::always_inline]] inline bool retreat() noexcept;
   [[gnu::always_inline]] inline Outcome searchAcross(const PatchView& p, PairMask across, int side) noexcept;
@@ -46,7 +47,7 @@ class Descent {
     newton_failed_ = false;
     shrinks_ = 0;
     rounds_here_ = 0;
-    side_of_beyond_ = -1;
+    side_of_beyond_ = kNoSide;
     ++result_.cells;
   }
 
@@ -54,9 +55,9 @@ class Descent {
   const glm::dvec3& endpoint_;
   const Pair spacing_;
   Patch* here_;
-  Patch* beyond_;              // the neighbour examined
-  int side_of_beyond_ = -1;    // behind which side of the present cell beyond_ lies; -1: none
-  bool beyond_there_ = false;  // that neighbour exists
+  Patch* beyond_;                 // the neighbour examined
+  int side_of_beyond_ = kNoSide;  // behind which side of the present cell beyond_ lies
+  bool beyond_there_ = false;     // that neighbour exists
   CellIndex cell_;
   Pair at_;
   Pair last_;  // where distance was last seen to fall
@@ -106,7 +107,7 @@ Descent::Outcome Descent::searchAcross(const PatchView& p, PairMask across, int 
 
 bool Descent::enter(int dc, int dr, double f) noexcept {
   const CellIndex other{cell_.column + dc, cell_.row + dr};
-  side_of_beyond_ = -1;
+  side_of_beyond_ = kNoSide;
   if (!surface_.hasCell(other) || !surface_.patch(other, *beyond_)) return false;
   cross(other, Pair{dc != 0 ? 1.0 - at_[0] : at_[0], dr != 0 ? 1.0 - at_[1] : at_[1]}, f);
   return true;

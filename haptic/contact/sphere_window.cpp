@@ -119,7 +119,7 @@ bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcep
   const double field_y = at.y / sy_;
   const double x = field_x - column_;
   const double y = field_y - row_;
-  if (!(x >= 0.0 && y >= 0.0 && x < columns_ - 1 && y < rows_ - 1)) return false;
+  if (!within(x, y)) return false;
   auto i = static_cast<std::int32_t>(x);
   auto j = static_cast<std::int32_t>(y);
   if (from_field_) {
@@ -150,7 +150,7 @@ bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcep
 double SphereWindow::heightUnder(const glm::dvec3& at) const noexcept {
   const double x = at.x / sx_ - column_;
   const double y = at.y / sy_ - row_;
-  if (whole_ && x >= 0.0 && y >= 0.0 && x < columns_ - 1 && y < rows_ - 1) [[likely]] {
+  if (whole_ && within(x, y)) [[likely]] {
     const auto i = static_cast<std::int32_t>(x);
     const auto j = static_cast<std::int32_t>(y);
     const Corners z = corners(i, j);

@@ -114,6 +114,10 @@ class SphereWindow {
     const double* z = z_.data() + j * columns_ + i;
     return {z[0], z[1], z[columns_], z[columns_ + 1]};
   }
+  /// Whether a place, in cells from the first sample, lies over one of the window's cells.
+  [[nodiscard]] bool within(double x, double y) const noexcept {
+    return x >= 0.0 && y >= 0.0 && x < columns_ - 1 && y < rows_ - 1;
+  }
   [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
   struct Box {
     std::int32_t i0, i1, j0, j1;  // cells

@@ -76,6 +76,18 @@ TEST(SphereTip, RestsOneRadiusAboveAFlatAndIsPushedStraightUp) {
   EXPECT_NEAR(d.penetration_mm.z, 2.5, 1e-6);
 }
 
+TEST(SphereTip, OfMoreThanSixteenOfTheSmallerSpacingIsRefusedWithThatRadius) {
+  for (const auto& [sx, sy] : {std::pair{0.5, 2.0}, {2.0, 0.5}}) {
+    const engine::Version field = fieldOf(
+        20, 20, [](int, int) { return 0.0; }, sx, sy);
+    EXPECT_FALSE(sphereProblem(16.0 * 0.5, field.grid()));
+    const auto problem = sphereProblem(16.0 * 0.5 + 1e-9, field.grid());
+    ASSERT_TRUE(problem);
+    EXPECT_NE(problem->find("at most 8 mm"), std::string::npos) << *problem;
+    EXPECT_TRUE(sphereProblem(0.0, field.grid()));
+  }
+}
+
 TEST(SphereTip, TiltedPlaneInAnisotropicMillimetresPushesAlongItsNormal) {
   // z = 0.5 x + 0.25 y mm with 0.5 mm by 2 mm cells.
   Ball ball(fieldOf(
