@@ -366,6 +366,41 @@ TEST_F(Drivers, DriverStartsAgainAfterStop) {
   }
 }
 
+std::ptrdiff_t openFiles() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+TEST_F(Drivers, AStoppedDriverLeavesNoDeviceOpen) {
+  FakeWoody woody(folder(), "woody", Firmware::kW8);
+  woody.plug();
+  ASSERT_TRUE(fettle::tests::eventually([] { return listDevices().size() == 1; }));
+  auto device = driver();
+  const std::ptrdiff_t before = openFiles();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(device->start());
+    {
+      Loop loop(*device);
+      EXPECT_TRUE(fettle::tests::eventually([&] { return uncalibrated(loop); }));
+      EXPECT_GT(openFiles(), before);
+    }
+    device->stop();
+  }
+  // The device, which is in this process, hears a moment later that nobody is there any more.
+  EXPECT_TRUE(fettle::tests::eventually([&] { return openFiles() <= before; })) << openFiles() - before;
+}
+
+// Older firmware counts nothing: its reports have the number 0.
+TEST_F(Drivers, AReportWithoutANumberIsNoLoss) {
+  Bench bench(folder(), Firmware::kW8);
+  ASSERT_TRUE(bench.calibrate());
+  const std::uint64_t before = bench.device->counters().lost_inputs;
+  const std::uint64_t seen = bench.loop->input().sequence;
+  bench.woody.sendRaw(std::vector<std::uint8_t>(8, 0));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > seen + 20; }));
+  // At most those that the next number says were there before it: not the 65,000 up to a number that begins again.
+  EXPECT_LE(bench.device->counters().lost_inputs - before, bench.woody.log().inputs);
+}
+
 TEST_F(Drivers, TwoDevicesAreDistinguishedBySerialNumber) {
   FakeWoody left(folder(), "left", Firmware::kW8, "L1");
   FakeWoody right(folder(), "right", Firmware::kW8, "R2");

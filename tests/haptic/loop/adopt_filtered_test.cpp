@@ -66,6 +66,24 @@ TEST(FilterTiles, TileByTileGivesTheBitsOfTheWholeField) {
     }
 }
 
+// The work of a tile is that of its own samples and of those around that its window reaches, wherever it lies.
+TEST(FilterTiles, ATileTakesNoMoreOfTheFieldThanItsWindowReaches) {
+  const engine::Version input = rough(6, 0.0);
+  FilterSpec spec;
+  spec.kind = FilterKind::kMedian;
+  spec.window = 9;
+  for (const TileSpot& spot : allSpots(input)) {
+    engine::JobControl job;
+    ASSERT_TRUE(filterTiles(input, input, spec, {spot}, job));
+    const auto side = [](std::int32_t tile, std::int32_t samples) {
+      return std::min(64 * tile + 64 + 4, samples) - std::max(64 * tile - 4, 0);
+    };
+    EXPECT_EQ(job.total(), static_cast<std::uint64_t>(side(spot.column, kAdoptedSide)) *
+                               static_cast<std::uint64_t>(side(spot.row, kAdoptedSide - 50)))
+        << spot.column << ' ' << spot.row;
+  }
+}
+
 // The live loop as a worker meets it, with a hand that works while the worker does.
 class LoopPort : public AdoptionPort {
  public:

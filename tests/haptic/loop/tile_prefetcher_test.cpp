@@ -2,9 +2,13 @@
 #include "haptic/loop/tile_prefetcher.h"
 
 #include <cmath>
+#include <fstream>
+#include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "engine/field/tile_store.h"
 #include "haptic/tick/replay.h"
@@ -147,6 +151,36 @@ TEST_F(TilePrefetcherTest, TheSystemMayTakeEverythingButWhatIsUnderTheHand) {
   ASSERT_TRUE(sendOut());
   EXPECT_FALSE(fettle::tests::Pages(&reader.tile(tile + 2, tile + 2)).allInMemory());
   EXPECT_TRUE(fettle::tests::Pages(&reader.tile(1, 1)).allInMemory());
+}
+
+// In bytes: how much a user's programs may lock is limited (ulimit -l).
+std::int64_t lockedBytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmLck:")) return 1024 * std::stoll(line.substr(6));
+  return 0;
+}
+
+TEST_F(TilePrefetcherTest, OnlyThePagesOfTheTilesUnderTheHandAreLocked) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers take mlock away";
+#endif
+  const std::int64_t before = lockedBytes();
+  StoredBench bench(field_, scene_, testOptions(Tool::kSmooth));
+  bench.tickAt({600.0, 600.0, 1.0});
+  bench.near.prefetch();
+  if (bench.near.notLocked() > 0) GTEST_SKIP() << "pages cannot be locked here";
+  const engine::FieldReader reader = field_.reader();
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  std::set<std::uintptr_t> pages;
+  const std::int32_t tile = 600 / engine::kTileSide;
+  for (std::int32_t tr = tile - TilePrefetcher::kTiles; tr <= tile + TilePrefetcher::kTiles; ++tr)
+    for (std::int32_t tc = tile - TilePrefetcher::kTiles; tc <= tile + TilePrefetcher::kTiles; ++tc) {
+      const auto first = reinterpret_cast<std::uintptr_t>(&reader.tile(tc, tr));
+      for (std::uintptr_t at = first / page; at <= (first + sizeof(engine::Tile) - 1) / page; ++at)
+        pages.insert(at);
+    }
+  EXPECT_EQ(lockedBytes() - before, static_cast<std::int64_t>(pages.size() * page));
 }
 
 TEST_F(TilePrefetcherTest, ALiveSessionOverTheDiskEqualsTheReplayOfWhatItWasGiven) {

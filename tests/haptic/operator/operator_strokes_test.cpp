@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "haptic/operator/hand_drift.h"
 #include "haptic/operator/hand_motion.h"
 #include "haptic/scene/scene.h"
 #include "haptic/tick/replay.h"
@@ -124,6 +125,28 @@ TEST(OperatorStrokes, ASteadyHandIsOnTheEdgeAtThePressDepth) {
   }
   EXPECT_LT(first, 5.0 + 0.05);
   EXPECT_EQ(last, 30.0);
+}
+
+// In height, too: away from the surface where the hand's own motion is.
+TEST(OperatorStrokes, ATremblingHandLeavesTheLineAsItsDriftSays) {
+  const glm::dvec2 from{5, 5}, to{30, 20};
+  OperatorSpec spec;
+  spec.smooth_passes = 0;
+  spec.seed = 12;
+  const HandDrift drift(spec.wander_mm, spec.tremor_mm, spec.seed, 1);
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  double i = 0.0;
+  for (const StrokeSample& row : stroked({straight(from, to)}, spec)) {
+    if (row.tool != Tool::kMark) continue;
+    i += 1.0;
+    const double seconds = i / spec.rate_hz;
+    const glm::dvec2 p =
+        from + (to - from) * std::min(1.0, spec.speed_mm_s * seconds / length) + drift.at(seconds);
+    EXPECT_NEAR(row.tip_mm.x, p.x, 1e-9);
+    EXPECT_NEAR(row.tip_mm.y, p.y, 1e-9);
+    EXPECT_NEAR(row.tip_mm.z, 2.0 + 0.1 * p.x - spec.press_mm + drift.heightAt(seconds), 1e-6);
+  }
+  EXPECT_GT(i, 1000.0);
 }
 
 TEST(OperatorStrokes, MarkingAStepTheTipStaysAtItsFootAndComesDownOnTheLowSide) {
