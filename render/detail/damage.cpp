@@ -127,7 +127,7 @@ std::vector<Key> keysOf(const PatchChoice& choice) {
 }  // namespace
 
 Rectangle damageOf(const DamageQuery& query) {
-  if (query.tiles.size() > kManyTiles) return query.visible;
+  if (query.tiles.size() >= kManyTiles) return query.visible;
   const PatchQuery& q = query.now;
   const Screen screen(q, &query.before, query.visible);
   Rectangle damage{};

@@ -92,7 +92,8 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
                       const TileExtremes& extremes, int patch_cells, int across, DetailMeasure::Error* out) {
   const int stride = 1 << level, vertex_stride = (engine::kTileSide >> level) + 1;
   const glm::ivec2 coarse = extremes.count;
-  const int columns = cells.x + 1, patches = (coarse.x + patch_cells - 1) / patch_cells;
+  const glm::ivec2 patches = (coarse + patch_cells - 1) / patch_cells;
+  const int columns = cells.x + 1;
 
   alignas(64) float u[kColumns] = {};
   for (int c = 0; c < columns; ++c) {
@@ -120,7 +121,7 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
     const int at = j * TileExtremes::kMost;
     kExcessOfRow(below, above, extremes.lowest + at, extremes.highest + at, extremes.hole + at, coarse.x,
                  excess);
-    for (int p = 0; p < patches; ++p)
+    for (int p = 0; p < patches.x; ++p)
       for (int i = p * patch_cells; i < std::min((p + 1) * patch_cells, coarse.x); ++i)
         line[p].excess = std::max(line[p].excess, excess[i]);
     // The diagonal of a cell that is cut short is not an edge of the fine surface: its kink shows between
@@ -134,7 +135,7 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
       for (int c = from; c <= from + wide; ++c) kink[c] = std::max(kink[c], most);
     }
     if (!ends) continue;
-    for (int p = 0; p < patches; ++p) {
+    for (int p = 0; p < patches.x; ++p) {
       const int from = p * patch_cells * stride, to = std::min(from + patch_cells * stride, cells.x);
       for (int c = from; c <= to; ++c)
         line[p].deviation = std::max(line[p].deviation, deviation[c] + kink[c]);
@@ -143,7 +144,7 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
     std::fill_n(kink, kColumns, 0.0F);
   }
   const float rounding = 4.0F * std::numeric_limits<float>::epsilon() * extremes.largest;
-  for (int p = 0; p < across * ((coarse.y + patch_cells - 1) / patch_cells); ++p) {
+  for (int p = 0; p < across * patches.y; ++p) {
     DetailMeasure::Error& error = out[p];
     // Sums of such magnitudes overflow or contain a missing vertex: no bound is known.
     if (!(error.deviation < 1e28F) || extremes.largest > 1e30F)

@@ -44,7 +44,7 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
   if (c0 == 0.0 || (before != 0.0 && std::signbit(before) != std::signbit(c0))) return enter;
   const double square = c1 * c1 - 4.0 * c2 * c0;
   if (c2 == 0.0) {
-    if (c1 != 0.0) offer(-c0 / c1);
+    offer(-c0 / c1);  // infinite where the line runs along the patch
   } else if (square >= 0.0) {
     // Stable both for nearly flat and for strongly twisted patches (Press et al. 2007, 5.6).
     const double q = -0.5 * (c1 + std::copysign(std::sqrt(square), c1));

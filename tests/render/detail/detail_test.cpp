@@ -104,6 +104,26 @@ TEST(Detail, ExcessIsHowFarSamplesReachBeyondTheVerticesOfTheirCell) {
   EXPECT_TRUE(std::isinf(measure.error(2, 35 / DetailMeasure::side(2), 35 / DetailMeasure::side(2)).excess));
 }
 
+// One spike on the line between four patches, level by level: whoever has it among its samples, and no other, is off by it.
+TEST(Detail, AnErrorIsThatOfThePatchesThatHaveItAlone) {
+  for (const glm::ivec2 spike : {glm::ivec2(64, 3), {64, 35}, {31, 63}, {3, 64}, {127, 65}}) {
+    DetailMeasure measure;
+    measure.measure(fieldOf(gridOf(193, 193), [&](int c, int r) {
+                      return c == spike.x && r == spike.y ? 7.0 : 0.0;
+                    }).reader());
+    for (int level = 1; level <= measure.topLevel(); ++level) {
+      const int side = DetailMeasure::side(level);
+      for (int y = 0; y < measure.patches(level).y; ++y)
+        for (int x = 0; x < measure.patches(level).x; ++x) {
+          const glm::ivec2 first = glm::ivec2(x, y) * side, last = first + side;
+          const bool has = first.x <= spike.x && spike.x <= last.x && first.y <= spike.y && spike.y <= last.y;
+          EXPECT_EQ(measure.error(level, x, y).deviation > 1e-3F, has)
+              << "level " << level << ' ' << x << ' ' << y;
+        }
+    }
+  }
+}
+
 TEST(Detail, AfterAnEditTheMeasureEqualsAFreshOneBitForBit) {
   std::mt19937 random(7);
   const engine::Version start = fieldOf(gridOf(700, 300), [](int c, int r) {

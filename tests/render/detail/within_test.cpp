@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/live_field.h"
+#include "render/config.h"
 #include "render/detail/damage.h"
 #include "render/detail/patches.h"
 #include "tests/render/support/fields.h"
@@ -115,6 +117,38 @@ TEST(Within, TheWholePlotKeepsEveryPatchSeamAndWallAndBesideItNone) {
   EXPECT_GE(seams, choice.seams.size());
   EXPECT_GE(walls, choice.walls.size());
   EXPECT_TRUE(within(choice, q, {}).patches.empty());
+}
+
+// A row of samples that changed across all tiles but one; as many as may be, and one less.
+TEST(Damage, OfManyTilesIsTheWholePictureAndOfFewerWhatTheyCover) {
+  constexpr auto kTiles = static_cast<int>(kManyTiles);
+  const engine::Version before =
+      fieldOf(gridOf(kTiles * 64, 4, 0.1, 0.1), [](int c, int) { return c % 2 * 0.01; });
+  DetailMeasure measure;
+  measure.measure(before.reader());
+  PatchQuery q;
+  q.measure = &measure;
+  q.placing = placingOf(before.grid());
+  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
+  const glm::dvec2 half = 0.5 * q.placing.extent();
+  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
+  const Rectangle plot{0, 0, 900, 600};
+  View view;
+  view.elevation_deg = 90.0;
+  q.camera = Camera::fit(view, box, box, plot);
+  for (const int changed : {kTiles, kTiles - 1}) {
+    engine::LiveField live(before, engine::Growth::kAllowed);
+    for (int tile = 0; tile < changed; ++tile) ASSERT_TRUE(live.setHeight(tile * 64 + 20, 2, 0.5F));
+    const engine::Version after = live.snapshot();
+    const std::vector<engine::TileChange> tiles = engine::changedTiles(before, after);
+    ASSERT_EQ(tiles.size(), static_cast<std::size_t>(changed));
+    q.reader = after.reader();
+    const PatchChoice choice = choosePatches(q);
+    const Rectangle damage = damageOf({q, before.reader(), tiles, &choice, &choice, plot});
+    EXPECT_EQ(damage.width == plot.width && damage.height == plot.height, changed == kTiles)
+        << damage.width << " x " << damage.height;
+    EXPECT_FALSE(empty(damage));
+  }
 }
 
 }  // namespace
