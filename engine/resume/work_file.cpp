@@ -22,6 +22,7 @@
 
 #include "engine/field/tile.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/write_at.h"
 
 namespace fettle::engine {
 
@@ -103,23 +104,15 @@ class Writer {
     flush();
     return error_;
   }
+  // Where that ended, without an error.
   [[nodiscard]] std::uint64_t end() const noexcept { return at_; }
 
  private:
   static constexpr std::size_t kPiece = std::size_t{1} << 20;
 
   void flush() {
-    std::string_view rest = buffer_;
-    while (error_ == 0 && !rest.empty()) {
-      const ssize_t written = pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(at_));
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) {
-        error_ = written < 0 ? errno : ENOSPC;
-        break;
-      }
-      at_ += static_cast<std::uint64_t>(written);
-      rest.remove_prefix(static_cast<std::size_t>(written));
-    }
+    if (error_ == 0) error_ = writeAt(descriptor_, buffer_, at_);
+    at_ += buffer_.size();
     buffer_.clear();
   }
 

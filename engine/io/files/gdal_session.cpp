@@ -2,7 +2,6 @@
 
 #include <cerrno>
 
-#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <utility>
@@ -52,15 +51,10 @@ GdalSession::~GdalSession() {
 void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
   const int system = errno;  // GDAL reports directly after the call that failed
   auto* session = static_cast<GdalSession*>(gdal().CPLGetErrorHandlerUserData());
-  if (session == nullptr || message == nullptr) return;
-  if (severity >= CE_Failure) {
-    if (!session->failed_) session->first_ = message;
-    if (session->disk_error_ == 0 && isDiskError(system)) session->disk_error_ = system;
-    session->failed_ = true;
-  } else if (severity == CE_Warning && session->warnings_.size() < 8) {
-    if (std::find(session->warnings_.begin(), session->warnings_.end(), message) == session->warnings_.end())
-      session->warnings_.emplace_back(message);
-  }
+  if (session == nullptr || message == nullptr || severity < CE_Failure) return;
+  if (!session->failed_) session->first_ = message;
+  if (session->disk_error_ == 0 && isDiskError(system)) session->disk_error_ = system;
+  session->failed_ = true;
 }
 
 std::string GdalSession::reason(const std::string& otherwise) const {

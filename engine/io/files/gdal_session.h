@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/io/files/gdal_calls.h"
 
@@ -26,8 +25,6 @@ class GdalSession {
   [[nodiscard]] std::string reason(const std::string& otherwise) const;
   /// The system's error number of the first failure caused by the disk (isDiskError), else 0.
   [[nodiscard]] int diskError() const noexcept { return disk_error_; }
-  /// Warnings so far, each once.
-  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
   static void hear(CPLErr severity, CPLErrorNum number, const char* message);
@@ -35,7 +32,6 @@ class GdalSession {
   bool failed_ = false;
   int disk_error_ = 0;
   std::string first_;
-  std::vector<std::string> warnings_;
 };
 
 /// A file in memory, removed by the destructor. Drivers replace and rename files as they like, and what is written
@@ -59,5 +55,10 @@ struct CloseDataset {
   void operator()(GDALDatasetH dataset) const noexcept { gdal().GDALClose(dataset); }
 };
 using DatasetPtr = std::unique_ptr<void, CloseDataset>;
+
+struct ReleaseCrs {
+  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRRelease(crs); }
+};
+using CrsPtr = std::unique_ptr<void, ReleaseCrs>;
 
 }  // namespace fettle::engine

@@ -14,11 +14,6 @@ namespace fettle::engine {
 
 namespace {
 
-struct ReleaseCrs {
-  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRRelease(crs); }
-};
-using CrsPtr = std::unique_ptr<void, ReleaseCrs>;
-
 std::string crsAs(OGRSpatialReferenceH crs, const char* form) {
   char* text = nullptr;
   const char* const options[] = {form, nullptr};

@@ -1,7 +1,6 @@
 #include "engine/io/geo/named_crs.h"
 
 #include <charconv>
-#include <memory>
 #include <string_view>
 #include <system_error>
 
@@ -13,18 +12,10 @@
 
 namespace fettle::engine {
 
-namespace {
-
-struct ReleaseNamed {
-  void operator()(OGRSpatialReferenceH crs) const noexcept { gdal().OSRRelease(crs); }
-};
-
-}  // namespace
-
 Result<std::string> crsOf(const std::string& text) {
   const GdalSession quiet;
   constexpr std::string_view kRegistry = "EPSG:";
-  const std::unique_ptr<void, ReleaseNamed> crs(gdal().OSRNewSpatialReference(nullptr));
+  const CrsPtr crs(gdal().OSRNewSpatialReference(nullptr));
   if (text.starts_with(kRegistry)) {
     int code = 0;
     const char *const digits = text.data() + kRegistry.size(), *const end = text.data() + text.size();

@@ -44,11 +44,8 @@ std::optional<double> noDataOf(const pugi::xml_node& node) {
 }
 
 std::string wktOfText(const char* text) {
-  OGRSpatialReferenceH crs = *text == '\0' ? nullptr : gdal().OSRNewSpatialReference(text);
-  if (crs == nullptr) return {};
-  std::string wkt = wktOf(crs);
-  gdal().OSRRelease(crs);
-  return wkt;
+  const CrsPtr crs(*text == '\0' ? nullptr : gdal().OSRNewSpatialReference(text));
+  return crs ? wktOf(crs.get()) : std::string();
 }
 
 }  // namespace

@@ -129,17 +129,14 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
 // Whether two texts name the same system, ignoring vertical systems, which one of them may lack.
 bool sameSystem(const std::string& a, const std::string& b) {
   const auto horizontal = [](const std::string& wkt) {
-    OGRSpatialReferenceH crs = gdal().OSRNewSpatialReference(wkt.c_str());
-    if (crs != nullptr) gdal().OSRStripVertical(crs);
+    CrsPtr crs(gdal().OSRNewSpatialReference(wkt.c_str()));
+    if (crs) gdal().OSRStripVertical(crs.get());
     return crs;
   };
-  OGRSpatialReferenceH one = horizontal(a), other = horizontal(b);
+  const CrsPtr one = horizontal(a), other = horizontal(b);
   const char* const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
                                  "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
-  const bool same = one != nullptr && other != nullptr && gdal().OSRIsSameEx(one, other, options) != 0;
-  gdal().OSRRelease(one);
-  gdal().OSRRelease(other);
-  return same;
+  return one && other && gdal().OSRIsSameEx(one.get(), other.get(), options) != 0;
 }
 
 std::string shownSystem(const std::string& wkt) {

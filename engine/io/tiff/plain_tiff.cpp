@@ -5,6 +5,7 @@
 #include <bit>
 #include <cerrno>
 #include <memory>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <tiffio.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/write_at.h"
 #include "engine/io/tiff/tiff_header.h"
 
 namespace fettle::engine {
@@ -47,15 +49,10 @@ tmsize_t readOutline(thandle_t handle, void* bytes, tmsize_t size) {
 tmsize_t writeOutline(thandle_t handle, void* bytes, tmsize_t size) {
   OutlineFile& file = outlineOf(handle);
   if (!file.leaves_out) {
-    for (tmsize_t done = 0; done < size;) {
-      const ssize_t now = pwrite(file.descriptor, static_cast<const char*>(bytes) + done,
-                                 static_cast<std::size_t>(size - done), file.at + done);
-      if (now < 0 && errno == EINTR) continue;
-      if (now <= 0) {
-        file.error = now < 0 ? errno : ENOSPC;
-        return done;
-      }
-      done += now;
+    const std::string_view all(static_cast<const char*>(bytes), static_cast<std::size_t>(size));
+    if (const int error = writeAt(file.descriptor, all, static_cast<std::uint64_t>(file.at)); error != 0) {
+      file.error = error;
+      return 0;
     }
   }
   file.at += size;
@@ -201,16 +198,9 @@ Status PlainRows::write(std::int32_t row, std::int32_t rows, const float* height
   for (std::int32_t r = 0; r < rows; ++r)
     std::copy_n(heights + static_cast<std::size_t>(rows - 1 - r) * width, width,
                 turned.data() + static_cast<std::size_t>(r) * width);
-  const char* bytes = reinterpret_cast<const char*>(turned.data());
-  const std::size_t size = turned.size() * sizeof(float);
-  const auto from = static_cast<off_t>(layout_.offsetOf(row + rows - 1));
-  for (std::size_t done = 0; done < size;) {
-    const ssize_t now = pwrite(descriptor_, bytes + done, size - done, from + static_cast<off_t>(done));
-    if (now < 0 && errno == EINTR) continue;
-    if (now <= 0) return writeError(path_, now < 0 ? errno : ENOSPC);
-    done += static_cast<std::size_t>(now);
-  }
-  return {};
+  const std::string_view bytes(reinterpret_cast<const char*>(turned.data()), turned.size() * sizeof(float));
+  const int error = writeAt(descriptor_, bytes, layout_.offsetOf(row + rows - 1));
+  return error != 0 ? Status(writeError(path_, error)) : Status();
 }
 
 Status PlainRows::read(std::int32_t row, std::int32_t rows, float* heights) const {

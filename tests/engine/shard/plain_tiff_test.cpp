@@ -65,6 +65,17 @@ TEST(PlainTiffFile, without_a_folder_or_of_another_size_is_an_error) {
   EXPECT_EQ(PlainRows::open(folder.file("cut.tif"), *layout).error().kind, ErrorKind::kInput);
 }
 
+TEST(PlainTiffFile, on_a_full_disk_is_an_error_that_says_so) {
+  // Of no bytes, as a device is.
+  auto rows = PlainRows::open("/dev/full", PlainLayout{10, 10, 0, 0});
+  ASSERT_TRUE(rows) << rows.error().line();
+  const std::vector<float> heights(20);
+  const Status written = rows->write(3, 2, heights.data());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().kind, ErrorKind::kFailed);
+  EXPECT_NE(written.error().line().find("the disk is full"), std::string::npos) << written.error().line();
+}
+
 TEST(PlainTiffFile, that_the_system_does_not_open_is_not_called_missing) {
   const tests::TempFolder folder;
   Grid grid;
