@@ -18,6 +18,7 @@ constexpr double kMostCellsPerPoint = 100.0;
 constexpr double kMostStatedCellsPerPoint = 1000.0;
 constexpr double kGrantedCells = 1e6;  // cells that are always allowed
 constexpr double kOffRaster = 0.1;     // of the spacing
+constexpr double kMostSteps = 1e15;    // of an axis: far more than a field may have, and counted exactly
 
 struct Spread {
   double low = 0.0;
@@ -32,8 +33,9 @@ Spread spreadOf(const std::vector<double>& values) {
 
 // Cells centred on the lowest value and every step from there.
 AxisLattice cellsCentredOver(const Spread& extent, double size) {
-  const double steps = std::nearbyint(extent.range() / size);
-  return {extent.low, size, steps < 1e15 ? static_cast<std::int64_t>(steps) + 1 : std::int64_t{1} << 52};
+  // In this order infinite and NaN become the bound.
+  const double steps = std::min(kMostSteps, std::nearbyint(extent.range() / size));
+  return {extent.low, size, static_cast<std::int64_t>(steps) + 1};
 }
 
 // Statistics of the points in the cells of two axes that fit.

@@ -107,14 +107,14 @@ std::vector<double> spacingGuesses(const std::vector<double>& gaps) {
 }
 
 // Improves an estimate gap by gap, the short ones first: each makes the step accurate enough to count the
-// steps of the next longer one.
+// steps of the next longer one. The guess is one of the gaps, or a half or a third of one, so that there is a step.
 double refined(const std::vector<double>& gaps, double guess) {
   double length = 0.0, steps = 0.0;
   for (auto gap = std::lower_bound(gaps.begin(), gaps.end(), 0.5 * guess); gap != gaps.end(); ++gap) {
     steps += std::nearbyint(*gap / (steps > 0.0 ? length / steps : guess));
     length += *gap;
   }
-  return steps > 0.0 ? length / steps : guess;
+  return length / steps;
 }
 
 std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) {

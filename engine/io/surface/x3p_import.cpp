@@ -101,9 +101,8 @@ class XmlStream {
         const std::size_t close = text.find('>', at);
         if (open != std::string::npos && close != std::string::npos) {
           begin_ = end_ - (text.size() - close - 1);
-          text.resize(open);
-          has_matrix_ = text.size() > 0;
-          return text;
+          has_matrix_ = open > 0;
+          return text.substr(0, open);
         }
       }
       if (at == std::string::npos) searched = text.size();

@@ -164,6 +164,34 @@ TEST(BadInput, APngWithALyingHeaderIsRefused) {
   }
 }
 
+// The checksum of PNG's chunks (ISO 15948, annex D), bit by bit.
+std::uint32_t pngChecksum(const std::string& bytes) {
+  std::uint32_t sum = 0xffffffffU;
+  for (const char byte : bytes) {
+    sum ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ ((sum & 1U) != 0 ? 0xedb88320U : 0U);
+  }
+  return ~sum;
+}
+
+// Deflate makes one byte of 1032 at most; 64 MB are believed without that.
+TEST(BadInput, APngThatPromisesMoreThanItsBytesCanHoldIsRefusedByThat) {
+  const TempFolder folder;
+  ASSERT_TRUE(save(someField(), folder.file("good.png")));
+  const std::string good = readBytes(folder.file("good.png"));
+  ASSERT_EQ(good.substr(24, 2), std::string("\x10\0", 2)) << "16 bits of grey";
+  const double most = (64 << 20) + 1032.0 * static_cast<double>(good.size());
+  constexpr std::uint32_t kRows = 2000;
+  for (const double share : {1.02, 0.98}) {
+    const auto columns = static_cast<std::uint32_t>(share * most / kRows / 2.0);
+    std::string lying = good;
+    lying.replace(16, 8, number(columns, 4, true) + number(kRows, 4, true));
+    lying.replace(29, 4, number(pngChecksum(lying.substr(12, 17)), 4, true));
+    const std::string line = refusalOf(folder, "lying.png", lying).line();
+    EXPECT_EQ(line.find("the header states") != std::string::npos, share > 1.0) << line;
+  }
+}
+
 // A raster of holes is one, as a scan of glass; a cloud without a point has no place.
 TEST(BadInput, RastersWithoutAnyHeightAreReadWithAWarningAndCloudsRefused) {
   const TempFolder folder;

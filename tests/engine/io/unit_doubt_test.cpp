@@ -62,6 +62,19 @@ TEST(UnitDoubt, AFewNeighboursProveNothing) {
   EXPECT_TRUE(doubts(makeField(grid, {0, 500, 0, 500, 500, 0, 500, 0})).empty());
 }
 
+TEST(UnitDoubt, NeighboursInEitherDirectionAndAtEveryBorderCount) {
+  // Six by eight samples: lines of six that lie 100 apart in turn. 42 neighbours are steep, across the lines, 40 are level.
+  Grid grid;
+  std::vector<float> z;
+  grid.width = 6;
+  grid.height = 8;
+  for (int i = 0; i < 48; ++i) z.push_back(i / 6 % 2 == 0 ? 0.0F : 100.0F);
+  EXPECT_EQ(doubts(makeField(grid, z)).size(), 1U);
+  std::swap(grid.width, grid.height);
+  for (int i = 0; i < 48; ++i) z[static_cast<std::size_t>(i)] = i % 8 % 2 == 0 ? 0.0F : 100.0F;
+  EXPECT_EQ(doubts(makeField(grid, z)).size(), 1U);
+}
+
 TEST(UnitDoubt, NoUnitFitsHeightsThatAreCounts) {
   Grid grid;
   grid.height_unit = {"nm", 1e-6};

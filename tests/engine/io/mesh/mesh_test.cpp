@@ -253,6 +253,17 @@ TEST(Mesh, PolygonsOfAnyEncodingAreFans) {
   }
 }
 
+// As programs for point clouds write them.
+TEST(Mesh, AListOfNoFacesLeavesACloudOfPoints) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.ply"),
+             "ply\nformat ascii 1.0\ncomment units mm\nelement vertex 4\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"
+             "0 0 1\n1 0 2\n0 1 3\n1 1 4\n");
+  FETTLE_LOAD(scan, folder.file("a.ply"));
+  EXPECT_EQ(heightsOf(scan.field), (std::vector<float>{1, 2, 3, 4}));
+}
+
 TEST(Mesh, LyingAndCutFilesAreRefused) {
   const TempFolder folder;
   ASSERT_TRUE(save(hills(9, 9, 0.5F, 0.0), folder.file("a.stl")));

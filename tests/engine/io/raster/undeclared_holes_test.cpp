@@ -243,5 +243,48 @@ TEST_F(LoneValues, PartsWithALevelOfTheirOwnAreNotDoubted) {
   }
 }
 
+TEST_F(LoneValues, TheDistanceThatIsSaidIsThatToTheNearestHeightOnEitherSide) {
+  // Two lands, from 0 to 1 and from 9 to 10.
+  std::mt19937 random(4);
+  std::vector<float> z(30000);
+  for (std::size_t i = 0; i < z.size(); ++i)
+    z[i] = (i % 2 == 0 ? 0.0F : 9.0F) + static_cast<float>(random() % 1001) * 0.001F;
+  z[0] = 1.0F, z[1] = 9.0F, z[2] = 0.0F, z[5] = 10.0F;
+  EXPECT_TRUE(warned(said(with(z, 900, 4.0F)), "exactly 4 mm, and no other height is within 3 mm"));
+  EXPECT_TRUE(warned(said(with(z, 900, 7.0F)), "exactly 7 mm, and no other height is within 2 mm"));
+  EXPECT_TRUE(warned(said(with(z, 900, -6.0F)), "exactly -6 mm, and no other height is within 6 mm"));
+  EXPECT_TRUE(warned(said(with(z, 900, 999.0F)), "exactly 999 mm, and no other height is within 989 mm"));
+}
+
+// Frequent counts scatter over their neighbours above or below: the lower one of these is rare here, the higher one is not, and
+// the other way round.
+TEST_F(LoneValues, ZeroIsSaidBesideAnAbruptFootOfTheCounts) {
+  std::mt19937 random(6);
+  for (const bool turned : {false, true}) {
+    std::vector<float> z(30000);
+    for (float& height : z) {
+      // Ten counts of half a percent each, two of 30 percent, eight of the rest.
+      const auto percent2 = static_cast<int>(random() % 200);
+      const int count = percent2 < 10    ? percent2
+                        : percent2 < 70  ? 10
+                        : percent2 < 130 ? 11
+                                         : 12 + (percent2 - 130) % 8;
+      height = 20.0F + 0.01F * static_cast<float>(turned ? 19 - count : count);
+    }
+    EXPECT_TRUE(warned(said(with(z, 2000, 0.0F)), "--no-data 0")) << turned;
+  }
+}
+
+TEST_F(LoneValues, OfASmallFieldSixteenSamplesAreEnough) {
+  std::mt19937 random(7);
+  std::vector<float> z(1200);
+  for (float& height : z) height = 10.0F + static_cast<float>(random() % 5000) * 0.001F;
+  for (const std::size_t count : {std::size_t{16}, std::size_t{15}}) {
+    ASSERT_TRUE(save(makeField(gridOf(40, 30), with(z, count, 0.0F)), folder.file("small.tif")));
+    FETTLE_LOAD(scan, folder.file("small.tif"));
+    EXPECT_EQ(warned(scan.warnings, "--no-data 0"), count == 16) << count;
+  }
+}
+
 }  // namespace
 }  // namespace fettle::engine
