@@ -64,7 +64,7 @@ Result<Version> moved(const Version& from, std::int64_t state, std::span<const s
                           static_cast<std::int32_t>(position / columns), std::move(tile)))
       return failure("memory for its tiles could not be allocated", path);
   }
-  const float sign = index.steps[static_cast<std::size_t>(state)].sign;
+  const auto sign = static_cast<float>(index.steps[static_cast<std::size_t>(state)].sign);
   if (live.snapshot().reader().sign() != sign) live.invert();
   const EdgeLines& lines = index.lines[static_cast<std::size_t>(state)];
   Version version = live.snapshot();

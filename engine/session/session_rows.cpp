@@ -27,7 +27,7 @@ Status putStep(SessionTables& tables, std::int64_t number, const Step& step, Hea
   if (head.last_state > head.state)
     if (Status status = tables.truncateSteps(head.state); !status) return status;
   const std::vector<TileToStore> tiles = tilesThatDiffer(step.before, step.after);
-  const StepRow row{number, step.info, step.after.reader().sign(), head.next_tile,
+  const StepRow row{number, step.info, static_cast<std::int64_t>(step.after.reader().sign()), head.next_tile,
                     static_cast<std::int64_t>(tiles.size())};
   if (Status status = tables.insertStep(row); !status) return status;
   job.begin("writing the session", tiles.size());

@@ -34,8 +34,11 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   if (Status status = tables.writeGrid(session.original.grid()); !status) return status;
   if (Status status = tables.writeOriginal(original); !status) return status;
 
-  StepRow start{
-      0, {"Import", StepKind::kImport, {}, {}, 0}, session.original.reader().sign(), head.next_tile, 0};
+  StepRow start{0,
+                {"Import", StepKind::kImport, {}, {}, 0},
+                static_cast<std::int64_t>(session.original.reader().sign()),
+                head.next_tile,
+                0};
   if (history.last() > history.first()) start.info.time = history.info(history.first() + 1).time;
   std::vector<TileToStore> tiles;
   if (original.storage == OriginalStorage::kEmbedded) tiles = allTiles(session.original);

@@ -103,9 +103,9 @@ std::int64_t checksumOf(const Grid& g) {
 }
 
 std::int64_t checksumOf(const StepRow& s) {
-  return checksumOfRow(s.number, s.info.name, stepKindName(s.info.kind), msOf(s.info.time),
-                       s.sign > 0 ? 1 : -1, s.info.rect.column, s.info.rect.row, s.info.rect.columns,
-                       s.info.rect.rows, s.first_tile, s.tiles);
+  return checksumOfRow(s.number, s.info.name, stepKindName(s.info.kind), msOf(s.info.time), s.sign,
+                       s.info.rect.column, s.info.rect.row, s.info.rect.columns, s.info.rect.rows,
+                       s.first_tile, s.tiles);
 }
 
 std::int64_t checksumOf(const TilePlace& place, std::string_view data) {
@@ -220,8 +220,8 @@ Result<Grid> SessionTables::readGrid() {
 
 Status SessionTables::insertStep(const StepRow& r) {
   return run("INSERT INTO step VALUES(?,?,?,?,?,?,?,?,?,?,?,?)", r.number, r.info.name,
-             stepKindName(r.info.kind), msOf(r.info.time), r.sign > 0 ? 1 : -1, r.info.rect.column,
-             r.info.rect.row, r.info.rect.columns, r.info.rect.rows, r.first_tile, r.tiles, checksumOf(r));
+             stepKindName(r.info.kind), msOf(r.info.time), r.sign, r.info.rect.column, r.info.rect.row,
+             r.info.rect.columns, r.info.rect.rows, r.first_tile, r.tiles, checksumOf(r));
 }
 
 Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
@@ -242,7 +242,7 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
     const std::optional<StepKind> kind = stepKindFromName(q.bytes(2));
     r.info.kind = kind.value_or(StepKind::kStroke);
     r.info.time = timeOf(q.integer(3));
-    r.sign = q.integer(4) > 0 ? 1.0F : -1.0F;
+    r.sign = q.integer(4);
     r.info.rect = {static_cast<std::int32_t>(q.integer(5)), static_cast<std::int32_t>(q.integer(6)),
                    static_cast<std::int32_t>(q.integer(7)), static_cast<std::int32_t>(q.integer(8))};
     r.first_tile = q.integer(9);

@@ -41,8 +41,8 @@ struct OriginalRow {
 
 struct StepRow {
   std::int64_t number = 0;
-  StepInfo info;  // bytes is not kept
-  float sign = 1.0F;
+  StepInfo info;          // bytes is not kept
+  std::int64_t sign = 1;  // 1; -1: the field is inverted
   std::int64_t first_tile = 0;
   std::int64_t tiles = 0;
 };
