@@ -111,6 +111,51 @@ TEST(Blended, KeepsTheSamplesOfTheFirstAndTheWorld) {
   EXPECT_EQ(wide.error().kind, ErrorKind::kInput);
 }
 
+// A level scan that is tilted covers the shadow of its four corners, wherever the point about which it is turned lies.
+TEST(Blended, TheGridReachesToTheCornersOfATiltedScanAndNotBeyond) {
+  const Version first = levelScan(41, 41, 0.0F);
+  for (const double turn : {-0.3, 0.3})
+    for (const double middle : {-4.0, 0.0, 5.0})
+      for (const float z : {-3.0F, 0.0F, 2.0F}) {
+        const Version second = levelScan(61, 33, z);
+        AdjustedPoses poses = posesAt({{0, 0, 0}, {0, 0, 0}});
+        poses.poses[1] = RigidMotion{glm::dmat3(1.0), {3.0, -1.0, 0.0}, {15.0, 4.0, middle}}.then(
+            {0, 0, 0}, {0.0, turn, 0.0});
+        const auto grid = gridOverAll({first, second}, poses);
+        ASSERT_TRUE(grid);
+        double left = 0.0, right = 20.0, lower = 0.0, upper = 10.0;  // of the first
+        for (const double x : {0.0, 30.0})
+          for (const double y : {0.0, 8.0}) {
+            const glm::dvec3 corner = poses.poses[1].moved({x, y, z});
+            left = std::min(left, corner.x), right = std::max(right, corner.x);
+            lower = std::min(lower, corner.y), upper = std::max(upper, corner.y);
+          }
+        const double last_x = grid->origin_x + 0.5 * (grid->width - 1),
+                     last_y = grid->origin_y + 0.25 * (grid->height - 1);
+        // The samples within: none of them beyond, and no room for another.
+        EXPECT_GE(grid->origin_x, left - 1e-6);
+        EXPECT_LT(grid->origin_x, left + 0.5);
+        EXPECT_LE(last_x, right + 1e-6);
+        EXPECT_GT(last_x, right - 0.5);
+        EXPECT_GE(grid->origin_y, lower - 1e-6);
+        EXPECT_LT(grid->origin_y, lower + 0.25);
+        EXPECT_LE(last_y, upper + 1e-6);
+        EXPECT_GT(last_y, upper - 0.25);
+      }
+}
+
+// A spike of a kilometre on a tilted scan widens the grid by no more than the scan is long.
+TEST(Blended, ASpikeDoesNotWidenTheGridWithoutEnd) {
+  std::vector<float> z(41 * 41, 0.0F);
+  z[41 * 20 + 20] = 1e6F;
+  const std::vector<Version> scans{levelScan(41, 41, 0.0F), makeField(gridFor(41, 41, 0.5, 0.25), z)};
+  AdjustedPoses poses = posesAt({{0, 0, 0}, {0, 0, 0}});
+  poses.poses[1] = RigidMotion{glm::dmat3(1.0), {0, 0, 0}, {10.0, 5.0, 0.0}}.then({0, 0, 0}, {0.0, 0.3, 0.0});
+  const auto grid = gridOverAll(scans, poses);
+  ASSERT_TRUE(grid);
+  EXPECT_LE(grid->width, 41 + 2 * 41);
+}
+
 TEST(Blended, IsTheSameForAnyNumberOfThreads) {
   const RigidMotion still, turned = RigidMotion{glm::dmat3(1.0), {-3.0, -1.0, 0.0}, {4, 3, 0}}.then(
                                {0, 0, 0.1}, {0.01, 0.0, 0.05});
