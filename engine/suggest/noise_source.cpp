@@ -70,10 +70,10 @@ std::vector<double> NoiseSource::make(std::int32_t columns, std::int32_t rows, s
   tbb::parallel_for(std::int32_t{0}, rows, [&](std::int32_t r) {
     double* out = noise.data() + static_cast<std::ptrdiff_t>(r) * columns;
     // Row by row, so that a cache line is read once.
-    for (std::size_t k = 0; k < along_column_.size(); ++k) {
-      const double* const from =
-          by_row.data() + (static_cast<std::ptrdiff_t>(r) + static_cast<std::ptrdiff_t>(k)) * columns;
-      for (std::int32_t c = 0; c < columns; ++c) out[c] += along_column_[k] * from[c];
+    const double* from = by_row.data() + static_cast<std::ptrdiff_t>(r) * columns;
+    for (const double weight : along_column_) {
+      for (std::int32_t c = 0; c < columns; ++c) out[c] += weight * from[c];
+      from += columns;
     }
     const double offset = row_offset_ * of_row.normal(0, r);
     for (std::int32_t c = 0; c < columns; ++c)

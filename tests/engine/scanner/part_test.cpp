@@ -1,9 +1,12 @@
 #include "engine/scanner/part.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -183,6 +186,28 @@ TEST(PartEdges, NoJumpOfTheSurfaceIsLeftOutOfTheList) {
   }
 }
 
+TEST(PartEdges, ACreasesStrengthIsTheChangeOfSlope) {
+  Feature ridge;
+  ridge.kind = FeatureKind::kRoof;
+  ridge.outline = Outline{{0, 0}, 8, 4, 0.0, {1.0, 0.0}};
+  ridge.slope_v = 0.5;
+  int creases = 0, points = 0;
+  for (const Edge& edge : edgesOf(only(ridge), 0.2, {20, 20}, {40, 40})) {
+    if (edge.kind != EdgeKind::kCrease) continue;
+    ++creases;
+    const bool top = std::abs(edge.points_mm.front().y - 20.0) < 1.0;
+    // Differences over a millionth of a millimetre of heights of 2 mm, which are rounded to 4e-16.
+    // At a corner the slope is that along the bisector.
+    for (std::size_t i = 0; i < edge.strength.size(); ++i) {
+      if (std::abs(edge.points_mm[i].x - 20.0) > 7.99) continue;
+      EXPECT_NEAR(edge.strength[i], top ? 1.0 : 0.5, 1e-8);
+      ++points;
+    }
+  }
+  EXPECT_GE(creases, 2);
+  EXPECT_GT(points, 100);
+}
+
 TEST(PartEdges, StepHiddenByALaterFeatureIsCutOut) {
   Feature low;
   low.outline = Outline{{0, 0}, 10, 10, 0.0, {1.0, 0.0}};
@@ -196,6 +221,29 @@ TEST(PartEdges, StepHiddenByALaterFeatureIsCutOut) {
       EXPECT_FALSE(std::abs(x - 10) < 0.05 && std::abs(p.y - 30) < 9.9) << "an edge inside the union";
       EXPECT_FALSE(std::abs(x) < 0.05 && std::abs(p.y - 30) < 9.9);
     }
+}
+
+// Figures of docs/accuracy.md are measured on these parts: whoever changes one measures them again. Heights on a lattice that
+// goes through no outline, rounded to a nanometre.
+TEST(Parts, AreThoseThatFiguresWereMeasuredOn) {
+  std::map<std::string_view, std::uint64_t> hashes;
+  for (const PartInfo& info : parts()) {
+    const Part& part = *findPart(info.name);
+    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
+    for (double y = -0.5 * info.height_mm + 0.137; y < 0.5 * info.height_mm; y += 0.31)
+      for (double x = -0.5 * info.width_mm + 0.091; x < 0.5 * info.width_mm; x += 0.31) {
+        const double z = part.heightAt({x, y});
+        const std::int64_t counts = std::isnan(z) ? -1'000'000'000'000 : std::llround(z * 1e6);
+        hash = (hash ^ static_cast<std::uint64_t>(counts)) * 0x100000001b3U;
+      }
+    hashes[info.name] = hash;
+  }
+  const std::map<std::string_view, std::uint64_t> then{
+      {"bracket", 6777982673048393907U}, {"die", 14588561961343591275U},  {"housing", 5454944655736536478U},
+      {"plate", 11685743437851446207U},  {"ribs", 13039297739200243957U}, {"steps", 4705602449114357773U},
+      {"wedges", 4735066177897901116U},
+  };
+  EXPECT_EQ(hashes, then);
 }
 
 TEST(Parts, NamesAreUniqueAndFound) {

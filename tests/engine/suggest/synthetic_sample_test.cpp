@@ -215,15 +215,57 @@ TEST(SampleEdges, OfTheSurfaceAreStepsOfTwoAndAHalfNoisesAtLeast) {
   EXPECT_GE(high, 216 * 8 / 10);  // thinning leaves gaps
 }
 
-// Half of the scan is plain, its errors 1; the other half has steps, its errors 3.
-TEST(SampleJudge, CountsPlainPlacesAsOftenAsTheScanHasThem) {
+// Across rows, where the scan shows none: a rib of one row jumps up to it and down from it, a ramp nowhere, however steep.
+TEST(SampleEdges, OfTheSurfaceLieBetweenTheTwoRowsOfAJump) {
+  constexpr int kSide = 256;
+  constexpr double kNoise = 0.02, kRise = 15.0 * kNoise;
+  Grid grid;
+  grid.width = grid.height = kSide;
+  NoiseParts parts;
+  parts.uncorrelated = 1.0;
+  const auto noise = NoiseSource(parts).make(kSide, kSide, 23);
+  std::vector<float> surface, scan, faint;
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) {
+      const double n = kNoise * noise[surface.size()];
+      surface.push_back(static_cast<float>((r == 40 ? 0.5 : 0.0) + kRise * std::clamp(r - 150, 0, 10)));
+      scan.push_back(static_cast<float>(n));
+      faint.push_back(static_cast<float>(0.25 * n));
+    }
+  JobControl job;
+  const auto edges =
+      markSampleEdges(makeField(grid, scan), makeField(grid, surface), makeField(grid, faint), kNoise, job);
+  ASSERT_TRUE(edges);
+  const auto marked = [&](int row) {
+    int count = 0;
+    for (int c = 20; c < 236; ++c) count += edges->reader().markedAt(c, row) ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(marked(39), 216);
+  EXPECT_EQ(marked(40), 216);
+  // The search finds some in the noise.
+  for (const int row : {37, 38, 41, 42}) EXPECT_LE(marked(row), 10) << row;
+  for (int row = 145; row < 166; ++row) EXPECT_LE(marked(row), 10) << row;
+}
+
+// Heights of plain places, and of those with steps, of which the noise is a fiftieth. Both are of one kind where neither is
+// twelve noises high, and of two kinds on both sides of that and of twice that.
+struct Relief {
+  float plain, steps;
+};
+
+class SampleJudgeKinds : public testing::TestWithParam<Relief> {};
+
+// Nineteen parts of twenty of the scan are plain, their errors 1; the rest has steps, its errors 3.
+TEST_P(SampleJudgeKinds, CountsPlainPlacesAsOftenAsTheScanHasThem) {
+  const auto [plain, steps] = GetParam();
   Grid grid;
   grid.width = 1280;
   grid.height = 1280;
   std::vector<float> z(static_cast<std::size_t>(grid.samples()));
   for (std::size_t i = 0; i < z.size(); ++i) {
     const std::size_t c = i % 1280;
-    z[i] = c < 1216 ? 0.0F : static_cast<float>((c / 32) % 2) * 10.0F;
+    z[i] = static_cast<float>((c / 32) % 2) * (c < 1216 ? plain : steps);
   }
   const Version scan = makeField(grid, z);
   const Mosaic pieces = makeMosaic(scan, 0.02);
@@ -251,6 +293,10 @@ TEST(SampleJudge, CountsPlainPlacesAsOftenAsTheScanHasThem) {
   EXPECT_EQ(judge.edgeShare(), 0.0);
 }
 
+// 0.24 is twelve noises.
+INSTANTIATE_TEST_SUITE_P(Reliefs, SampleJudgeKinds,
+                         testing::Values(Relief{0.0F, 10.0F}, Relief{0.0F, 0.27F}, Relief{0.45F, 0.5F}));
+
 TEST(SampleJudge, LeavesOutTheLargestFewWhereAsked) {
   Grid grid;
   grid.width = grid.height = 200;
@@ -266,6 +312,32 @@ TEST(SampleJudge, LeavesOutTheLargestFewWhereAsked) {
   EXPECT_NEAR(judge.errorsOf(filtered, SampleJudge::Rare::kLeftOut).flat, 1.0, 1e-12);
   EXPECT_NEAR(judge.errorsOf(filtered, SampleJudge::Rare::kCount).flat,
               std::sqrt((39992.0 + 160000.0 + 490000.0 + 250000.0 + 5.0 * 90000.0) / 40000.0), 1e-9);
+}
+
+// Outliers along the upper rim of a step: three of an outlier's neighbours are low, five are high.
+TEST(SyntheticSample, AnOutliersPlaceIsAsHighAsMostOfItsNeighbours) {
+  constexpr int kSide = 256, kStep = 128;
+  constexpr double kNoise = 0.01;
+  Grid grid;
+  grid.width = grid.height = kSide;
+  NoiseParts parts;
+  parts.uncorrelated = 1.0;
+  const auto noise = NoiseSource(parts).make(kSide, kSide, 24);
+  std::vector<float> z;
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    z.push_back(static_cast<float>((i % kSide >= kStep ? 1.0 : 0.0) + kNoise * noise[i]));
+  std::vector<int> rows;
+  for (int r = 10; r < kSide - 10; r += 8) {
+    rows.push_back(r);
+    z[static_cast<std::size_t>(r * kSide + kStep)] = 5.0F;
+  }
+  const Version scan = makeField(grid, z);
+  JobControl job;
+  const NoiseModel model = *measureNoise(scan, job);
+  const auto sample = makeSyntheticSample(makeMosaic(scan, model.sigma), grid, model, {}, 3, job);
+  ASSERT_TRUE(sample);
+  EXPECT_GE(sample->outliers, static_cast<std::int64_t>(rows.size()));
+  for (const int r : rows) EXPECT_NEAR(sample->surface.reader().heightAt(kStep, r), 1.0F, 0.1F) << r;
 }
 
 TEST(SyntheticSample, HasTheNoiseOfTheScanOnASurfaceNearIt) {
