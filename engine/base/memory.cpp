@@ -50,17 +50,18 @@ std::optional<std::uint64_t> leftOf(const std::string& group, const char* limit_
 
 }  // namespace
 
-std::uint64_t availableMemory() {
+std::uint64_t availableMemory(const std::string& root) {
   constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t available = kUnknown;
-  if (const auto kilobytes = numberOf("/proc/meminfo", "MemAvailable:")) available = *kilobytes * 1024;
+  if (const auto kilobytes = numberOf(root + "/proc/meminfo", "MemAvailable:")) available = *kilobytes * 1024;
   const auto consider = [&available](std::optional<std::uint64_t> left) {
     if (left) available = std::min(available, *left);
   };
   // A container shows its own group as the root of all.
-  consider(leftOf("/sys/fs/cgroup", "/memory.max", "/memory.current"));
-  consider(leftOf("/sys/fs/cgroup/memory", "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
-  std::ifstream groups("/proc/self/cgroup");
+  const std::string all = root + "/sys/fs/cgroup";
+  consider(leftOf(all, "/memory.max", "/memory.current"));
+  consider(leftOf(all + "/memory", "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+  std::ifstream groups(root + "/proc/self/cgroup");
   std::string line;
   while (std::getline(groups, line)) {
     // "number:controllers:path"; version 2 has no controllers.
@@ -69,9 +70,9 @@ std::uint64_t availableMemory() {
     if (first == std::string::npos || second == std::string::npos) continue;
     const std::string controllers = line.substr(first + 1, second - first - 1);
     const std::string path = line.substr(second + 1);
-    if (controllers.empty()) consider(leftOf("/sys/fs/cgroup" + path, "/memory.max", "/memory.current"));
+    if (controllers.empty()) consider(leftOf(all + path, "/memory.max", "/memory.current"));
     if (controllers == "memory")
-      consider(leftOf("/sys/fs/cgroup/memory" + path, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+      consider(leftOf(all + "/memory" + path, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
   }
   return available == kUnknown ? 0 : available;
 }

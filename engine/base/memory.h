@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace fettle::engine {
 
 /// Memory that this process may still take [bytes]: the system's figure of available memory, or the rest of
 /// the control group's limit (its file cache counts as free) if that is less. 0 if neither is known. Reads
-/// files; any thread.
-[[nodiscard]] std::uint64_t availableMemory();
+/// files, those of this system or, below `root`, of another; any thread.
+[[nodiscard]] std::uint64_t availableMemory(const std::string& root = {});
 
 /// Memory of this process [bytes]; 0 where the system does not report it. Any thread.
 struct ResidentMemory {
