@@ -120,9 +120,10 @@ SlopePart slopesOf(const FieldReader& field, const NominalForm& form, Region reg
 }
 
 // Its parameters without a value where memory for it is not free.
-Result<SpatialAnalysis> spatialOf(const Surface& surface, JobControl& job) {
+Result<SpatialAnalysis> spatialOf(const Surface& surface, const ArealOptions& options, JobControl& job) {
   constexpr double kGibi = 1024.0 * 1024.0 * 1024.0;
-  const double wanted = correlationBytes(surface), free = static_cast<double>(availableMemory());
+  const double wanted = correlationBytes(surface),
+               free = static_cast<double>(options.free_memory ? *options.free_memory : availableMemory());
   if (free > 0.0 && wanted > 0.8 * free) {
     SpatialAnalysis nothing;
     SpatialParameters& none = nothing.parameters;
@@ -230,7 +231,7 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     if (!why.empty()) result.not_stated.push_back({key, why});
   };
   if (options.spatial) {
-    auto spatial = spatialOf(*surface, job);
+    auto spatial = spatialOf(*surface, options, job);
     if (!spatial) return tl::unexpected(spatial.error());
     result.spatial = spatial->parameters;
     if (options.analysis && !spatial->correlation.values.empty())

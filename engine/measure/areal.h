@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,8 @@ struct ArealOptions {
   std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
   bool analysis = false;                ///< keep the autocorrelation: 4 bytes per sample
   double prune = 0.05;                  ///< share of Sz below which a hill is no feature
+  /// Memory that is free for spatial parameters [bytes], 0: that is not known; none: as availableMemory() finds it.
+  std::optional<std::uint64_t> free_memory = {};
 };
 
 /// Measures them. The surface between four samples is the bilinear patch through them, as everywhere in Fettle: the

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -304,6 +305,34 @@ TEST(Areal, MaterialRatiosAreThoseAskedFor) {
   EXPECT_EQ(p->heights.back(), -49.5);
   options.functional = options.spatial = options.feature = options.hybrid = false;
   EXPECT_TRUE(measureAreal(made.field(), zeroForm(made.grid), options, job)->ratios.empty());
+}
+
+TEST(Areal, SpatialParametersThatMemoryIsNotFreeForAreNotStated) {
+  const Made made(80, 70, [](int c, int r) { return std::sin(0.5 * c + 0.3 * r); });
+  JobControl job;
+  const auto with = [&](std::optional<std::uint64_t> free) {
+    ArealOptions options;
+    options.free_memory = free;
+    const auto p = measureAreal(made.field(), zeroForm(made.grid), options, job);
+    EXPECT_TRUE(p) << p.error().line();
+    return p ? *p : ArealParameters{};
+  };
+  const ArealParameters known = with({});
+  EXPECT_TRUE(std::isfinite(known.spatial.sal));
+  // 40 bytes a sample and more, since the transform's sides are rounded up; four fifths of what is free.
+  const ArealParameters little = with(80 * 70 * 40);
+  EXPECT_TRUE(std::isnan(little.spatial.sal) && std::isnan(little.spatial.str) &&
+              std::isnan(little.spatial.lay));
+  for (const char* const key : {"sal", "str", "std"}) {
+    const auto why = std::ranges::find(little.not_stated, key, &ArealParameters::NotStated::parameter);
+    ASSERT_NE(why, little.not_stated.end()) << key;
+    EXPECT_NE(why->reason.find("smaller region"), std::string::npos) << why->reason;
+  }
+  EXPECT_EQ(little.sq, known.sq);
+  EXPECT_EQ(little.feature.spd, known.feature.spd);
+  // Where it is enough, or where nobody knows, they are measured.
+  EXPECT_EQ(with(80 * 70 * 400).spatial.sal, known.spatial.sal);
+  EXPECT_EQ(with(0).spatial.sal, known.spatial.sal);
 }
 
 TEST(Areal, IsBitIdenticalForAnyNumberOfThreads) {
