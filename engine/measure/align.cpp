@@ -17,6 +17,7 @@
 #include "engine/base/stopwatch.h"
 #include "engine/measure/align_level.h"
 #include "engine/measure/align_search.h"
+#include "engine/measure/align_spread.h"
 #include "engine/measure/height_map.h"
 
 namespace fettle::engine {
@@ -32,7 +33,6 @@ constexpr double kMostPlaces = 1 << 20;
 constexpr double kCoarser = 4.0;         // a resolution than the next
 constexpr std::size_t kFinerStarts = 3;  // of a resolution that are refined in the next one
 constexpr double kTukey = 4.685;
-constexpr double kNormal = 1.4826;  // of the median of absolute values
 
 // How the height at a point follows a shift x, y, z and a turn about x, y, z that moves the surface.
 Vector6 followed(const glm::dvec3& from_centre, double slope_x, double slope_y) noexcept {
@@ -40,64 +40,6 @@ Vector6 followed(const glm::dvec3& from_centre, double slope_x, double slope_y) 
   row << -slope_x, -slope_y, 1.0, from_centre.y + slope_y * from_centre.z,
       -from_centre.x - slope_x * from_centre.z, slope_x * from_centre.y - slope_y * from_centre.x;
   return row;
-}
-
-// The size of a residual that a share of all does not exceed.
-double quantileOf(const std::vector<Under>& under, double share) {
-  std::vector<double> sizes;
-  sizes.reserve(under.size());
-  for (const Under& u : under)
-    if (!std::isnan(u.residual)) sizes.push_back(std::abs(u.residual));
-  if (sizes.empty()) return 0.0;
-  const auto place =
-      sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
-  std::ranges::nth_element(sizes, place);
-  return *place;
-}
-
-// The normalised median size.
-double scaleOf(const std::vector<Under>& under) {
-  return kNormal * quantileOf(under, 0.5);
-}
-
-// The size of residuals by slope: on level parts `level`; on steep ones of `sideways` mm across as well, where edges differ
-// or do not lie on each other yet. By one size for all, the few heights of edges, which alone decide a shift of a part
-// of level faces, would count as outliers.
-struct Spread {
-  double level = 0.0, sideways = 0.0;  // [mm]
-
-  [[nodiscard]] double at(const Under& u) const noexcept {
-    return std::sqrt(level * level + sideways * sideways * (u.slope_x * u.slope_x + u.slope_y * u.slope_y));
-  }
-};
-Spread spreadOf(const std::vector<Under>& under, double spacing, double least) {
-  constexpr double kSteep = 3.0, kMore = 1.5;
-  constexpr std::size_t kFewest = 24, kClasses = 16;
-  Spread spread{std::max(scaleOf(under), least), 0.0};
-  // By classes of slope, each up to four times that of the class before: on a smooth part most steep places are little
-  // inclined and agree, and one median over all of them would not see the edges.
-  std::vector<std::vector<Under>> classes(kClasses);
-  const double least_slope = kSteep * spread.level / spacing;
-  for (const Under& u : under) {
-    if (std::isnan(u.residual)) continue;
-    const double slope = std::hypot(u.slope_x, u.slope_y);
-    if (!(slope > least_slope)) continue;
-    const double place = 0.5 * std::log2(slope / least_slope);
-    classes[static_cast<std::size_t>(std::min(place, kClasses - 1.0))].push_back(u);
-  }
-  for (const std::vector<Under>& places : classes) {
-    if (places.size() < kFewest) continue;
-    const double size = scaleOf(places), limit = kMore * spread.level;
-    if (!(size > limit)) continue;
-    std::vector<double> slopes;
-    slopes.reserve(places.size());
-    for (const Under& u : places) slopes.push_back(std::hypot(u.slope_x, u.slope_y));
-    const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
-    std::ranges::nth_element(slopes, middle);
-    spread.sideways = std::max(
-        spread.sideways, std::min(std::sqrt(size * size - spread.level * spread.level) / *middle, spacing));
-  }
-  return spread;
 }
 
 double medianResidual(const std::vector<Under>& under) {
@@ -134,7 +76,7 @@ Frame frameOf(const glm::dvec3& centre, double arm, const AlignMoves& moves) {
 
 struct Refined {
   RigidMotion motion;
-  Spread spread;                                           // of the residuals
+  AlignSpread spread;                                      // of the residuals
   double gain = -std::numeric_limits<double>::infinity();  // in logarithmic likelihood over a plane
   std::size_t common = 0;
 };
@@ -210,7 +152,7 @@ Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& f
                             plane[2] * (p.y - frame.centre.y);
     }
   // Sums of squares, clipped at the size that one in a hundred exceeds: a few tall features count, spikes do not.
-  const double cap = std::max(quantileOf(heights, 0.99), least);
+  const double cap = std::max(residualAt(heights, 0.99), least);
   double of_plane = 0.0, of_motion = 0.0;
   for (std::size_t i = 0; i < under.size(); ++i) {
     if (std::isnan(under[i].residual)) continue;
