@@ -32,17 +32,14 @@ Result<ProbeFigures> probeAt(const Version& field, glm::dvec2 at, double radius_
       !(radius_mm * radius_mm / (spacing.x * spacing.y) < 1e6))
     return inputError("there is no such place or radius", "probe",
                       "give fewer than a thousand samples as radius");
-  const auto clamped = [](double value, std::int32_t side) {
-    return static_cast<std::int32_t>(std::clamp(value, -1.0, static_cast<double>(side)));
+  const auto within = [](double value, std::int32_t side) {
+    return static_cast<std::int32_t>(std::clamp(value, 0.0, side - 1.0));
   };
+  const glm::dvec2 low = (at - radius_mm) / spacing - 1e-9, high = (at + radius_mm) / spacing + 1e-9;
   std::vector<ProbedSample> samples;
-  for (std::int32_t r = std::max(0, clamped(std::ceil((at.y - radius_mm) / spacing.y - 1e-9), grid.height));
-       r <=
-       std::min(grid.height - 1, clamped(std::floor((at.y + radius_mm) / spacing.y + 1e-9), grid.height));
+  for (std::int32_t r = within(std::ceil(low.y), grid.height); r <= within(std::floor(high.y), grid.height);
        ++r)
-    for (std::int32_t c = std::max(0, clamped(std::ceil((at.x - radius_mm) / spacing.x - 1e-9), grid.width));
-         c <=
-         std::min(grid.width - 1, clamped(std::floor((at.x + radius_mm) / spacing.x + 1e-9), grid.width));
+    for (std::int32_t c = within(std::ceil(low.x), grid.width); c <= within(std::floor(high.x), grid.width);
          ++c) {
       const glm::dvec2 from = (glm::dvec2(c, r) * spacing - at) / radius_mm;
       const double z = reader.heightAt(c, r);

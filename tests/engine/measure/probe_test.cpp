@@ -62,6 +62,22 @@ TEST(Probe, StatedErrorsAreThoseOfTheNoise) {
   EXPECT_NEAR(std::sqrt(curvature) / last.mean_curvature.error, 1.0, 0.1);
 }
 
+// At every border and beyond: by the samples within the radius that there are.
+TEST(Probe, AtABorderIsByTheSamplesThereAre) {
+  const auto z = [](double x, double y) { return 0.1 * x * x - 0.05 * x * y + 0.2 * y; };
+  const Version field = probedField(z);
+  for (const double x : {-0.25, 0.05, 4.02, 7.97, 8.25})
+    for (const double y : {-0.35, 0.1, 6.05, 11.93, 12.35}) {
+      int inside = 0;
+      for (int r = 0; r < 61; ++r)
+        for (int c = 0; c < 81; ++c) inside += std::hypot(c * 0.1 - x, r * 0.2 - y) <= 1.0 ? 1 : 0;
+      const auto p = probeAt(field, {x, y}, 1.0, Region::kAll, 0.0);
+      ASSERT_TRUE(p) << p.error().line();
+      EXPECT_EQ(p->samples, inside) << x << ' ' << y;
+      EXPECT_NEAR(p->height_mm.value, z(x, y), 1e-5) << x << ' ' << y;
+    }
+}
+
 TEST(Probe, RefusesWhatShowsNoSurface) {
   const Version field = probedField([](double x, double) { return x; });
   EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 0.05, Region::kAll, 0.0));
