@@ -221,6 +221,14 @@ TEST(LineOffsets, LinesWithoutSamplesLieBetweenTheirNeighbours) {
   }
 }
 
+TEST(LineOffsets, BetweenLinesWithoutACommonPlaceThereIsNoStep) {
+  // Samples on the left half of even lines and on the right half of odd ones.
+  const Version field =
+      fieldOf(80, 12, [](int c, int r) { return (c < 40) == (r % 2 == 0) ? 3.0 + r : double{kNone}; });
+  for (const LineMethod method : {LineMethod::kDifference, LineMethod::kMatching})
+    for (const double k : offsetsOf(field, {method}).coefficients) EXPECT_EQ(k, 0.0);
+}
+
 TEST(LineOffsets, OfHardFieldsAreFiniteOrRefused) {
   JobControl job;
   const std::function<double(int, int)> fields[] = {

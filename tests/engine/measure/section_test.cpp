@@ -1,5 +1,6 @@
 #include "engine/measure/section.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -251,6 +253,30 @@ TEST(SectionFigures, HardCases) {
   // The spike is far more than the noise, and the error says so.
   EXPECT_GT(step->step_mm.error, std::abs(step->step_mm.value - 0.05) / 5.0);
   EXPECT_TRUE(std::isfinite(step->step_mm.error));
+}
+
+// What lies behind a part is not of it: the first half of a section, and of the weights of a whole one.
+TEST(Section, VarianceOfAPartIsThatOfTheWholeWithoutTheOtherWeights) {
+  const Section whole = taken(sectionField(60, 9, 0.1, 0.1, [](double x, double y) { return x + 0.1 * y; }),
+                              {{0.0, 0.31}, {5.9, 0.47}});
+  std::vector<double> weights(whole.size()), others(whole.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weights[i] = 1.0 + 0.1 * static_cast<double>(i % 7);
+    others[i] = static_cast<double>(i % 3) - 0.5;
+  }
+  const std::size_t half = whole.size() / 2;
+  Section part = whole;
+  part.position.resize(half);
+  part.height.resize(half);
+  part.share.resize(half);
+  part.covariance.resize(half * static_cast<std::size_t>(part.band));
+  const std::span<const double> some(weights.data(), half), some_others(others.data(), half);
+  const double variance = part.variance(some), covariance = part.covarianceOf(some, some_others);
+  std::fill(weights.begin() + static_cast<std::ptrdiff_t>(half), weights.end(), 0.0);
+  std::fill(others.begin() + static_cast<std::ptrdiff_t>(half), others.end(), 0.0);
+  EXPECT_DOUBLE_EQ(variance, whole.variance(weights));
+  EXPECT_DOUBLE_EQ(covariance, whole.covarianceOf(weights, others));
+  EXPECT_GT(variance, 1.0);
 }
 
 // One edge, or noise alone, is no groove; a groove in the same noise is found.

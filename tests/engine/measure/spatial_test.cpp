@@ -209,6 +209,27 @@ TEST(Spatial, OfARandomSurfaceOfKnownSpectrumIsItsClosedForm) {
   }
 }
 
+// Of all directions, also on small fields of noise, whose autocorrelation goes up and down about 0.2.
+TEST(Spatial, NoDirectionDecaysFasterThanTheFastestOrSlowerThanTheSlowest) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const SpatialAnalysis analysis = analysed(randomTexture(24, 1.5, 1.0, 9.0 * seed, 1.0, seed));
+    const SpatialParameters& p = analysis.parameters;
+    ASSERT_TRUE(std::isfinite(p.sal)) << p.no_sal;
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (int i = 0; i < 1440; ++i) {
+      const double distance = analysis.correlation.decay(pi * i / 1440, 0.2);
+      least = std::min(least, distance);
+      most = std::max(most, distance);
+    }
+    EXPECT_LE(p.sal, least) << seed;
+    // The direction is rounded to degrees and back.
+    EXPECT_NEAR(p.sal, analysis.correlation.decay(p.sal_direction * pi / 180.0, 0.2), 1e-12) << seed;
+    if (std::isfinite(most)) {
+      EXPECT_LE(p.str, p.sal / most) << seed;
+    }
+  }
+}
+
 TEST(Spatial, OfHardSurfacesIsAFigureOrAReason) {
   const auto check = [](const Surface& surface) {
     const SpatialParameters p = analysed(surface).parameters;
