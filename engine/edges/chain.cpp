@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <span>
 
 namespace fettle::engine {
 
@@ -49,16 +51,15 @@ Chain chainAlong(const ChainCosts& costs, double step_deviation, bool closed) {
   for (int place = 0; place < places; ++place) {
     float* here = before.data() + row(place);
     if (place > 0) step(before.data() + row(place - 1), change, count, here);
-    for (int k = 0; k < count; ++k) here[k] += costAt(place)[k];
+    std::transform(here, here + count, costAt(place), here, std::plus<>());
     // Only differences between offsets count: without the common part, floats stay exact on long lines.
     const float least = *std::min_element(here, here + count);
-    for (int k = 0; k < count; ++k) here[k] -= least;
+    for (float& cost : std::span(here, static_cast<std::size_t>(count))) cost -= least;
   }
   std::vector<float> next(static_cast<std::size_t>(count));
   for (int place = places - 2; place >= 0; --place) {
-    for (int k = 0; k < count; ++k)
-      next[static_cast<std::size_t>(k)] =
-          after[row(place + 1) + static_cast<std::size_t>(k)] + costAt(place + 1)[k];
+    const float* const later = after.data() + row(place + 1);
+    std::transform(later, later + count, costAt(place + 1), next.begin(), std::plus<>());
     const float least = *std::min_element(next.begin(), next.end());
     for (float& cost : next) cost -= least;
     step(next.data(), change, count, after.data() + row(place));

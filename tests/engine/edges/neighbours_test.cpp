@@ -43,6 +43,15 @@ TEST(Neighbours, FarPartsOfTheSameLineCountAndNearOnesDoNot) {
   EXPECT_TRUE(seen[98].empty());
 }
 
+TEST(Neighbours, AStrokeOfTwoPointsCountsByItsDirection) {
+  const std::vector<Polyline> lines{along(50.0), polylineOf({{100.0, 52.0}, {100.0, 53.0}}, false),
+                                    polylineOf({{99.5, 47.0}, {100.5, 47.0}}, false)};
+  ASSERT_EQ(lines[1].size(), 2);
+  const std::vector<Neighbour> seen = seenFrom(lines, 0)[100];
+  ASSERT_EQ(seen.size(), 1U) << "the one across is none";
+  EXPECT_EQ(seen[0].line, 2);
+}
+
 TEST(Neighbours, SideIsThatOfMostPointsAlongAndACrossingLineIsNoNeighbour) {
   const std::vector<Polyline> crossing_hands{along(50.0, -0.8), along(51.0, 0.8)};
   const LineNeighbours seen = seenFrom(crossing_hands, 0);
