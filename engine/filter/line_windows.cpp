@@ -156,8 +156,16 @@ class LineWindows final : public BlockFilter {
     int left = 0, low = 0, rows = 0;
     WindowRow columns = 0;  // those in the block
     int middle_row = 0;     // counted in the window
+
+    // Of the block.
+    [[nodiscard]] int row(std::size_t k) const noexcept { return low + static_cast<int>(k); }
   };
   using Rows = std::array<WindowRow, kMostLineWindow>;
+
+  // visit(k) for each row of a window, from the lowest.
+  static void eachRow(const Window& window, const auto& visit) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(window.rows); ++k) visit(k);
+  }
 
   // The filter on a window of its own, without what lies beyond a line.
   bool runWindow(const Block& block, int column, int row, const JobControl& job, float& out) {
@@ -171,11 +179,10 @@ class LineWindows final : public BlockFilter {
     window.columns = (WindowRow{1} << end) - (WindowRow{1} << first);
     Rows known{}, reached{};
     findReached(window, reached);
-    for (int r = 0; r < window.rows; ++r) {
-      const auto k = static_cast<std::size_t>(r);
-      known[k] = known_.from(window.left, window.low + r) & window.columns;
+    eachRow(window, [&](std::size_t k) {
+      known[k] = known_.from(window.left, window.row(k)) & window.columns;
       reached[k] &= known[k];
-    }
+    });
     take(block, window, known, reached);
     const float own = sides_[1].median();
     Rows settled = reached;
@@ -194,11 +201,11 @@ class LineWindows final : public BlockFilter {
   // The samples to which a way leads from the middle, holes among them: up and down until nothing is new.
   void findReached(const Window& window, Rows& reached) const noexcept {
     Rows cut{}, cut_up{};
-    for (int r = 0; r < window.rows; ++r) {
-      cut[static_cast<std::size_t>(r)] = cut_right_.from(window.left, window.low + r);
-      cut_up[static_cast<std::size_t>(r)] = cut_up_.from(window.left, window.low + r);
-      reached[static_cast<std::size_t>(r)] = 0;
-    }
+    eachRow(window, [&](std::size_t k) {
+      cut[k] = cut_right_.from(window.left, window.row(k));
+      cut_up[k] = cut_up_.from(window.left, window.row(k));
+      reached[k] = 0;
+    });
     const auto enter = [&](int r, WindowRow samples) {
       const auto k = static_cast<std::size_t>(r);
       if ((samples & ~reached[k]) == 0) return false;
@@ -282,11 +289,7 @@ class LineWindows final : public BlockFilter {
       });
     }
     side_of_middle_ = settled[static_cast<std::size_t>(window.middle_row)] >> radius_ & 1U;
-    if (side_of_middle_ == 0)
-      for (int r = 0; r < window.rows; ++r) {
-        WindowRow& row = settled[static_cast<std::size_t>(r)];
-        row = known[static_cast<std::size_t>(r)] & ~row;
-      }
+    if (side_of_middle_ == 0) eachRow(window, [&](std::size_t k) { settled[k] = known[k] & ~settled[k]; });
     return false;
   }
 
@@ -295,13 +298,12 @@ class LineWindows final : public BlockFilter {
     const bool own = side_of_middle_ == 1;
     RankSet& side = sides_[side_of_middle_];
     const auto swap = [&](bool back) {
-      for (int r = 0; r < window.rows; ++r) {
-        const auto k = static_cast<std::size_t>(r);
+      eachRow(window, [&](std::size_t k) {
         const WindowRow before = own ? reached[k] : taken_.known[k] & ~reached[k];
-        const std::uint32_t* const ranks = ranksOf(block, window.left, window.low + r);
+        const std::uint32_t* const ranks = ranksOf(block, window.left, window.row(k));
         forEachBit(back ? before & ~settled[k] : settled[k] & ~before, [&](int c) { side.add(ranks[c]); });
         forEachBit(back ? settled[k] & ~before : before & ~settled[k], [&](int c) { side.remove(ranks[c]); });
-      }
+      });
     };
     swap(false);
     const float median = side.median();
@@ -320,14 +322,13 @@ class LineWindows final : public BlockFilter {
                              std::size_t side) const noexcept {
     std::int64_t sum = sums_[side];
     int count = sides_[side].size();
-    for (int r = 0; r < window.rows; ++r) {
-      const auto k = static_cast<std::size_t>(r);
+    eachRow(window, [&](std::size_t k) {
       const WindowRow before = side == 1 ? reached[k] : taken_.known[k] & ~reached[k];
-      if (before == settled[k]) continue;
-      const std::int64_t* const heights = whole_.row(window.low + r) + window.left;
+      if (before == settled[k]) return;
+      const std::int64_t* const heights = whole_.row(window.row(k)) + window.left;
       sum += sumOf(heights, settled[k] & ~before) - sumOf(heights, before & ~settled[k]);
       count += std::popcount(settled[k]) - std::popcount(before);
-    }
+    });
     return whole_.mean(sum, count);
   }
 
