@@ -72,10 +72,16 @@ class SplineSurface {
     plane_.z.resize(z_.size());
   }
 
-  // Weights of samples by their distances from `surface`, 0 beyond `limit`; none: all 1. Holes have none. False when cancelled.
-  bool solve(const std::vector<float>* surface, double limit, const JobControl& job) {
-    const bool weighted = surface != nullptr || holes_;
-    if (!weighted) {
+  // An earlier surface, and the distance from it beyond which a sample has no weight.
+  struct Around {
+    const std::vector<float>& surface;
+    double limit;
+  };
+
+  // Weights of samples by their distances from an earlier surface; without one: all 1. Holes have none. False when
+  // cancelled.
+  bool solve(const std::optional<Around>& around, const JobControl& job) {
+    if (!around && !holes_) {
       eachRow([&](std::int32_t r) {
         for (std::int32_t c = 0; c < width_; ++c) plane_.z[at(r) + c] = about(c, r);
       });
@@ -86,18 +92,19 @@ class SplineSurface {
     eachRow([&](std::int32_t r) {
       for (std::size_t i = at(r); i < at(r + 1); ++i) {
         double weight = z_[i] == z_[i] ? 1.0 : 0.0;
-        if (surface != nullptr && weight > 0.0) {
-          const double off = (static_cast<double>(z_[i]) - static_cast<double>((*surface)[i])) / limit;
+        if (around && weight > 0.0) {
+          const double off =
+              (static_cast<double>(z_[i]) - static_cast<double>(around->surface[i])) / around->limit;
           const double rest = 1.0 - off * off;
           weight = rest > 0.0 ? rest * rest : 0.0;
         }
         lack_[i] = std::sqrt(1.0 - weight);
         // What an earlier surface is there.
-        found_[i] = surface != nullptr ? lack_[i] * plane_.z[i] : 0.0;
+        found_[i] = around ? lack_[i] * plane_.z[i] : 0.0;
       }
     });
-    return surface != nullptr ? findLacking(limit, kMostStepsOfARound, job)
-                              : findLacking(plane_level_.deviation, kMostSteps, job);
+    return around ? findLacking(around->limit, kMostStepsOfARound, job)
+                  : findLacking(plane_level_.deviation, kMostSteps, job);
   }
 
   // The surface that was solved for, rounded once.
@@ -148,6 +155,9 @@ class SplineSurface {
       for (std::size_t i = 0; i < N; ++i) all[i] += row[i];
     return all;
   }
+  [[nodiscard]] double sum(const auto& of_row) const {
+    return std::get<0>(sums<1>([&](std::int32_t r) { return std::array{of_row(r)}; }));
+  }
 
   void findPlane() {
     SplineLevel& level = plane_level_;
@@ -183,13 +193,13 @@ class SplineSurface {
       level.along_y = (vz * uu - uz * uv) / size;
       level.mean -= level.along_x * u + level.along_y * v;
     }
-    const auto squares = sums<1>([&](std::int32_t r) {
-      std::array<double, 1> sum{};
+    const double squares = sum([&](std::int32_t r) {
+      double of_row = 0.0;
       for (std::int32_t c = 0; c < width_; ++c)
-        if (const double z = about(c, r); z == z) sum[0] += z * z;
-      return sum;
+        if (const double z = about(c, r); z == z) of_row += z * z;
+      return of_row;
     });
-    level.deviation = std::sqrt(squares[0] / count);
+    level.deviation = std::sqrt(squares / count);
   }
 
   // plane_ = what the filter makes of the root of H times `of`, plus the weighted heights.
@@ -208,37 +218,37 @@ class SplineSurface {
   bool findLacking(double scale, int most_steps, const JobControl& job) {
     // The distance of x from what the filter makes of it.
     if (!applied(found_, true, job)) return false;
-    double squares = sums<1>([&](std::int32_t r) {
-      std::array<double, 1> sum{};
+    double squares = sum([&](std::int32_t r) {
+      double of_row = 0.0;
       for (std::size_t i = at(r); i < at(r + 1); ++i) {
         rest_[i] = direction_[i] = lack_[i] * plane_.z[i] - found_[i];
-        sum[0] += rest_[i] * rest_[i];
+        of_row += rest_[i] * rest_[i];
       }
-      return sum;
-    })[0];
+      return of_row;
+    });
     const double enough = std::pow(kSplineTolerance * scale, 2) * static_cast<double>(z_.size()),
                  none = 1e-32 * squares;
     std::vector<double> gains;  // of the steps, in squared errors
     for (int step = 0; step < most_steps && squares > none; ++step) {
       if (!applied(direction_, false, job)) return false;
-      const double along = sums<1>([&](std::int32_t r) {
-        std::array<double, 1> sum{};
+      const double along = sum([&](std::int32_t r) {
+        double of_row = 0.0;
         for (std::size_t i = at(r); i < at(r + 1); ++i)
-          sum[0] += direction_[i] * (direction_[i] - lack_[i] * plane_.z[i]);
-        return sum;
-      })[0];
+          of_row += direction_[i] * (direction_[i] - lack_[i] * plane_.z[i]);
+        return of_row;
+      });
       // What no sample determines.
       if (!(along > 1e-14 * squares)) break;
       const double size = squares / along;
-      const double next = sums<1>([&](std::int32_t r) {
-        std::array<double, 1> sum{};
+      const double next = sum([&](std::int32_t r) {
+        double of_row = 0.0;
         for (std::size_t i = at(r); i < at(r + 1); ++i) {
           found_[i] += size * direction_[i];
           rest_[i] -= size * (direction_[i] - lack_[i] * plane_.z[i]);
-          sum[0] += rest_[i] * rest_[i];
+          of_row += rest_[i] * rest_[i];
         }
-        return sum;
-      })[0];
+        return of_row;
+      });
       gains.push_back(size * squares);
       double later = 0.0;
       for (std::size_t k = 0; k < std::min(kLater, gains.size()); ++k) later += gains[gains.size() - 1 - k];
@@ -283,7 +293,7 @@ Result<PassResult> splinePass(const Version& input, const Version& original, con
   std::vector<float> surface;
   {
     SplineSurface filter(input, spec, std::min(tuning.level, bestCpuLevel()));
-    if (!filter.solve(nullptr, 0.0, job)) return cancelled();
+    if (!filter.solve({}, job)) return cancelled();
     filter.copyTo(surface);
   }
   return passOfWhole(surface, input.reader(), input, original, spec, tuning, job);
@@ -294,7 +304,7 @@ Result<PassResult> robustSplinePass(const Version& input, const Version& origina
   std::vector<float> surface;
   {
     SplineSurface filter(input, spec, std::min(tuning.level, bestCpuLevel()));
-    double limit = 0.0;
+    std::optional<double> limit;  // of the round before
     int round = 0;
     // Not held while the rounds run: it is as large as the field.
     if (const auto before = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
@@ -304,15 +314,16 @@ Result<PassResult> robustSplinePass(const Version& input, const Version& origina
       round = before->done;
     }
     for (; round < kMostRobustRounds; ++round) {
-      if (!filter.solve(round == 0 ? nullptr : &surface, limit, job)) return cancelled();
+      const auto around = limit ? std::optional(SplineSurface::Around{surface, *limit}) : std::nullopt;
+      if (!filter.solve(around, job)) return cancelled();
       filter.copyTo(surface);
       const double next = kRobustLimit * middleDistance(filter.reader(), surface.data(), input.grid().width);
       // More than half of the samples lie on the surface: there is no scale to weight the others by.
-      const bool ends = !(next > 0.0) || std::fabs(next - limit) <= kRobustTolerance * limit;
+      const bool ends = !(next > 0.0) || (limit && std::fabs(next - *limit) <= kRobustTolerance * *limit);
       limit = next;
       if (ends) break;
       if (tuning.work != nullptr && tuning.work->wantsRounds())
-        tuning.work->roundDone({round + 1, limit, filter.numbers()});
+        tuning.work->roundDone({round + 1, next, filter.numbers()});
     }
   }
   return passOfWhole(surface, input.reader(), input, original, spec, tuning, job);

@@ -71,9 +71,8 @@ bool smoothPlane(const SplineAxis& x, const SplineAxis& y, SplinePlane& plane, C
                 f(z[static_cast<std::size_t>(j) * kLines + k], from[j * along + k * next]);
         }
       };
+      // Beside the last lines the places keep what was in them: it is worked on too, and not read.
       each([](double& to, double value) { to = value; });
-      for (std::int32_t k = count; k < kLines; ++k)
-        for (std::int32_t i = 0; i < axis.samples; ++i) z[static_cast<std::size_t>(i) * kLines + k] = 0.0;
       rough(z.data(), axis.samples, axis.step, axis.to_height.data(), axis.to_slope.data(),
             axis.over_variance.data());
       each([](double taken, double& value) { value -= taken; });

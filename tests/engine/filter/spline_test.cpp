@@ -279,6 +279,20 @@ TEST(Spline, LeavesPlanesToTheirEnds) {
     }
 }
 
+// Nothing is left to find once the plane is taken out, so that heights near 0 come back too.
+TEST(Spline, LeavesPlanesThroughZeroToTheDigitsOfDouble) {
+  for (const double cut_off : {3.0, 40.0}) {
+    const Smoothed scan{"plane", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) {
+                          return (c * 7 + r) % 11 == 0 || (c > 50 && c < 80 && r > 20 && r < 60)
+                                     ? std::nan("")
+                                     : 1024.0 * (c - 65) - 512.0 * (r - 45);
+                        }};
+    // Roundings of heights of 1e5, 1e-11 each, over the windows of a cut-off.
+    EXPECT_LE(filtered(versionOf(scan), splineSpec(FilterKind::kSpline, cut_off)).report.max_change, 1e-8)
+        << cut_off;
+  }
+}
+
 TEST(Spline, OfAConstantIsThatConstant) {
   for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline})
     for (const double cut_off : {5.0, 60.0}) {
