@@ -46,6 +46,18 @@ TEST(ExactSums, NeedOneLaneForFixedPointHeightsTwoForMostFloatsAndNineForAll) {
   EXPECT_EQ(lanes({0.0F, std::numeric_limits<float>::quiet_NaN()}, 9), 1);
 }
 
+// Samples below 2^t, and sums of n of them and differences of two such sums, take 1 + log2(2 n) places above 2^t: what is a
+// multiple of 2^(t + 1 + log2(2 n) - 53) fits one lane, what is half of that does not.
+TEST(ExactSums, TakeOneLaneToTheLastPlaceOfADouble) {
+  const auto lanes = [](float least, std::int64_t count) { return lanesFor({1.0F, -least}, count).lanes; };
+  EXPECT_EQ(lanes(0x1p-50F, 1), 1);
+  EXPECT_EQ(lanes(0x1p-51F, 1), 2);
+  EXPECT_EQ(lanes(0x1p-43F, 255), 1);
+  EXPECT_EQ(lanes(0x1p-44F, 255), 2);
+  EXPECT_EQ(lanes(0x1p-42F, 256), 1);
+  EXPECT_EQ(lanes(0x1p-43F, 256), 2);
+}
+
 TEST(ExactSums, CutEveryFloatWithoutLoss) {
   std::mt19937 random(5);
   for (int round = 0; round < 2000; ++round) {

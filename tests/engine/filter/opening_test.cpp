@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/region.h"
 #include "tests/engine/filter/reference.h"
 
@@ -290,6 +291,20 @@ TEST(Closing, IsTheOpeningOfASurfaceTurnedOver) {
       different += !std::isnan(opened[i]) && opened[i] != -closed[i];
     EXPECT_EQ(different, 0);
   }
+}
+
+TEST(Opening, DependsOnSamplesWithinTwoElementsAndNoMoreThanThereCanBe) {
+  const Version field = versionOf({"spacing 1:4", 20, 20, 0.25, 1.0, 0.0, rough});
+  for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing})
+    for (const Element element : kElements) {
+      const auto reach = [&](double radius) {
+        const FilterSpec spec = rollingSpec(kind, element, radius);
+        return reachOf(spec, field.grid(), false);
+      };
+      EXPECT_EQ(reach(2.0), 16);  // along the finer spacing, both times
+      EXPECT_EQ(reach(2.1), 18);
+      EXPECT_EQ(reach(1e12), Grid::kMaxSide);
+    }
 }
 
 TEST(Opening, RefusesWhatItCannotDo) {
