@@ -263,6 +263,32 @@ TEST(EdgeWidth, IsTheSameUpsideDownTogether) {
               judged(field.inverted(), truth.inverted(), edges).edge_width, 0.05);
 }
 
+// A profile that is longer along the edge than the largest patch, for samples three times as high as wide.
+TEST(EdgeWidth, OfAMirrorImageIsTheSame) {
+  const auto judgedOnce = [](int way) {
+    const auto edgeAt = [way](int c) {
+      const double x = way * (c - 150);
+      return 60.3 + 0.03 * x + 2e-4 * x * x;
+    };
+    Raster step(301, 121, [&](int c, int r) { return r > edgeAt(c) ? 2.0 : 0.0; });
+    step.grid.spacing_y = 3.0;
+    step.marks[step.at(150, 60)] = 1;
+    const Version truth = step.field(), edges = step.edges();
+    for (int r = 0; r < 121; ++r)
+      for (int c = 0; c < 301; ++c)
+        step.z[step.at(c, r)] = static_cast<float>(1.0 + std::tanh(0.6 * (r - edgeAt(c))));
+    TruthOptions options;
+    options.profile_half_length = 64;
+    return judged(step.field(), truth, edges, options);
+  };
+  const TruthFigures one = judgedOnce(1), mirrored = judgedOnce(-1);
+  ASSERT_EQ(one.edge_profiles, 1);
+  ASSERT_EQ(mirrored.edge_profiles, 1);
+  // Only the order of sums differs.
+  EXPECT_NEAR(one.edge_width, mirrored.edge_width, 1e-9);
+  EXPECT_NEAR(one.edge_width_truth, mirrored.edge_width_truth, 1e-9);
+}
+
 TEST(Truth, GivesTheSameBitsForAnyNumberOfThreads) {
   Raster step = slantedStep(300, 20.0, 0.3, 2.0);
   const Version truth = step.field();

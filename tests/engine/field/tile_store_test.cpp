@@ -141,6 +141,22 @@ TEST_F(TileStoreTest, ADiskThatFillsUpIsAnErrorNotASignal) {
   EXPECT_EQ(builder.error().kind, ErrorKind::kFailed);
 }
 
+TEST_F(TileStoreTest, TakesMoreOfTheDiskOnlyWhenAllIsUsed) {
+  const auto store = TileStore::create(folder_.path().string(), 0);
+  ASSERT_TRUE(store);
+  EXPECT_EQ((*store)->bytes(), 0U);
+  constexpr std::size_t kSlab = std::size_t{16} << 20;
+  const auto take = [&] { ASSERT_NE((*store)->take(kSlab), nullptr); };
+  take();
+  const std::uint64_t at_once = (*store)->bytes();
+  ASSERT_GE(at_once, 2 * kSlab);  // room for more slabs, in one piece
+  ASSERT_EQ(at_once % kSlab, 0U);
+  for (std::uint64_t used = kSlab; used < at_once; used += kSlab) take();
+  EXPECT_EQ((*store)->bytes(), at_once);
+  take();
+  EXPECT_EQ((*store)->bytes(), 2 * at_once);
+}
+
 TEST_F(TileStoreTest, FoldersThatCannotHoldTilesAreRefused) {
   EXPECT_FALSE(TileStore::create(folder_.file("none"), 0));
   const auto huge = TileStore::create(folder_.path().string(), std::uint64_t{1} << 60);

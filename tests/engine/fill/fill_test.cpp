@@ -425,6 +425,37 @@ TEST(Fill, GoesRoundTheEndOfALineIntoWhatHasNoRimOfItsOwn) {
   }
 }
 
+// A hole in the shape of a U whose left arm lies between lines: only the right arm, whose first sample comes second, has
+// a rim, and all is filled from there.
+TEST(Fill, GoesFromOneArmOfAHoleIntoOneThatLinesCutOff) {
+  const auto flat = [](int, int) { return 2.0; };
+  const Where hole = [](int c, int r) {
+    return (r == 10 && (c == 10 || c == 12)) || (r == 11 && c >= 10 && c <= 12);
+  };
+  const auto lineAlong = [](glm::dvec2 from, glm::dvec2 to, std::int64_t id) {
+    EdgeLine line;
+    line.id = id;
+    for (int i = 0; i <= 16; ++i) {
+      EdgePoint p;
+      p.position = from + (to - from) * (i / 16.0);
+      p.located = true;
+      line.points.push_back(p);
+    }
+    return line;
+  };
+  // To the left of both rows, below the left arm, between the arms, above all, and below the bar's middle.
+  const std::vector<EdgeLine> lines{
+      lineAlong({9.5, 9.0}, {9.5, 12.0}, 0),    lineAlong({9.0, 9.5}, {10.5, 9.5}, 1),
+      lineAlong({10.5, 9.0}, {10.5, 10.5}, 2),  lineAlong({9.0, 11.5}, {13.0, 11.5}, 3),
+      lineAlong({10.5, 10.5}, {11.5, 10.5}, 4), lineAlong({12.5, 10.5}, {12.5, 12.0}, 5)};
+  const Version scan =
+      scanOf(24, 24, flat, hole).withLines(std::make_shared<const std::vector<EdgeLine>>(lines));
+  const Filled filled = fill(scan, by(FillMethod::kMembrane));
+  EXPECT_EQ(filled.filled, 5);
+  EXPECT_EQ(summarize(filled.field).no_data, 0);
+  EXPECT_LT(worst(filled.field, flat), 1e-6);
+}
+
 TEST(Fill, FillsRingsInEachOther) {
   const auto bowl = [](int c, int r) {
     return 1e-3 * ((c - 200.0) * (c - 200.0) + (r - 200.0) * (r - 200.0));
