@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,9 +39,9 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kMostSteps = 1000;
+constexpr std::size_t kMostSteps = 1000;
 // The next round begins where one ends.
-constexpr int kMostStepsOfARound = 40;
+constexpr std::size_t kMostStepsOfARound = 40;
 // Errors of a step are those that so many later ones take away, all but a little.
 constexpr std::size_t kLater = 4;
 
@@ -215,7 +216,7 @@ class SplineSurface {
     return smoothPlane(x_, y_, plane_, level_, job);
   }
 
-  bool findLacking(double scale, int most_steps, const JobControl& job) {
+  bool findLacking(double scale, std::size_t most_steps, const JobControl& job) {
     // The distance of x from what the filter makes of it.
     if (!applied(found_, true, job)) return false;
     double squares = sum([&](std::int32_t r) {
@@ -229,7 +230,7 @@ class SplineSurface {
     const double enough = std::pow(kSplineTolerance * scale, 2) * static_cast<double>(z_.size()),
                  none = 1e-32 * squares;
     std::vector<double> gains;  // of the steps, in squared errors
-    for (int step = 0; step < most_steps && squares > none; ++step) {
+    while (gains.size() < most_steps && squares > none) {
       if (!applied(direction_, false, job)) return false;
       const double along = sum([&](std::int32_t r) {
         double of_row = 0.0;
@@ -250,9 +251,8 @@ class SplineSurface {
         return of_row;
       });
       gains.push_back(size * squares);
-      double later = 0.0;
-      for (std::size_t k = 0; k < std::min(kLater, gains.size()); ++k) later += gains[gains.size() - 1 - k];
-      if (gains.size() >= kLater && later <= enough) break;
+      if (gains.size() >= kLater && std::accumulate(gains.rbegin(), gains.rbegin() + kLater, 0.0) <= enough)
+        break;
       const double turn = next / squares;
       squares = next;
       eachRow([&](std::int32_t r) {
