@@ -78,6 +78,17 @@ TEST(Probe, AtABorderIsByTheSamplesThereAre) {
     }
 }
 
+// Half of the samples around a place on the right border are there: those say less about the slope across it.
+TEST(Probe, StatesTheErrorOfTheSlopeInItsDirection) {
+  const auto error = [](double along_x, double along_y) {
+    const Version field = probedField([&](double x, double y) { return along_x * x + along_y * y; });
+    const auto p = probeAt(field, {8.0, 6.0}, 1.0, Region::kAll, 0.001);
+    EXPECT_TRUE(p) << p.error().line();
+    return p ? p->slope_deg.error : 0.0;
+  };
+  EXPECT_GT(error(0.1, 0.0), 2.0 * error(0.0, 0.1));
+}
+
 TEST(Probe, RefusesWhatShowsNoSurface) {
   const Version field = probedField([](double x, double) { return x; });
   EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 0.05, Region::kAll, 0.0));
