@@ -58,9 +58,9 @@ std::uint64_t availableMemory(const std::string& root) {
     if (left) available = std::min(available, *left);
   };
   // A container shows its own group as the root of all.
-  const std::string all = root + "/sys/fs/cgroup";
+  const std::string all = root + "/sys/fs/cgroup", memory = all + "/memory";
   consider(leftOf(all, "/memory.max", "/memory.current"));
-  consider(leftOf(all + "/memory", "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+  consider(leftOf(memory, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
   std::ifstream groups(root + "/proc/self/cgroup");
   std::string line;
   while (std::getline(groups, line)) {
@@ -72,7 +72,7 @@ std::uint64_t availableMemory(const std::string& root) {
     const std::string path = line.substr(second + 1);
     if (controllers.empty()) consider(leftOf(all + path, "/memory.max", "/memory.current"));
     if (controllers == "memory")
-      consider(leftOf(all + "/memory" + path, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+      consider(leftOf(memory + path, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
   }
   return available == kUnknown ? 0 : available;
 }

@@ -294,7 +294,7 @@ TEST(Closing, IsTheOpeningOfASurfaceTurnedOver) {
 }
 
 TEST(Opening, DependsOnSamplesWithinTwoElementsAndNoMoreThanThereCanBe) {
-  const Version field = versionOf({"spacing 1:4", 20, 20, 0.25, 1.0, 0.0, rough});
+  const Version field = versionOf(Rolled{"spacing 1:4", 20, 20, 0.25, 1.0, 0.0, rough});
   for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing})
     for (const Element element : kElements) {
       const auto reach = [&](double radius) {

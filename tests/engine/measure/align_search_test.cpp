@@ -13,11 +13,11 @@
 namespace fettle::engine {
 namespace {
 
-using Shape = std::function<double(double x, double y)>;
+using Relief = std::function<double(double x, double y)>;
 
 // On cells of 0.25 mm, the part turned by `degrees` about (`x`, `y`) and shifted, with heights in a unit of its own.
-HeightMap scanned(std::int32_t width, std::int32_t height, const Shape& shape, const RigidMotion& motion = {},
-                  double unit = 1.0) {
+HeightMap scanned(std::int32_t width, std::int32_t height, const Relief& relief,
+                  const RigidMotion& motion = {}, double unit = 1.0) {
   HeightMap map;
   map.width = width;
   map.height = height;
@@ -25,7 +25,7 @@ HeightMap scanned(std::int32_t width, std::int32_t height, const Shape& shape, c
   for (std::int32_t r = 0; r < height; ++r)
     for (std::int32_t c = 0; c < width; ++c) {
       const glm::dvec3 p = motion.movedBack({0.25 * c, 0.25 * r, 0.0});
-      map.z.push_back(unit * shape(p.x, p.y));
+      map.z.push_back(unit * relief(p.x, p.y));
     }
   return map;
 }
