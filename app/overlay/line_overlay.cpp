@@ -35,6 +35,10 @@ glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
   return placeAt(reader.grid(), at, heightAbove(reader, at).value_or(0.0));
 }
 
+void addMeaning(const render::LineMeaning& meaning, std::vector<render::LineMeaning>& meanings) {
+  if (std::ranges::find(meanings, meaning) == meanings.end()) meanings.push_back(meaning);
+}
+
 namespace {
 
 using engine::EdgeLine;
@@ -44,14 +48,15 @@ constexpr double kPiece_px = 3.0;
 constexpr double kBand = 2.0;  // standard deviations to either side
 constexpr float kLine_px = 2.0F, kChosen_px = 4.0F;
 constexpr float kWidest_px = 64.0F;
-const glm::vec3 kStepColour{1.0F, 0.35F, 0.02F}, kCreaseColour{0.1F, 0.5F, 1.0F},
-    kUnlocatedColour{0.35F, 0.35F, 0.35F}, kChosenColour{1.0F, 1.0F, 0.25F};
+constexpr render::LineMeaning kStep{{1.0F, 0.35F, 0.02F}, "edge line: a step"},
+    kCrease{{0.1F, 0.5F, 1.0F}, "a crease"}, kUnlocated{{0.35F, 0.35F, 0.35F}, "no edge found, as drawn"},
+    kChosen{{1.0F, 1.0F, 0.25F}, "the chosen line"};
 
-const glm::vec3& colourOf(const EdgePoint& point, bool chosen) {
-  return chosen                                    ? kChosenColour
-         : !point.located                          ? kUnlocatedColour
-         : point.kind == engine::LineKind::kCrease ? kCreaseColour
-                                                   : kStepColour;
+const render::LineMeaning& meaningOf(const EdgePoint& point, bool chosen) {
+  return chosen                                    ? kChosen
+         : !point.located                          ? kUnlocated
+         : point.kind == engine::LineKind::kCrease ? kCrease
+                                                   : kStep;
 }
 
 }  // namespace
@@ -74,6 +79,7 @@ void LineOverlay::append(const engine::Version& field, std::optional<std::int64_
     stride_ = stride;
     mm_per_pixel_ = mm_per_pixel;
     pieces_.clear();
+    meanings_.clear();
     for (const EdgeLine& line : *field.lines()) {
       const std::size_t points = line.points.size();
       // Over a hole a line goes on at the height it had, or will have.
@@ -99,16 +105,19 @@ void LineOverlay::append(const engine::Version& field, std::optional<std::int64_
           const double width_px = 2.0 * kBand * a.deviation * across_mm / mm_per_pixel;
           band.width_px = std::min(static_cast<float>(width_px), kWidest_px);
           band.opacity = 0.3F;
-          band.colour = colourOf(a, false);
+          band.colour = meaningOf(a, false).colour;
           if (band.width_px > kLine_px) pieces_.push_back(band);
         }
         piece.width_px = is_chosen ? kChosen_px : kLine_px;
-        piece.colour = colourOf(a, is_chosen);
+        const render::LineMeaning& meaning = meaningOf(a, is_chosen);
+        addMeaning(meaning, meanings_);
+        piece.colour = meaning.colour;
         pieces_.push_back(piece);
       }
     }
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+  for (const render::LineMeaning& meaning : meanings_) addMeaning(meaning, overlays.meanings);
 }
 
 }  // namespace fettle::app

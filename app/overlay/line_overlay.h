@@ -34,6 +34,10 @@ class LineOverlay {
   int stride_ = 0;
   double mm_per_pixel_ = 0.0;
   std::vector<render::OverlayLine> pieces_;
+  std::vector<render::LineMeaning> meanings_;  // of the colours in them
 };
+
+/// Adds one to those of a picture, unless it is there.
+void addMeaning(const render::LineMeaning& meaning, std::vector<render::LineMeaning>& meanings);
 
 }  // namespace fettle::app

@@ -132,7 +132,8 @@ void drawField(Parts& parts, const DrawOptions& options) {
   StylusLook look = parts.settings.display.stylus;
   if (picture.spares()) look.shadow = false;
   if (stylus && state.link == haptic::LinkState::kConnected)
-    parts.stylus_overlay.append(client, state, picture.mmPerPixel(), look, input.overlays);
+    parts.stylus_overlay.append(client, state, picture.mmPerPixel(), parts.window.scale(), look,
+                                input.overlays);
   else
     parts.stylus_overlay.hide();
   parts.section_overlay.append(client.field(), parts.section, picture.mmPerPixel(), input.overlays);
@@ -161,7 +162,7 @@ HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
   picture.input = frameInput(parts, render::Sharpness::kFull, options);
   const haptic::LoopState state = client.state();
   if (client.mouse() == nullptr && state.link == haptic::LinkState::kConnected)
-    StylusOverlay::appendTip(client, state, parts.picture.mmPerPixel(), kTipInTheRoom,
+    StylusOverlay::appendTip(client, state, parts.picture.mmPerPixel(), 1.0, kTipInTheRoom,
                              picture.input.overlays);
   return picture;
 }

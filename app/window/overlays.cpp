@@ -21,14 +21,15 @@ constexpr double kLeastSeen = 96.0;  // [samples]; of less the surroundings show
 constexpr double kPlacePiece_px = 3.0;
 // Narrow: the hand has to see the edge below.
 constexpr float kOtherPlace_px = 2.5F, kPresentPlace_px = 4.0F, kPlaceEnd_px = 9.0F;
-const glm::vec3 kOpenColour{0.75F, 0.08F, 0.75F}, kPresentColour{1.0F, 0.2F, 0.9F},
-    kDoneColour{0.08F, 0.6F, 0.15F}, kSkippedColour{0.3F, 0.3F, 0.3F};
+constexpr render::LineMeaning kOpenPlace{{0.75F, 0.08F, 0.75F}, "place for a line"},
+    kPresentPlace{{1.0F, 0.2F, 0.9F}, "the present place"}, kDonePlace{{0.08F, 0.6F, 0.15F}, "place done"},
+    kSkippedPlace{{0.3F, 0.3F, 0.3F}, "place skipped"}, kSectionMeaning{{0.02F, 0.02F, 0.02F}, "section"};
 
-const glm::vec3& colourOfPlace(State state, bool present) {
-  return state == State::kDone      ? kDoneColour
-         : present                  ? kPresentColour
-         : state == State::kSkipped ? kSkippedColour
-                                    : kOpenColour;
+const render::LineMeaning& meaningOfPlace(State state, bool present) {
+  return state == State::kDone      ? kDonePlace
+         : present                  ? kPresentPlace
+         : state == State::kSkipped ? kSkippedPlace
+                                    : kOpenPlace;
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
       const bool present = places.present() == k;
       render::OverlayLine piece;
       piece.depth = render::OverlayLine::Depth::kInScene;
-      piece.colour = colourOfPlace(places.state(k), present);
+      piece.colour = meaningOfPlace(places.state(k), present).colour;
       piece.opacity = present ? 0.55F : 0.35F;
       piece.width_px = present ? kPresentPlace_px : kOtherPlace_px;
       for (std::size_t i = 0; i + 1 < path.size(); i += stride) {
@@ -89,6 +90,8 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
     }
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+  for (std::size_t k = 0; k < places.found()->places.size(); ++k)
+    addMeaning(meaningOfPlace(places.state(k), places.present() == k), overlays.meanings);
 }
 
 void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
@@ -128,6 +131,7 @@ void SectionOverlay::append(const engine::Version& field, const SectionTool& sec
       addSection(reader, spacing, section.sections()[i], section.chosen() == i);
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+  if (!pieces_.empty()) addMeaning(kSectionMeaning, overlays.meanings);
 }
 
 void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dvec2& spacing,
@@ -140,7 +144,7 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
   };
   render::OverlayLine piece;
   piece.depth = render::OverlayLine::Depth::kInScene;
-  piece.colour = {0.02F, 0.02F, 0.02F};
+  piece.colour = kSectionMeaning.colour;
   piece.opacity = chosen ? 1.0F : 0.45F;
   piece.width_px = 2.5F;
   for (int i = 0; i < count; ++i) {
@@ -159,7 +163,7 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
 
 constexpr std::size_t kForces = 240;
 constexpr double kLargestForce_px = 60.0;  // the arrow of the largest force
-constexpr double kStylus_px = 90.0;
+constexpr double kStylus_px = 96.0;
 constexpr double kTurn_px = 2.0;  // of the drawn stylus' end
 
 bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) const {
@@ -181,7 +185,7 @@ TipLook StylusOverlay::tipLookOf(const LoopClient& client) {
 }
 
 void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                              const StylusLook& look, render::Overlays& overlays) {
+                              double scale, const StylusLook& look, render::Overlays& overlays) {
   const TipLook tip_look = tipLookOf(client);
   render::StylusState tip;
   tip.endpoint_mm = state.endpoint_mm;
@@ -191,7 +195,8 @@ void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState&
   tip.tip_radius_mm = tip_look.ball_radius_mm;
   tip.discs = !look.pen;
   tip.arrow = look.force;
-  render::appendStylus(tip, kLargestForce_px * mm_per_pixel / client.scene().force_limit_n, overlays.lines);
+  render::appendStylus(tip, kLargestForce_px * scale * mm_per_pixel / client.scene().force_limit_n,
+                       overlays.lines);
   render::Overlays::Ring ring;
   ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
   ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
@@ -204,13 +209,14 @@ void StylusOverlay::appendTip(const LoopClient& client, const haptic::LoopState&
     overlays.stylus = render::StylusBody{.tip_mm = seen_mm,
                                          .ball_radius_mm = tip.tip_radius_mm,
                                          .to_tail = state.stylus_axis,
+                                         .length_px = kStylus_px * scale,
                                          .colour = ring.colour,
                                          .shadow = look.shadow};
 }
 
 void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                           const StylusLook& look, render::Overlays& overlays) {
-  appendTip(client, state, mm_per_pixel, look, overlays);
+                           double scale, const StylusLook& look, render::Overlays& overlays) {
+  appendTip(client, state, mm_per_pixel, scale, look, overlays);
   if (look.trail)
     trail_.append(state.contact ? state.proxy_mm : state.endpoint_mm, mm_per_pixel, StylusTrail::Clock::now(),
                   overlays);

@@ -63,13 +63,14 @@ class StylusOverlay {
   [[nodiscard]] bool moved(const haptic::LoopState& state, double mm_per_pixel) const;
   /// Adds it to the overlays of the next frame. A device that does not say how its stylus is held has a pen as a hand before
   /// the picture would hold it.
-  void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
+  /// `scale`: of the display and the user interface, with which pen and arrow grow.
+  void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel, double scale,
               const StylusLook& look, render::Overlays& overlays);
   /// How the tip looks: its brush's ring, its ball, its colour.
   [[nodiscard]] static TipLook tipLookOf(const LoopClient& client);
   /// The same without its trail: for a picture beside the window's.
   static void appendTip(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
-                        const StylusLook& look, render::Overlays& overlays);
+                        double scale, const StylusLook& look, render::Overlays& overlays);
   /// The next frame shows no stylus.
   void hide() noexcept { trail_.clear(); }
   /// Whether the picture changes with time alone.

@@ -16,6 +16,7 @@
 #include "render/config.h"
 #include "render/plan/camera.h"
 #include "render/plan/framing.h"
+#include "render/plan/overlay.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
 #include "render/plan/stylus_body.h"
@@ -61,6 +62,8 @@ struct Overlays {
   std::vector<Ring> rings;
   /// Drawn over lines that the surface hides, under those on top. Costs nothing where there is none.
   std::optional<StylusBody> stylus{};
+  /// What the colours of the lines mean: the legend names them. The same one twice is named once.
+  std::vector<LineMeaning> meanings{};
 };
 
 /// State of a haptic device as overlay lines: the line between endpoint and proxy (tip); where nothing else

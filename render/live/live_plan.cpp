@@ -167,6 +167,7 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
       planPicture(spec, shown.versions, spans, arranged(input, static_cast<int>(shown.versions.size())));
   if (plan) {
     plan->decorations.titles = input.titles;
+    plan->decorations.lines = input.overlays.meanings;
     plan->decorations.colours = input.form.material == Material::kNone || input.form.value_colours > 0.0 ||
                                 shown.original.has_value();
     const auto anyMark = [](const engine::Version& v) { return v.reader().root().marked_children != 0; };

@@ -225,6 +225,35 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Decorati
   if (f.suggested) swatch(palette.suggested, "suggested");
 }
 
+// What the colours of lines mean, smaller and under all that is always there: nothing moves when lines come and go.
+void linesRow(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
+              const Palette& palette, std::vector<std::string>& warnings) {
+  if (f.lines.empty()) return;
+  const double s = layout.scale;
+  const Rectangle& lowest = layout.plots.back();
+  const int px = std::max(8, static_cast<int>(std::lround(layout.text_px * 0.8)));
+  const double below = view.height - lowest.y - lowest.height;
+  const double middle = std::round(lowest.y + lowest.height + below - 0.6 * px);
+  const double long_side = std::round(18 * s), thick = std::max(3.0, std::round(4 * s));
+  const double rim = std::max(1.0, std::round(s));
+  double x = layout.plots.front().x + rim;
+  for (const LineMeaning& line : f.lines) {
+    const std::string name(line.name);
+    const double width = pen.glyphs().width(name, px, kRegular);
+    if (x + long_side + 6 * s + width > view.width - 4 * s) {
+      warnings.emplace_back("no room for \"" + name + "\", make the picture wider");
+      return;
+    }
+    // Some are as dark, or as light, as the ground.
+    pen.box(x - rim, middle - std::floor(thick / 2) - rim, long_side + 2 * rim, thick + 2 * rim,
+            palette.faint_ink);
+    pen.box(x, middle - std::floor(thick / 2), long_side, thick, line.colour);
+    x += long_side + 6 * s;
+    pen.text(x, middle + px * 0.36, name, px, kRegular, palette.ink);
+    x += width + 18 * s;
+  }
+}
+
 }  // namespace
 
 Palette paletteOf(Theme theme, ColourMap map) {
@@ -280,6 +309,7 @@ std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
   }
   if (decorations.colours) colourBar(pen, layout, view, decorations, palette, warnings);
   bottomLine(pen, layout, view, decorations, palette, warnings);
+  linesRow(pen, layout, view, decorations, palette, warnings);
   if (glyphs.lost() != lost) warnings.emplace_back("some letters had no room in the glyph image");
   return quads;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -35,6 +36,14 @@ enum class Titles { kNone, kInMargin, kAbove };
 [[nodiscard]] Layout layOut(const View& view, Decoration decoration, int panels, Titles titles,
                             double scale = 0.0);
 
+/// What a colour of lines on the surface means.
+struct LineMeaning {
+  glm::vec3 colour;  ///< linear light
+  std::string_view name;
+
+  friend bool operator==(const LineMeaning&, const LineMeaning&) = default;
+};
+
 /// The content of the decorations.
 struct DecorationContent {
   ValueRange range;                   ///< of the colours [the field's height unit]
@@ -50,6 +59,7 @@ struct DecorationContent {
   bool marks = false, suggested = false, no_data = false;  ///< legend entries
   float marks_opacity = 1.0F;
   std::vector<std::string> titles;  ///< one per panel
+  std::vector<LineMeaning> lines;   ///< of the lines in the picture: a row of its own, under the others
 };
 
 /// The quads of the decorations in drawing order. `warnings` gets a line for each text that did not fit.

@@ -38,11 +38,22 @@ TEST_F(WindowTest, strokes_become_edge_lines_that_are_cut_chosen_removed_and_kep
   user.at({20, 790});
   const Screen drawn = user.changed("a line", empty);
   EXPECT_TRUE(user.reads("found"));
+  // The legend's row of lines is there with them: an orange sample and its words.
+  const State area = program->now()["picture"];
+  const Part legend{area[0], area[1].get<int>() + area[3].get<int>() - 13, area[2], 13};
+  EXPECT_GT(differing(empty, drawn, legend), 60);
+  const auto isOrange = [](const std::uint8_t* p) {
+    return p[0] > 220 && p[1] > 100 && p[1] < 190 && p[2] < 80;
+  };
+  int orange = 0;
+  for (int y = legend.y; y < legend.y + legend.height; ++y)
+    for (int x = legend.x; x < legend.x + legend.width; ++x) orange += isOrange(drawn.at(x, y));
+  EXPECT_GT(orange, 20);
 
   // One stroke, one undo: the line and the marks it came from.
   (void)user.key("ctrl+z");
   EXPECT_EQ(lines(0)["steps"], 0);
-  (void)user.same("undone", empty);
+  EXPECT_EQ(differing(empty, user.same("undone", empty), legend), 0) << "no lines, no legend of them";
   (void)user.key("ctrl+shift+z");
   EXPECT_EQ(lines(1)["steps"], 2);
   (void)user.same("the line again", drawn);

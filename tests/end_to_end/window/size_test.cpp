@@ -1,4 +1,5 @@
 // Sizes of the window, of its text, and no size at all.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -90,7 +91,16 @@ TEST_F(SizeTest, a_window_changes_its_size_at_any_time) {
   expectSilence(*program);
 }
 
+// Pixels from a place up to the highest one that differs.
+int risesAbove(const Screen& a, const Screen& b, User::Place from) {
+  int highest = from.y;
+  for (int y = from.y; y > std::max(0, from.y - 300); --y)
+    if (differing(a, b, {from.x - 100, y, 400, 1}) > 0) highest = y;
+  return from.y - highest;
+}
+
 TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
+  int usual_pen = 0;
   for (const auto& [dpi, scale] : {std::pair{96, 1.0}, {120, 1.25}, {144, 1.5}, {192, 2.0}}) {
     other.setResources(fmt::format("Xft.dpi:\t{}\n", dpi));
     const auto program = start({scan, "--size", fmt::format("{}x{}", int(1300 / scale), int(960 / scale))});
@@ -102,6 +112,20 @@ TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
     // size of the letters (DejaVu: 0.760 above the line, 0.236 below), rounded at both ends.
     EXPECT_NEAR(titleHeight(seen, shown["picture"]), 13.0 * scale, 1.5) << dpi;
     for (const State& text : shown["texts"]) EXPECT_EQ(text["cut"], false) << dpi << " dpi: " << text.dump();
+    // The pen over the same surface, and away from it.
+    (void)user.key("s");
+    const Part surface = user.surface();
+    const User::Place middle{surface.x + surface.width / 2, surface.y + surface.height / 2};
+    user.at(middle);
+    (void)user.rest();
+    const Screen pen = user.look("a pen");
+    user.at({20, shown["frame"][1].get<int>() - 3});  // the status line
+    const Screen none =
+        user.until("no pen", [&](const Screen& now) { return risesAbove(pen, now, middle) > 20; });
+    const int rises = risesAbove(pen, none, middle);
+    if (dpi == 96) usual_pen = rises;
+    EXPECT_NEAR(rises, scale * usual_pen, 4.0 + 0.05 * scale * usual_pen) << dpi;
+    EXPECT_GT(usual_pen, 40);
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0);
     expectSilence(*program);

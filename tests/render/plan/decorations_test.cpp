@@ -105,6 +105,45 @@ TEST(Legend, NamesEachSpecialColourThatThePictureHasAndNoOther) {
   }
 }
 
+TEST(Legend, NamesTheColoursOfLinesWhereThereAreAnyAndMovesNothingForThem) {
+  Decorated picture;
+  const std::vector<gpu::Quad> without = picture.quads();
+  const glm::vec3 black{0.02F}, orange{1.0F, 0.35F, 0.02F};
+  picture.content.lines = {{orange, "step"}, {black, "section"}};
+  const std::vector<gpu::Quad> with = picture.quads();
+  ASSERT_GT(with.size(), without.size());
+  EXPECT_TRUE(std::equal(without.begin(), without.end(), with.begin(), same));
+  EXPECT_EQ(letters(with), letters(without) + std::string("stepsection").size());
+  // Under what is always there, and none of it cut by the picture's edge.
+  float lowest = 0.0F;
+  for (const gpu::Quad& q : without) lowest = std::max(lowest, q.pixels.w);
+  for (std::size_t i = without.size(); i < with.size(); ++i) {
+    EXPECT_LE(with[i].pixels.w, 800.0F);
+    EXPECT_GE(with[i].pixels.y, lowest - 1.0F);
+  }
+  // Each colour in a rim that is seen on the ground: black lines are, on a black ground.
+  for (const glm::vec3& colour : {orange, black}) {
+    const auto box = std::ranges::find_if(with, [&](const gpu::Quad& q) { return hasColour(q, colour); });
+    ASSERT_NE(box, with.end());
+    const gpu::Quad& rim = *(box - 1);
+    EXPECT_TRUE(hasColour(rim, picture.palette().faint_ink));
+    EXPECT_LT(rim.pixels.x, box->pixels.x);
+    EXPECT_GT(rim.pixels.w, box->pixels.w);
+  }
+  // A colour without its word would explain nothing.
+  for (int width = 200; width < 1280; width += 20) {
+    picture.setWidth(width);
+    const std::vector<gpu::Quad> quads = picture.quads();
+    for (const gpu::Quad& q : quads) EXPECT_LE(q.pixels.z, static_cast<float>(width)) << width;
+    const auto boxes = std::ranges::count_if(
+        quads, [&](const gpu::Quad& q) { return hasColour(q, orange) || hasColour(q, black); });
+    picture.content.lines.clear();
+    const std::size_t others = letters(picture.quads());
+    picture.content.lines = {{orange, "step"}, {black, "section"}};
+    EXPECT_EQ(letters(quads) - others, boxes == 2 ? 11U : boxes == 1 ? 4U : 0U) << width;
+  }
+}
+
 // Of more than one byte each: half a letter would be drawn as another one.
 TEST(Titles, ThatAreTooLongEndWithAnEllipsisAfterAWholeLetter) {
   Decorated picture;
