@@ -12,6 +12,7 @@
 #include <imgui_internal.h>  // windows and their rectangles
 
 #include "render/plan/font_data.h"
+#include "render/plan/panel_colours.h"
 #include "render/vulkan/barrier.h"
 
 namespace fettle::render {
@@ -23,6 +24,56 @@ constexpr float kText_px = 15.0F;
 void check(VkResult result) {
   if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "ImGui");
 }
+
+struct StyleRow {
+  ImGuiCol of;
+  PanelColour colour;
+};
+// What is not named here is not drawn in this window.
+constexpr StyleRow kStyle[] = {
+    {ImGuiCol_Text, PanelColour::kText},
+    {ImGuiCol_TextDisabled, PanelColour::kMuted},
+    {ImGuiCol_WindowBg, PanelColour::kPanel},
+    {ImGuiCol_PopupBg, PanelColour::kPopup},
+    {ImGuiCol_Border, PanelColour::kBorder},
+    {ImGuiCol_FrameBg, PanelColour::kField},
+    {ImGuiCol_FrameBgHovered, PanelColour::kFieldPointed},
+    {ImGuiCol_FrameBgActive, PanelColour::kFieldHeld},
+    {ImGuiCol_TitleBg, PanelColour::kTitle},
+    {ImGuiCol_TitleBgActive, PanelColour::kTitle},
+    {ImGuiCol_TitleBgCollapsed, PanelColour::kTitle},
+    {ImGuiCol_MenuBarBg, PanelColour::kBar},
+    {ImGuiCol_ScrollbarBg, PanelColour::kScrollTrack},
+    {ImGuiCol_ScrollbarGrab, PanelColour::kScrollGrab},
+    {ImGuiCol_ScrollbarGrabHovered, PanelColour::kScrollGrab},
+    {ImGuiCol_ScrollbarGrabActive, PanelColour::kScrollGrab},
+    {ImGuiCol_CheckMark, PanelColour::kTick},
+    {ImGuiCol_SliderGrab, PanelColour::kGrab},
+    {ImGuiCol_SliderGrabActive, PanelColour::kGrabHeld},
+    {ImGuiCol_Button, PanelColour::kButton},
+    {ImGuiCol_ButtonHovered, PanelColour::kButtonPointed},
+    {ImGuiCol_ButtonActive, PanelColour::kButtonHeld},
+    {ImGuiCol_Header, PanelColour::kRow},
+    {ImGuiCol_HeaderHovered, PanelColour::kRowPointed},
+    {ImGuiCol_HeaderActive, PanelColour::kRowHeld},
+    {ImGuiCol_Separator, PanelColour::kBorder},
+    {ImGuiCol_SeparatorHovered, PanelColour::kTick},
+    {ImGuiCol_SeparatorActive, PanelColour::kTick},
+    {ImGuiCol_ResizeGrip, PanelColour::kBorder},
+    {ImGuiCol_ResizeGripHovered, PanelColour::kTick},
+    {ImGuiCol_ResizeGripActive, PanelColour::kTick},
+    {ImGuiCol_PlotLines, PanelColour::kCurve},
+    {ImGuiCol_PlotLinesHovered, PanelColour::kTick},
+    {ImGuiCol_PlotHistogram, PanelColour::kProgress},
+    {ImGuiCol_PlotHistogramHovered, PanelColour::kTick},
+    {ImGuiCol_TableHeaderBg, PanelColour::kTableHead},
+    {ImGuiCol_TableBorderStrong, PanelColour::kBorder},
+    {ImGuiCol_TableBorderLight, PanelColour::kBorder},
+    {ImGuiCol_TableRowBgAlt, PanelColour::kOtherRow},
+    {ImGuiCol_TextSelectedBg, PanelColour::kSelection},
+    {ImGuiCol_NavHighlight, PanelColour::kTick},
+    {ImGuiCol_ModalWindowDimBg, PanelColour::kShade},
+};
 
 // One pass over the image that already contains the picture.
 vk::raii::RenderPass makePass(const vk::raii::Device& device) {
@@ -66,6 +117,7 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   makeStyle(scale);
+  setTheme(theme_);
   ImFontConfig font;
   font.FontDataOwnedByAtlas = false;
   // Latin, Greek, arrows, and the few signs that numbers need.
@@ -125,17 +177,21 @@ void UiLayer::leave() noexcept {
 }
 
 void UiLayer::makeStyle(double scale) const {
-  ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 0.0F;
   style.FrameRounding = 3.0F;
   style.GrabRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
-  // The background of a dialog is darkened; ImGui's own light grey would remove the colours of the picture.
-  style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0F, 0.0F, 0.0F, 0.45F);
-  // Nothing shines through what is read: tips, lists, dialogs.
-  style.Colors[ImGuiCol_PopupBg].w = 1.0F;
+  style.FrameBorderSize = 1.0F;  // an empty tick box is nothing but its edge
   style.ScaleAllSizes(static_cast<float>(scale));
+}
+
+void UiLayer::setTheme(Theme theme) {
+  theme_ = theme;
+  damage_.forget();  // what lies behind the panels has another colour
+  ImVec4* const colours = ImGui::GetStyle().Colors;
+  for (const StyleRow& row : kStyle)
+    colours[row.of] = ImGui::ColorConvertU32ToFloat4(panelColour(row.colour, theme));
 }
 
 void UiLayer::fit(vk::Extent2D extent) {
@@ -429,8 +485,10 @@ void UiLayer::drawPanels(const vk::raii::CommandBuffer& commands, ImDrawData& pa
                         0,
                         1});
   if (!beside.empty()) {
-    const vk::ClearAttachment ground(vk::ImageAspectFlagBits::eColor, 0,
-                                     vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}));
+    const ImVec4 behind = ImGui::ColorConvertU32ToFloat4(panelColour(PanelColour::kBehind, theme_));
+    const vk::ClearAttachment ground(
+        vk::ImageAspectFlagBits::eColor, 0,
+        vk::ClearColorValue(std::array<float, 4>{behind.x, behind.y, behind.z, behind.w}));
     commands.clearAttachments(ground, beside);
   }
   std::vector<ImVector<ImDrawCmd>> whole;

@@ -9,6 +9,7 @@
 
 #include <imgui.h>
 
+#include "render/plan/picture.h"
 #include "render/vulkan/memory.h"
 #include "render/window/panel_damage.h"
 
@@ -39,6 +40,8 @@ class UiLayer {
   /// called.
   void leave() noexcept;
 
+  /// The colours of what is drawn from the next frame on.
+  void setTheme(Theme theme);
   void fit(vk::Extent2D extent);
   /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
   /// gets keys that were released by then, for one frame.
@@ -109,6 +112,7 @@ class UiLayer {
   [[nodiscard]] bool pointerIsDown() const noexcept { return pointer_ && pointer_->down.value_or(false); }
 
   Context* context_ = nullptr;
+  Theme theme_ = Theme::kDark;
   bool entered_ = false;
   GLFWwindow* window_;
   std::vector<Press> pressed_;                  // since the last frame began, or waiting for the next one

@@ -430,6 +430,10 @@ int Window::height() const {
 double Window::scale() const {
   return impl_->scale();
 }
+void Window::setPanelTheme(Theme theme) {
+  impl_->ui->setTheme(theme);
+}
+
 void Window::setTitle(const std::string& title) {
   glfwSetWindowTitle(impl_->glfw.window, title.c_str());
 }

@@ -138,6 +138,8 @@ class Window {
   [[nodiscard]] int height() const;
   /// Factor on sizes of text and panels: the display's, 1 on standard ones.
   [[nodiscard]] double scale() const;
+  /// The colours of the panels from the next frame on (panel_colours.h).
+  void setPanelTheme(Theme theme);
   void setTitle(const std::string& title);
   /// On the whole of the screen on which its middle is; no effect where there is none, as without a display's
   /// own list of screens.
