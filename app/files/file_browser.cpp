@@ -12,6 +12,11 @@ void FileBrowser::goTo(const std::string& folder, std::string chosen, std::strin
   job_.start([folder](engine::JobControl& job) { return listFolder(folder, job); });
 }
 
+void FileBrowser::begin(const std::string& folder, std::string chosen) {
+  view_.typed.clear();
+  goTo(folder, std::move(chosen));
+}
+
 void FileBrowser::goUp() {
   const std::filesystem::path here(listing_.folder);
   if (here.has_relative_path()) goTo(here.parent_path().string(), here.filename().string());

@@ -17,6 +17,8 @@ class FileBrowser {
   /// Goes to a folder. `chosen`: the name to choose in it, if it is there; `typed`: what its names are to contain, in place of
   /// what was typed in another folder.
   void goTo(const std::string& folder, std::string chosen = {}, std::string typed = {});
+  /// The same for a dialog that appears: what was typed in one before it does not count.
+  void begin(const std::string& folder, std::string chosen);
   /// To the folder that holds this one, which is then the chosen entry.
   void goUp();
   /// Lists the folder again.

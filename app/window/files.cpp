@@ -23,7 +23,7 @@ void Files::begin(const std::string& path, const std::vector<std::string>& recen
   shelf.forget();
   shown_places = places.places(recent);
   followed_ = folderOf(path);
-  browser.goTo(followed_, std::filesystem::path(path).filename().string());
+  browser.begin(followed_, std::filesystem::path(path).filename().string());
 }
 
 void Files::begin(const std::string& path, const ScanOptions& as, const ScanThumbnail* known) {

@@ -47,6 +47,18 @@ TEST_F(FileBrowserTest, moves_through_a_folder_and_stops_at_its_ends) {
   EXPECT_EQ(chosenName(), "deep");
 }
 
+TEST_F(FileBrowserTest, what_was_typed_in_one_dialog_does_not_narrow_the_list_of_the_next) {
+  browser.goTo(folder.path().string());
+  arrive();
+  browser.narrow("a.tif");
+  EXPECT_EQ(browser.count(), 1U);
+  browser.begin(folder.path().string(), "b.tif");
+  arrive();
+  EXPECT_EQ(browser.view().typed, "");
+  EXPECT_EQ(browser.count(), 4U);
+  EXPECT_EQ(chosenName(), "b.tif");
+}
+
 TEST_F(FileBrowserTest, goes_down_and_up_again_to_where_it_came_from) {
   browser.goTo(folder.file("deep"));
   arrive();

@@ -67,6 +67,51 @@ TEST_F(SoundTest, sound_is_ticked_heard_and_muted) {
   expectSilence(*program);
 }
 
+TEST_F(SoundTest, the_volume_is_heard_and_kept_for_the_next_start) {
+  const std::string raw = folder.file("volume.raw");
+  const std::map<std::string, std::string> on_disk{{"SDL_AUDIODRIVER", "disk"}, {"SDL_DISKAUDIOFILE", raw}};
+  const auto program = start({scan}, on_disk);
+  User user(display, *program, "volume");
+  (void)opened(*program);
+  (void)openHaptics(user);
+  EXPECT_EQ(user.click("sound")["volume"], 0.5);
+  // Typed: Ctrl and a click make a field of a slider.
+  const auto type = [&](const std::string& shown, const std::string& percent) {
+    display.hands({"keydown", "ctrl"});
+    user.tap(shown);
+    display.hands({"keyup", "ctrl"});
+    program->until("a field", [](const State& s) { return s["text_field"] == true; });
+    user.write(percent);
+    program->until("typed", [&](const State& s) { return s["field_text"] == percent; });
+    (void)user.press("Return");
+    return program->until("taken",
+                          [](const State& s) { return s["text_field"] == false && s["settled"] == true; });
+  };
+  const auto strokeHeard = [&] {
+    const std::uintmax_t from = std::filesystem::file_size(raw) + 16384;
+    (void)user.stroke({240, 332}, {440, 332}, 12);
+    return heardIn(raw, from).loudest;
+  };
+  (void)user.key("s");
+  const double half = strokeHeard();
+  EXPECT_GT(half, 0.005);
+  EXPECT_EQ(type("50 %", "10")["volume"], 0.1);
+  const double tenth = strokeHeard();
+  EXPECT_GT(tenth, 0.0);
+  EXPECT_LT(tenth, 0.6 * half);
+  // Beyond the end of the slider there is its end.
+  EXPECT_EQ(type("10 %", "400")["volume"], 1.0);
+  EXPECT_GT(strokeHeard(), half);
+  (void)type("100 %", "30");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  const auto again = start({scan}, on_disk);
+  EXPECT_EQ(opened(*again)["volume"], 0.3);
+  again->signal(SIGTERM);
+  EXPECT_EQ(again->wait(), 0) << again->err();
+  expectSilence(*again);
+}
+
 TEST_F(SoundTest, without_an_audio_device_a_notice_says_so_and_the_hand_still_works) {
   const auto program = start({scan}, {{"SDL_AUDIODRIVER", "none_such"}});
   User user(display, *program, "no_sound");
