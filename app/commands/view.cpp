@@ -23,6 +23,7 @@ struct ViewArguments {
   bool validate = false;
   bool plain_rest = false;
   std::string xr_scale = "giant";
+  std::string theme;
 };
 
 engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
@@ -36,6 +37,8 @@ engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job)
     if (!scene) return tl::unexpected(scene.error());
     options.scene = *std::move(scene);
   }
+  if (!given.theme.empty())
+    options.theme = given.theme == "light" ? render::Theme::kLight : render::Theme::kDark;
   options.xr_scale = given.xr_scale == "true" ? RoomScale::kTrue : RoomScale::kGiant;
   if (given.validate) options.window.validation = render::Validation::kOn;
   auto station = Workstation::create(options);
@@ -83,6 +86,11 @@ void addView(Command root, Chosen& chosen) {
        .text = "Factor on the size of text and panels",
        .range = Range{0.5, 4.0},
        .otherwise = "the display's"},
+      {.name = "--theme",
+       .to = &options->theme,
+       .text = "Colours of panels and dialogs, from now on",
+       .words = {{"dark", "light text on dark panels"}, {"light", "dark text on light panels"}},
+       .otherwise = "as chosen in the window, dark at first"},
       {.name = "--sharp-motion",
        .to = &options->view.drawing.sharp_motion,
        .text = "Draw every pixel also while the view moves; without it, every second one in each direction"},

@@ -432,9 +432,23 @@ inline void deviation(Parts& p) {
   toggle<&Display::deviation>(p);
   p.picture.refreshRanges();
 }
+inline render::Theme other(render::Theme theme) {
+  return theme == render::Theme::kDark ? render::Theme::kLight : render::Theme::kDark;
+}
 inline void theme(Parts& p) {
-  render::Theme& theme = p.settings.display.theme;
-  theme = theme == render::Theme::kDark ? render::Theme::kLight : render::Theme::kDark;
+  p.settings.display.theme = other(p.settings.display.theme);
+}
+inline void panelsTheme(Parts& p) {
+  p.settings.panels_theme = other(p.settings.panels_theme);
+}
+inline void takeNoticesAway(Parts& p) {
+  p.feedback.notices.clear();
+}
+inline bool hasNotices(const Parts& p) {
+  return !p.feedback.notices.empty();
+}
+inline bool panelsAreLight(const Parts& p) {
+  return p.settings.panels_theme == render::Theme::kLight;
 }
 template <int degrees>
 void turnLight(Parts& p) {

@@ -204,6 +204,8 @@ constexpr ActionRow kRows[] = {
               kNoKey, kFirst, kField, stereo, isStereo},
     ActionRow{Action::kTheme, "View", "Light or dark background", letter('G'), kPlain, kNoKey, kFirst,
               kNothing, theme, isLight, hasField},
+    ActionRow{Action::kPanelsTheme, "View", "Light or dark panels", letter('G'), kAlt, kNoKey, kFirst,
+              kNothing, panelsTheme, panelsAreLight},
     ActionRow{Action::kDecorations, "View", "Scale bar and colour bar", letter('J'), kPlain, kNoKey, kFirst,
               kNothing, toggle<&Display::decorations>, isOn<&Display::decorations>, hasField},
     ActionRow{Action::kAxes, "View", "Axes; a click on an end looks from there", letter('J'), kShift, kNoKey,
@@ -266,6 +268,8 @@ constexpr ActionRow kRows[] = {
               kThird, kNothing, fullScreen, isFullScreen},
     ActionRow{Action::kEnterPanels, "View", "Into the panels by keyboard (Esc leaves)", functionKey(6),
               kPlain, kNoKey, kThird, kNothing, enterPanels, nullptr, hasField},
+    ActionRow{Action::kUnderstood, "View", "Take the notices away", letter('N'), kAlt, kNoKey, kThird,
+              kNothing, takeNoticesAway, nullptr, hasNotices},
 
     ActionRow{Action::kArm, "Device", "Arm: allow force", letter('A'), kPlain, kNoKey, kFirst, kField, arm},
     ActionRow{Action::kDisarm, "Device", "Disarm (Pause too, even while typing)", letter('A'), kShift, kNoKey,

@@ -155,6 +155,12 @@ Question Questions::close() {
   return answered;
 }
 
+void Feedback::dropPassed(std::chrono::steady_clock::time_point now) {
+  for (Notice& notice : notices)
+    if (notice.passes && !notice.seen) notice.seen = now;
+  std::erase_if(notices, [&](const Notice& notice) { return notice.seen && now - *notice.seen >= kPassing; });
+}
+
 void Feedback::dropOfField() {
   questions.dropOfField();
   std::erase_if(notices, [](const Notice& notice) { return !notice.what.starts_with(kDeviceLost); });

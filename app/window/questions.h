@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -46,11 +47,11 @@ struct Question {
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.
   std::shared_ptr<const ScanThumbnail> guessed = {};
-  std::string sought = {};    ///< kShortcuts: as typed so far
-  bool stop_asking = false;   ///< kUnsaved: ticked so far
-  Notice said = {};           ///< kMessage
-  Kind from = Kind::kSaveAs;  ///< kReplace: the dialog of the path, kSaveAs or kExport
-  bool typed = false;         ///< kReplace: the path came from a dialog, to which the user can go back
+  std::string sought = {};                 ///< kShortcuts: as typed so far
+  bool stop_asking = false;                ///< kUnsaved: ticked so far
+  Notice said = {};                        ///< kMessage
+  Kind from = Kind::kSaveAs;               ///< kReplace, kImport: the dialog of the path
+  bool typed = false;                      ///< the path came from there, and the user can go back to it
   std::vector<std::string> replaced = {};  ///< kReplace: a sentence for each file to be replaced
 };
 
@@ -125,11 +126,14 @@ inline constexpr const char* kDeviceLost = "the graphics device was lost";
 /// The parts of the window report here. Threading: main.
 struct Feedback {
   static constexpr std::size_t kMostNotices = 6;
+  static constexpr std::chrono::seconds kPassing{12};  ///< enough to read two lines twice
 
   std::vector<Notice> notices;  ///< oldest first
   std::string status;
   Questions questions;
 
+  /// Once per frame in which notices are shown: those that pass go after kPassing.
+  void dropPassed(std::chrono::steady_clock::time_point now);
   /// What is said of a field goes with it: questions, and notices but for those of the graphics device.
   void dropOfField();
   void note(const engine::Error& error) { notices.push_back({error.what, error.remedy}); }

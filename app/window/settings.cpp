@@ -52,6 +52,12 @@ void take(const json& from, const char* name, const std::array<Word, N>& words, 
     if (it->get<std::string>() == words[i]) value = static_cast<Enum>(i);
 }
 
+void takeTheme(const json& from, const char* name, render::Theme& theme) {
+  bool light = theme == render::Theme::kLight;
+  take(from, name, light);
+  theme = light ? render::Theme::kLight : render::Theme::kDark;
+}
+
 json numbers(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
@@ -133,6 +139,7 @@ std::string Settings::text() const {
               {"stylus_trail", d.stylus.trail},
               {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
+              {"light_panels", panels_theme == render::Theme::kLight},
               {"side_panel", side_panel},
               {"side_width", side_width},
               {"panels", panels},
@@ -160,9 +167,8 @@ Settings Settings::load(const std::string& path) {
   take(file, "change_range", kRangeRules, d.changes.kind);
   take(file, "change_share", 0.01, 1.0, d.changes.share);
   take(file, "colour_steps", d.colour_steps);
-  bool light = false;
-  take(file, "light_background", light);
-  d.theme = light ? render::Theme::kLight : render::Theme::kDark;
+  takeTheme(file, "light_background", d.theme);
+  takeTheme(file, "light_panels", settings.panels_theme);
   take(file, "marks_opacity", 0.0F, 1.0F, d.marks_opacity);
   take(file, "light_azimuth", 0.0F, 360.0F, d.light_azimuth_deg);
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);

@@ -63,6 +63,7 @@ struct Display {
 struct Settings {
   Display display;
   Habits habits = Habits::kBlender;
+  render::Theme panels_theme = render::Theme::kDark;  ///< of panels and dialogs
   bool side_panel = true;
   float side_width = 0.0F;             ///< [pixels at scale 1]; 0: default
   std::map<std::string, bool> panels;  ///< which ones are open, by their names

@@ -48,6 +48,7 @@ Workstation::Workstation(const ViewOptions& options, std::unique_ptr<render::Win
       parts_(*window_, Settings::load(settingsPath("/window.json"))),
       saved_settings_(parts_.settings) {
   parts_.usual_reading = options_.reading;
+  if (options_.theme) parts_.settings.panels_theme = *options_.theme;
   window_->setWhileWaiting([this] { whileWaiting(); });
 }
 
@@ -202,6 +203,8 @@ void Workstation::showFrame() {
   const std::optional<std::int64_t> edit_ns =
       parts_.document.isOpen() ? parts_.document.client()->latency().takeUnshownEdit() : std::nullopt;
   const engine::Stopwatch watch;
+  if (parts_.settings.side_panel) parts_.feedback.dropPassed(std::chrono::steady_clock::now());
+  window_->setPanelTheme(parts_.settings.panels_theme);
   window_->beginFrame();
   carryOut(layOutPanels(parts_));
   releaseHandsWhenAsked();
@@ -271,7 +274,8 @@ void Workstation::carryOut(Answer answer) {
   const bool confirmed = answer.choice == Choice::kConfirm;
   if (answer.choice == Choice::kBack) {
     // Back to the dialog in which the path was typed.
-    if (question.kind == Kind::kReplace && question.typed)
+    if (question.kind == Kind::kImport) unconfirmed_.reset();
+    if (question.typed)
       p.feedback.questions.ask({.kind = question.from,
                                 .path = std::move(question.path),
                                 .afterwards = std::move(question.afterwards)});
@@ -279,11 +283,15 @@ void Workstation::carryOut(Answer answer) {
   }
   switch (question.kind) {
     case Kind::kOpen:
+      dialog_path_ = question.path;
       if (confirmed)
         askToOpen(question.path);
       else
-        p.feedback.questions.ask(
-            {.kind = Kind::kImport, .path = question.path, .reading = parts_.readingOf(question.path)});
+        p.feedback.questions.ask({.kind = Kind::kImport,
+                                  .path = question.path,
+                                  .reading = parts_.readingOf(question.path),
+                                  .from = Kind::kOpen,
+                                  .typed = true});
       break;
     case Kind::kImport:
       p.files.readings.note(question.path, *question.reading);
@@ -391,7 +399,9 @@ void Workstation::askHowToRead(Opened opened) {
   parts_.feedback.questions.ask({.kind = Question::Kind::kImport,
                                  .path = opened.document.path,
                                  .reading = ScanOptions(),
-                                 .guessed = std::move(opened.guessed)});
+                                 .guessed = std::move(opened.guessed),
+                                 .from = Question::Kind::kOpen,
+                                 .typed = std::exchange(dialog_path_, {}) == opened.document.path});
   unconfirmed_ = std::move(opened.document);
 }
 
@@ -450,7 +460,7 @@ void Workstation::noteWarnings(const std::vector<std::string>& warnings) {
   const bool as_said = said && scanOptionsText(*said) == scanOptionsText(p.reading);
   if (const std::string text = as_said ? readingText(*said) : ""; !text.empty())
     p.feedback.notices.push_back(
-        {fmt::format("{} is read as you said: {}", p.document.fileName(), text), "", "", 1, true});
+        {fmt::format("{} is read as you said: {}", p.document.fileName(), text), "", "", 1, true, true});
   for (const std::string& warning : warnings) {
     // Who has seen the page and left it so does not want to be asked again.
     if (as_said && isGuess(warning)) continue;

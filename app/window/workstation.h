@@ -28,7 +28,8 @@ struct ViewOptions {
   render::WindowOptions window;
   double seconds = 0.0;  ///< ends after this time; 0 = no limit
   DrawOptions drawing;
-  bool xr = false;  ///< shows the field in a headset as well
+  std::optional<render::Theme> theme;  ///< of the panels, in place of the one in the settings, and kept there
+  bool xr = false;                     ///< shows the field in a headset as well
   RoomScale xr_scale = RoomScale::kGiant;
   std::string events;  ///< where to write the events (EventLog); empty: nowhere
 };
@@ -93,6 +94,7 @@ class Workstation {
   Parts parts_;
   HeadsetRoom headset_;
   std::uint64_t documents_ = 0;          // opened
+  std::string dialog_path_;              // the one that came last from a dialog
   std::optional<Document> unconfirmed_;  // while it is asked whether its reading is right
   ToolResults tool_results_;
   Input input_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -29,6 +30,8 @@ struct Notice {
       {};  ///< in place of `what`, after a number, where it happens again: one line for all of them
   int times = 1;
   bool of_reading = false;  ///< about how the scan was read: shown with a button for the page of that
+  bool passes = false;      ///< nothing is to be done about it: it goes by itself
+  std::optional<std::chrono::steady_clock::time_point> seen = {};  ///< since when it is on the screen
 };
 
 /// Adds a notice; one with Notice::several is counted where it stands already.

@@ -9,6 +9,8 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
 // Frequency of each change; bars grow with the logarithm of the count, so that one sample in a million is
 // visible.
 void drawHistogram(const engine::ChangeHistogram& histogram, const render::ShownUnit& unit) {
@@ -19,8 +21,8 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
   ImGui::InvisibleButton("##histogram", ImVec2(width, height));
   const bool hovered = ImGui::IsItemHovered();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height),
-                     ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height), colourOf(PanelColour::kField),
+                     3.0F);
   std::int64_t most = 1;
   for (const std::int64_t n : histogram.counts) most = std::max(most, n);
   const float bar = width / kClasses;
@@ -32,20 +34,23 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
         static_cast<float>(std::log1p(static_cast<double>(n)) / std::log1p(static_cast<double>(most)));
     const float x = corner.x + static_cast<float>(i) * bar;
     // Blue for lower, red for higher: the colours of the change on the surface.
-    const ImU32 colour = i < kClasses / 2 ? IM_COL32(105, 155, 225, 255) : IM_COL32(225, 115, 100, 255);
+    const ImU32 colour = colourOf(i < kClasses / 2 ? PanelColour::kLower : PanelColour::kHigher);
     list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
                        ImVec2(x + std::max(bar - 1.0F, 1.0F), corner.y + height), colour);
   }
   const float middle = corner.x + 0.5F * width;
-  list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height),
-               ImGui::GetColorU32(ImGuiCol_TextDisabled));
-  if (hovered && pointed >= 0 && pointed < kClasses)
+  list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height), colourOf(PanelColour::kMuted));
+  if (hovered && pointed >= 0 && pointed < kClasses && histogram.reach > 0.0)
     ImGui::SetTooltip("%s",
                       fmt::format("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
                                   lengthText(histogram.lowEnd(pointed + 1), unit, 3),
                                   histogram.counts[static_cast<std::size_t>(pointed)])
                           .c_str());
   // The axis: its ends and zero.
+  if (!(histogram.reach > 0.0)) {
+    ImGui::TextDisabled("nothing has changed");
+    return;
+  }
   const std::string low = fmt::format("-{}", render::shortNumber(histogram.reach * unit.per_unit)),
                     high = fmt::format("+{}", lengthText(histogram.reach, unit, 3));
   ImGui::TextDisabled("%s", low.c_str());
@@ -80,7 +85,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
                            ? 100.0 * static_cast<double>(h.unchanged) / static_cast<double>(live->samples)
                            : 100.0;
   figure("unchanged", fmt::format("{:.4g} %", share));
-  if (h.reach > 0.0) drawHistogram(h, unit);
+  drawHistogram(h, unit);
 }
 
 }  // namespace fettle::app

@@ -11,12 +11,13 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
 using render::Quantity;
 using RuleKind = RangeRule::Kind;
 
 constexpr int kBars = 72;
 
-ImU32 colourOf(const glm::vec3& light) {
+ImU32 ofLight(const glm::vec3& light) {
   const auto code = [](float channel) {
     return static_cast<int>(std::lround(255.0 * render::srgbFromLinear(static_cast<double>(channel))));
   };
@@ -77,8 +78,11 @@ void drawBars(const Chart& chart, const render::ValueSample& values, const rende
     if (n == 0.0) continue;
     const auto share = static_cast<float>(std::log1p(n) / std::log1p(most));
     const float x = chart.corner.x + static_cast<float>(i) * bar;
-    list.AddRectFilled(ImVec2(x, bottom - chart.size.y * share), ImVec2(x + bar, bottom),
-                       colourOf(render::mapped(table, 0.5 * (from(i) + from(i + 1)), chart.range)));
+    const float top = bottom - chart.size.y * share;
+    list.AddRectFilled(ImVec2(x, top), ImVec2(x + bar, bottom),
+                       ofLight(render::mapped(table, 0.5 * (from(i) + from(i + 1)), chart.range)));
+    // Some of these colours are as light, or as dark, as the ground.
+    list.AddLine(ImVec2(x, top), ImVec2(x + bar, top), colourOf(PanelColour::kOutline));
   }
 }
 
@@ -86,8 +90,8 @@ void drawHandle(const Chart& chart, double value, bool held) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float x = std::round(chart.xOf(value)), bottom = chart.corner.y + chart.size.y;
   const float half = 0.3F * ImGui::GetFontSize();
-  const ImU32 ink = ImGui::GetColorU32(held ? ImGuiCol_SliderGrabActive : ImGuiCol_Text);
-  list.AddLine(ImVec2(x, chart.corner.y), ImVec2(x, bottom), IM_COL32(0, 0, 0, 255), 3.0F);
+  const ImU32 ink = colourOf(held ? PanelColour::kTick : PanelColour::kHandle);
+  list.AddLine(ImVec2(x, chart.corner.y), ImVec2(x, bottom), colourOf(PanelColour::kHandleRim), 3.0F);
   list.AddLine(ImVec2(x, chart.corner.y), ImVec2(x, bottom), ink, 1.0F);
   list.AddTriangleFilled(ImVec2(x - half, bottom + half), ImVec2(x + half, bottom + half),
                          ImVec2(x, bottom - half), ink);
@@ -104,6 +108,14 @@ render::ValueRange draggedTo(const Chart& chart, bool high, double x) {
               : render::ValueRange{std::min(value, chart.range.high - least), chart.range.high};
 }
 
+constexpr float kHandleFoot = 0.4F;  // of a handle, below the bars, in heights of a letter
+
+// With the feet of its handles.
+ImVec2 histogramSize() {
+  return ImVec2(std::max(ImGui::GetContentRegionAvail().x, 64.0F),
+                5.0F * ImGui::GetTextLineHeight() + kHandleFoot * ImGui::GetFontSize());
+}
+
 void histogram(const render::ValueSample& values, Quantity quantity, const render::ValueRange& range,
                const render::ShownUnit& unit, ColourRange& colours, Display& display,
                WindowPicture& picture) {
@@ -112,8 +124,8 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
   chart.range = range;
   chart.axis = colours.drag ? colours.drag->axis : axisOf(values, quantity, range);
   chart.corner = ImGui::GetCursorScreenPos();
-  chart.size = ImVec2(std::max(ImGui::GetContentRegionAvail().x, 64.0F), 5.0F * ImGui::GetTextLineHeight());
-  ImGui::InvisibleButton("##values", ImVec2(chart.size.x, chart.size.y + 0.4F * ImGui::GetFontSize()));
+  chart.size = ImVec2(histogramSize().x, histogramSize().y - kHandleFoot * ImGui::GetFontSize());
+  ImGui::InvisibleButton("##values", histogramSize());
   const double x = ImGui::GetIO().MousePos.x;
   if (ImGui::IsItemActivated())
     colours.drag = {chart.axis, std::abs(x - chart.xOf(range.high)) <= std::abs(x - chart.xOf(range.low))};
@@ -125,7 +137,7 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
   }
   ImGui::GetWindowDrawList()->AddRectFilled(
       chart.corner, ImVec2(chart.corner.x + chart.size.x, chart.corner.y + chart.size.y),
-      ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+      colourOf(PanelColour::kField), 3.0F);
   drawBars(chart, values, colours.colouring(display, quantity));
   drawHandle(chart, chart.range.low, colours.drag && !colours.drag->high);
   drawHandle(chart, chart.range.high, colours.drag && colours.drag->high);
@@ -164,14 +176,17 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
       picture.requestRedraw();
     }
   }
-  if (values != nullptr && !values->empty())
-    figure("in the range", fmt::format("{:.4g} %{}", 100.0 * values->within(range.low, range.high),
-                                       quantity == Quantity::kDeviation ? " of the changes" : ""));
+  const bool counted = values != nullptr && !values->empty();
+  figure("in the range", !counted ? std::string("...")
+                                  : fmt::format("{:.4g} %{}", 100.0 * values->within(range.low, range.high),
+                                                quantity == Quantity::kDeviation ? " of the changes" : ""));
   // Colours do not change while a brush works, nor after: what was found when they were switched on stays.
-  if (rule.kind == RuleKind::kAutomatic && ImGui::Button("Find the range again")) {
+  ImGui::BeginDisabled(rule.kind != RuleKind::kAutomatic);
+  if (ImGui::Button("Find the range again")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }
+  ImGui::EndDisabled();
 }
 
 void rangeEnds(const render::ValueRange& range, Quantity quantity, const render::ShownUnit& unit,
@@ -212,10 +227,14 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
       change ? render::deviationUnit(grid.height_unit, context.units.change, range.high)
              : context.units.height;
   const render::ValueSample* const values = colours.sample(quantity);
-  if (values != nullptr)
+  if (values != nullptr) {
     histogram(*values, quantity, range, unit, colours, display, picture);
-  else
+  } else {
+    const ImVec2 from = ImGui::GetCursorPos();
     ImGui::TextDisabled("counting ...");
+    ImGui::SetCursorPos(from);
+    ImGui::Dummy(histogramSize());
+  }
   beginFields();
   ruleFields(ColourRange::ruleOf(display, quantity), quantity, values, range, picture);
   rangeEnds(range, quantity, unit, colours, display, picture);
@@ -234,7 +253,7 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
   if (ImGui::Checkbox("in steps", &display.colour_steps)) picture.requestRedraw();
   sameLineIfFits("contour lines", ItemKind::kTick);
   actionTick("contour lines", display.contours, Action::kContours, context.act);
-  if (!display.contours) return;
+  ImGui::BeginDisabled(!display.contours);
   beginFields();
   double& every = change ? colours.typed.change_contours : colours.typed.height_contours;
   double shown = picture.figures().contour_step;
@@ -244,6 +263,7 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
   }
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("0: at the steps of the colour bar");
   endFields();
+  ImGui::EndDisabled();
 }
 
 }  // namespace fettle::app

@@ -16,13 +16,13 @@ namespace {
 using Choice = Answer::Choice;
 using render::Key;
 using render::letter;
+using render::PanelColour;
 using Running = DeviceCheck::Running;
 
 constexpr float kDevicePage = 560.0F;     // at scale 1 [pixels]
 constexpr double kShownReach_mm = 150.0;  // either side of the middle, at least
 constexpr double kStill_mm = 2.0;         // of a stylus that lies or is held still
 constexpr double kMotionStep = 0.1;
-const ImVec4 kAsExpected{0.35F, 0.75F, 0.40F, 1.0F}, kNotExpected{1.0F, 0.6F, 0.3F, 1.0F};
 
 constexpr std::array<const char*, 3> kReachAxes{"x, right", "y, away", "z, up"};
 
@@ -37,6 +37,10 @@ constexpr std::array kOffers{
     ButtonOffer{1U << 3U, "fourth button"},
     ButtonOffer{0, "none"},
 };
+
+PanelColour outcome(bool as_expected) {
+  return as_expected ? PanelColour::kGood : PanelColour::kProblem;
+}
 
 std::size_t offerOf(std::uint32_t buttons) {
   const auto it = std::ranges::find(kOffers, buttons, &ButtonOffer::buttons);
@@ -55,14 +59,13 @@ void reachBar(int axis, const std::optional<DeviceReach>& reach, double now_mm, 
   const auto at = [&](double mm) {
     return corner.x + width * static_cast<float>(std::clamp(0.5 + 0.5 * mm / shown_mm, 0.0, 1.0));
   };
-  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + line), ImGui::GetColorU32(ImGuiCol_FrameBg),
-                     3.0F);
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + line), colourOf(PanelColour::kField), 3.0F);
   if (reach)
     list.AddRectFilled(ImVec2(at(reach->low_mm[axis]), corner.y),
-                       ImVec2(at(reach->high_mm[axis]), corner.y + line),
-                       ImGui::GetColorU32(ImGuiCol_PlotHistogram), 3.0F);
+                       ImVec2(at(reach->high_mm[axis]), corner.y + line), colourOf(PanelColour::kProgress),
+                       3.0F);
   list.AddRectFilled(ImVec2(at(now_mm) - 1.5F, corner.y), ImVec2(at(now_mm) + 1.5F, corner.y + line),
-                     ImGui::GetColorU32(ImGuiCol_Text));
+                     colourOf(PanelColour::kText));
   ImGui::SameLine();
   if (reach)
     ImGui::Text("%.1f to %.1f mm, now %.1f", reach->low_mm[axis], reach->high_mm[axis], now_mm);
@@ -115,8 +118,8 @@ void restPart(Parts& parts) {
   } else if (check.rest()) {
     const DeviceCheck::Rest& rest = *check.rest();
     const bool good = rest.force_n == 0.0 && rest.device_faults == 0 && rest.moved_mm <= kStill_mm;
-    ImGui::TextColored(good ? kAsExpected : kNotExpected, "%.3f N sent, moved %.2f mm, %llu faults",
-                       rest.force_n, rest.moved_mm, static_cast<unsigned long long>(rest.device_faults));
+    textIn(outcome(good), fmt::format("{:.3f} N sent, moved {:.2f} mm, {} faults", rest.force_n,
+                                      rest.moved_mm, rest.device_faults));
     if (rest.moved_mm > kStill_mm)
       ImGui::TextUnformatted("it moved: by the hand, by its own weight, or by a force that is not Fettle's");
   } else {
@@ -137,8 +140,8 @@ void directionPart(Parts& parts) {
       ImGui::Text("push the stylus straight %s", name(way));
     } else if (const auto& came = check.direction(way)) {
       const bool right = DeviceCheck::asExpected(way, *came);
-      ImGui::TextColored(right ? kAsExpected : kNotExpected, "%s came, %.0f mm%s", axisText(*came).c_str(),
-                         came->moved_mm, right ? "" : ": turn the device, or see its configuration");
+      textIn(outcome(right), fmt::format("{} came, {:.0f} mm{}", axisText(*came), came->moved_mm,
+                                         right ? "" : ": turn the device, or see its configuration"));
     } else {
       ImGui::TextDisabled("+%c is expected", "xyz"[i]);
     }
@@ -188,10 +191,9 @@ std::optional<Choice> devicePage(Parts& parts) {
   if (!measures)
     ImGui::TextUnformatted("It moves in the picture itself: there is nothing to measure.");
   else if (now.link != haptic::LinkState::kConnected)
-    ImGui::TextColored(kNotExpected, "%s",
-                       now.link == haptic::LinkState::kUncalibrated
-                           ? "It is not calibrated: go back, and calibrate it (Ctrl+Shift+A)."
-                           : "It is not plugged in.");
+    textIn(PanelColour::kProblem, now.link == haptic::LinkState::kUncalibrated
+                                      ? "It is not calibrated: go back, and calibrate it (Ctrl+Shift+A)."
+                                      : "It is not plugged in.");
   else
     ImGui::TextUnformatted("No force is given while this page is open, and none until A is pressed.");
   if (measures) {

@@ -71,6 +71,8 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   Display& display = settings.display;
   actionTick("scale bar and colour bar", display.decorations, Action::kDecorations, context.act);
   actionTick("light background", display.theme == render::Theme::kLight, Action::kTheme, context.act);
+  actionTick("light panels", settings.panels_theme == render::Theme::kLight, Action::kPanelsTheme,
+             context.act);
   actionTick("axes", display.axes, Action::kAxes, context.act);
   ImGui::Checkbox("move to views", &display.flights);
   if (ImGui::IsItemHovered())
@@ -126,13 +128,13 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   shareSlider("hollows", "##cavity", display.form.cavity,
               "How much darker hollows and how much brighter ridges are at most.");
   materialFields(display.form);
-  if (display.stereo != render::StereoMode::kOff)
-    (void)field("depth", [&] {
-      return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
-                                kClamp);
-    });
-  if (display.stereo != render::StereoMode::kOff)
-    hoverTip("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
+  ImGui::BeginDisabled(display.stereo == render::StereoMode::kOff);
+  (void)field("depth", [&] {
+    return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
+                              kClamp);
+  });
+  ImGui::EndDisabled();
+  hoverTip("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
   (void)field("heights", [&] {
     return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
                       view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");

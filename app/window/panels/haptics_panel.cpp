@@ -11,6 +11,8 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
 // Histogram of late ticks: octaves from a microsecond to four milliseconds, bars by the logarithm of the
 // count.
 void drawLateness(const haptic::TimingHistogram& lateness) {
@@ -28,14 +30,14 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("##lateness", ImVec2(width, height));
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height),
-                     ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height), colourOf(PanelColour::kField),
+                     3.0F);
   for (int i = 0; i < kOctaves; ++i) {
     const auto n = static_cast<double>(counts[static_cast<std::size_t>(i)]);
     const auto share = static_cast<float>(std::log1p(n) / std::log1p(static_cast<double>(most)));
     const float x = corner.x + static_cast<float>(i) * bar;
     list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
-                       ImVec2(x + bar - 2.0F, corner.y + height), ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+                       ImVec2(x + bar - 2.0F, corner.y + height), colourOf(PanelColour::kProgress));
   }
   const int pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
   if (ImGui::IsItemHovered() && pointed >= 0 && pointed < kOctaves)
@@ -188,10 +190,7 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
     figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
   soundControls(client, loudness);
-  ImGui::PushTextWrapPos(0.0F);
-  for (const std::string& missing : client.realTime().missing)
-    ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());
-  ImGui::PopTextWrapPos();
+  for (const std::string& missing : client.realTime().missing) writeIn(PanelColour::kWarning, missing);
   return rate_hz;
 }
 

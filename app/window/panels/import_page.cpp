@@ -17,6 +17,7 @@ namespace {
 
 using Choice = Answer::Choice;
 using render::Key;
+using render::PanelColour;
 
 constexpr float kPicture = 340.0F, kFieldsWidth = 380.0F, kFoundHeight = 190.0F;  // at scale 1 [pixels]
 
@@ -145,7 +146,7 @@ void bullets(const std::vector<std::string>& warnings, bool guesses) {
 void found(const ThumbnailShelf::Shown& shown, const Files& files) {
   ImGui::PushTextWrapPos(0.0F);
   if (shown.problem != nullptr) {
-    ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", inFieldWords(shown.problem->line()).c_str());
+    writeIn(PanelColour::kProblem, inFieldWords(shown.problem->line()));
   } else if (shown.picture == nullptr) {
     ImGui::TextDisabled("reading");
   } else {
@@ -196,9 +197,7 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
     fields(files, shown.picture);
   ImGui::EndChild();
   if (ImGui::BeginChild("found", ImVec2(0.0F, kFoundHeight * scale), true)) {
-    if (!typed_so_far)
-      ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s",
-                         inFieldWords(typed_so_far.error().line()).c_str());
+    if (!typed_so_far) writeIn(PanelColour::kProblem, inFieldWords(typed_so_far.error().line()));
     found(shown, files);
   }
   ImGui::EndChild();

@@ -24,11 +24,14 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
   const float side =
       std::clamp(set * scale, kNarrowest * scale, std::max(0.6F * size.x, (kNarrowest + 1.0F) * scale));
   ImGui::SetNextWindowPos(ImVec2(size.x - side, bar));
-  ImGui::SetNextWindowSize(ImVec2(side, size.y - 2.0F * bar));
+  const float said = noticesHeight(parts.feedback.notices, side), height = size.y - 2.0F * bar - said;
+  ImGui::SetNextWindowSize(ImVec2(side, height));
   ImGui::SetNextWindowSizeConstraints(ImVec2(kNarrowest * scale, 0.0F), size);
   // ImGui rounds sizes, and changes those of a window without size: only the user sets the width.
   float drawn = side;
   rate_hz = sidePanel(parts, act, drawn);
+  if (said > 0.0F)
+    noticePanel(parts.feedback.notices, act, ImVec2(size.x - side, bar + height), ImVec2(side, said));
   if (std::abs(drawn - side) > 1.5F && ImGui::IsMouseDown(ImGuiMouseButton_Left)) set = drawn / scale;
   return size.x - side;
 }
@@ -37,6 +40,7 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
 
 PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
+  usePanelTheme(parts.settings.panels_theme);
   const std::optional<std::int64_t> pointed_before = std::exchange(parts.pointed_step, std::nullopt);
   const Act act = [&parts](Action action) { carryOut(action, parts); };
   if (parts.feedback.questions.pending()) parts.leavePanels();

@@ -57,7 +57,10 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs);
 void detailChooser(const PanelContext& context, Display& display, WindowPicture& picture,
                    const render::View& view, ChoiceCosts& costs);
 
-/// All of the above in one window at the right, notices on top; returns the requested rate. `width` is set to
+/// What the notices take of the window's height at its `width` [pixels]; 0: there are none.
+[[nodiscard]] float noticesHeight(const std::vector<Notice>& notices, float width);
+void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size);
+/// All of the panels in one window at the right; returns the requested rate. `width` is set to
 /// its width [pixels]: the given one, or the one that the user dragged it to.
 [[nodiscard]] std::optional<double> sidePanel(Parts& parts, const Act& act, float& width);
 /// The chosen recent file, if any.

@@ -8,6 +8,8 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
 ImVec2 at(const glm::dvec2& p) {
   return ImVec2(static_cast<float>(p.x), static_cast<float>(p.y));
 }
@@ -18,7 +20,7 @@ void drawLasso(const Lasso& lasso, float scale) {
   for (const glm::dvec2& p : lasso.line()) line.push_back(at(p));
   // Dark under light: visible on every background.
   for (const auto& [colour, width] :
-       {std::pair{IM_COL32(0, 0, 0, 160), 4.0F}, {IM_COL32(255, 170, 40, 255), 2.0F}}) {
+       {std::pair{colourOf(PanelColour::kLassoRim), 4.0F}, {colourOf(PanelColour::kLasso), 2.0F}}) {
     if (line.size() > 1)
       list.AddPolyline(line.data(), static_cast<int>(line.size()), colour, ImDrawFlags_Closed, width * scale);
     const ImVec2 c = at(lasso.cross());
@@ -54,7 +56,7 @@ void pictureOverlay(const Parts& parts) {
     const render::Rectangle plot = parts.picture.plot(parts.view, display);
     ImGui::GetBackgroundDrawList()->AddCircleFilled(
         at({plot.x + display.split_at * plot.width, plot.y + plot.height / 2}), 7.0F * scale,
-        IM_COL32(255, 255, 255, 220));
+        colourOf(PanelColour::kSplitHandle));
   }
   if (parts.shows_before && parts.document.isOpen()) beforeLabel(parts, scale);
   if (parts.marking.lasso().active()) drawLasso(parts.marking.lasso(), scale);

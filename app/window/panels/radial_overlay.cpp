@@ -9,6 +9,8 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
 constexpr float kRing_px = 40.0F;  // radius of the ring that shows the direction, at scale 1
 
 }  // namespace
@@ -21,7 +23,7 @@ void radialOverlay(const Parts& parts) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const float ring = kRing_px * scale, wide = 7.0F * scale;
   list.PathArcTo(middle, ring, 0.0F, 2.0F * std::numbers::pi_v<float>, 64);
-  list.PathStroke(IM_COL32(20, 22, 26, 210), ImDrawFlags_None, wide);
+  list.PathStroke(colourOf(PanelColour::kRing), ImDrawFlags_None, wide);
   constexpr auto kCount = static_cast<float>(RadialMenu::kItems.size());
   for (std::size_t i = 0; i < RadialMenu::kItems.size(); ++i) {
     const RadialMenu::Item& item = RadialMenu::kItems[i];
@@ -32,7 +34,7 @@ void radialOverlay(const Parts& parts) {
     if (pointed) {
       const float half = std::numbers::pi_v<float> / kCount;
       list.PathArcTo(middle, ring, turn - half, turn + half, 12);
-      list.PathStroke(ImGui::GetColorU32(ImGuiCol_CheckMark), ImDrawFlags_None, wide);
+      list.PathStroke(colourOf(PanelColour::kTick), ImDrawFlags_None, wide);
     }
     const ImVec2 text = ImGui::CalcTextSize(item.name.data(), item.name.data() + item.name.size());
     const ImVec2 half(0.5F * text.x + 9.0F * scale, 0.5F * text.y + 5.0F * scale);
@@ -40,11 +42,10 @@ void radialOverlay(const Parts& parts) {
     // Names to the sides begin where those above and below have their middle.
     const ImVec2 at(middle.x + std::cos(turn) * (away + 0.5F * half.x), middle.y + std::sin(turn) * away);
     const ImVec2 low(at.x - half.x, at.y - half.y), high(at.x + half.x, at.y + half.y);
-    list.AddRectFilled(low, high,
-                       pointed ? ImGui::GetColorU32(ImGuiCol_ButtonActive) : IM_COL32(32, 35, 41, 235),
+    list.AddRectFilled(low, high, colourOf(pointed ? PanelColour::kButtonHeld : PanelColour::kPlate),
                        5.0F * scale);
-    if (on) list.AddRect(low, high, ImGui::GetColorU32(ImGuiCol_CheckMark), 5.0F * scale, 0, 2.0F * scale);
-    list.AddText(ImVec2(at.x - 0.5F * text.x, at.y - 0.5F * text.y), ImGui::GetColorU32(ImGuiCol_Text),
+    if (on) list.AddRect(low, high, colourOf(PanelColour::kTick), 5.0F * scale, 0, 2.0F * scale);
+    list.AddText(ImVec2(at.x - 0.5F * text.x, at.y - 0.5F * text.y), colourOf(PanelColour::kText),
                  item.name.data(), item.name.data() + item.name.size());
   }
 }

@@ -13,6 +13,10 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
+constexpr int kPlotLines = 7;
+
 // Where lengths and heights of a section lie in the plot.
 struct PlotFrame {
   ImVec2 low{}, size{};  // lower left corner, width and height [pixels]
@@ -65,7 +69,8 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
                  const render::ShownUnit& height) {
   const float font = ImGui::GetFontSize();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 size(std::max(40.0F, ImGui::GetContentRegionAvail().x), 9.0F * font);
+  const ImVec2 size(std::max(40.0F, ImGui::GetContentRegionAvail().x),
+                    kPlotLines * ImGui::GetTextLineHeightWithSpacing());
   ImGui::InvisibleButton("##profile", size);
   PlotFrame frame{{corner.x, corner.y + size.y - 2.0F}, {size.x, size.y - 4.0F}, profiles.now.lengthMm()};
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -79,11 +84,11 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
     tool.moveCursor((ImGui::GetIO().MousePos.x - corner.x) / size.x * profiles.now.lengthMm());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(corner, ImVec2(corner.x + size.x, corner.y + size.y), true);
-  list.AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y), IM_COL32(255, 255, 255, 255));
+  list.AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y), colourOf(PanelColour::kChart));
   // As the plots of fettle section: the scan beneath, lighter and wider.
-  drawProfile(frame, profiles.before, IM_COL32(166, 207, 232, 255), 0.25F * font);
+  drawProfile(frame, profiles.before, colourOf(PanelColour::kProfileBefore), 0.25F * font);
   drawProfile(frame, profiles.now,
-              profiles.before.size() > 0 ? IM_COL32(213, 94, 0, 255) : IM_COL32(0, 114, 178, 255),
+              colourOf(profiles.before.size() > 0 ? PanelColour::kProfileNow : PanelColour::kProfile),
               0.1F * font);
   const auto drawStretch = [&](const std::pair<double, double>& ends, ImU32 colour) {
     for (const double at : {ends.first, ends.second}) {
@@ -91,14 +96,14 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
       list.AddLine(ImVec2(x, corner.y), ImVec2(x, corner.y + size.y), colour, 0.1F * font);
     }
   };
-  drawStretch(tool.section()->cursors, IM_COL32(60, 60, 60, 200));
+  drawStretch(tool.section()->cursors, colourOf(PanelColour::kCursors));
   if (tool.section()->angle) {
     // The line of each stretch needs its extent to be seen: shaded.
     for (const auto& [from, to] : {tool.section()->cursors, tool.section()->others})
       list.AddRectFilled(ImVec2(frame.at(std::min(from, to), low).x, corner.y),
                          ImVec2(frame.at(std::max(from, to), low).x, corner.y + size.y),
-                         IM_COL32(60, 60, 60, 30));
-    drawStretch(tool.section()->others, IM_COL32(128, 60, 150, 230));
+                         colourOf(PanelColour::kStretch));
+    drawStretch(tool.section()->others, colourOf(PanelColour::kOtherCursors));
   }
   list.PopClipRect();
   figure("shown", fmt::format("{}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
@@ -151,16 +156,16 @@ void sectionChoice(const PanelContext& context, SectionTool& tool) {
   const std::size_t count = tool.sections().size();
   const std::string which = tool.chosen() ? fmt::format("section {} of {}", *tool.chosen() + 1, count)
                                           : fmt::format("a new section, {} kept", count);
-  if (count > 0) ImGui::TextUnformatted(which.c_str());
-  if (count > 1 || (count > 0 && !tool.chosen())) {
-    actionButton("Next##section", Action::kSectionNext, context.act);
-    sameLineIfFits("New");
-  }
-  if (tool.chosen()) {
-    actionButton("New##section", Action::kSectionNew, context.act);
-    sameLineIfFits("Remove");
-    if (ImGui::Button("Remove##section")) tool.remove();
-  }
+  ImGui::TextUnformatted(count > 0 ? which.c_str() : "no section yet");
+  ImGui::BeginDisabled(count < 2 && (count == 0 || tool.chosen().has_value()));
+  actionButton("Next##section", Action::kSectionNext, context.act);
+  ImGui::EndDisabled();
+  ImGui::BeginDisabled(!tool.chosen());
+  sameLineIfFits("New");
+  actionButton("New##section", Action::kSectionNew, context.act);
+  sameLineIfFits("Remove");
+  if (ImGui::Button("Remove##section")) tool.remove();
+  ImGui::EndDisabled();
 }
 
 }  // namespace
@@ -194,7 +199,10 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   figureChoice(section, length);
   tool.set(section);
   if (!tool.profiles()) {
+    // The place of the plot.
+    beginPlace("##no profile", kPlotLines);
     ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
+    endPlace();
     return;
   }
   profilePlot(tool, *tool.profiles(), length, height);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 
 #include <imgui.h>
@@ -17,22 +16,6 @@ bool section(Settings& settings, const char* name, bool open_at_first) {
   return open;
 }
 
-void noticeList(std::vector<Notice>& notices, const Act& act) {
-  for (const Notice& notice : notices) {
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s%s%s", notice.what.c_str(),
-                       notice.remedy.empty() ? "" : ": ", notice.remedy.c_str());
-    ImGui::PopTextWrapPos();
-  }
-  if (notices.empty()) return;
-  if (std::ranges::any_of(notices, &Notice::of_reading)) {
-    if (ImGui::SmallButton("Read as ...")) act(Action::kReadAs);
-    tip(Action::kReadAs);
-    ImGui::SameLine();
-  }
-  if (ImGui::SmallButton("Understood")) notices.clear();
-}
-
 }  // namespace
 
 std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
@@ -40,13 +23,12 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   Settings& settings = parts.settings;
   ImGui::Begin("Panels", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysVerticalScrollbar);
   width = ImGui::GetWindowSize().x;
   if (std::exchange(parts.enter_panels, false)) {
     ImGui::SetWindowFocus();
     ImGui::SetKeyboardFocusHere();
   }
-  noticeList(parts.feedback.notices, act);
   const PanelContext context{*parts.document.client(), parts.feedback.notices, act, parts.units};
   if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
   if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);

@@ -32,7 +32,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
   const bool chosen = ImGui::InvisibleButton("card", size);
   if (ImGui::IsItemHovered()) {
     ImGui::GetWindowDrawList()->AddRect(corner, ImVec2(corner.x + size.x, corner.y + size.y),
-                                        ImGui::GetColorU32(ImGuiCol_ButtonHovered), 0.0F, 0, 2.0F * scale);
+                                        colourOf(render::PanelColour::kTick), 0.0F, 0, 2.0F * scale);
     const std::string facts = shown.picture != nullptr ? sizeText(*shown.picture) : std::string();
     ImGui::SetTooltip("%s\n%s", path.c_str(), facts.c_str());
   }

@@ -11,15 +11,25 @@
 namespace fettle::app {
 namespace {
 
+using render::PanelColour;
+
+constexpr int kStrengthLines = 3;
+
 void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso& lasso) {
   // As many buttons per line as fit.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
     if (!first) sameLineIfFits(name);
     first = false;
-    if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (on) ImGui::PushStyleColor(ImGuiCol_Button, colourOf(PanelColour::kButtonHeld));
     if (ImGui::Button(name)) context.act(action);
-    if (on) ImGui::PopStyleColor();
+    if (on) {
+      ImGui::PopStyleColor();
+      // Two blues alone are too much alike.
+      ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                          colourOf(PanelColour::kTick), ImGui::GetStyle().FrameRounding, 0,
+                                          2.0F);
+    }
     tip(action);
   };
   const auto draws = [&](Lasso::Shape shape) { return lasso.active() && lasso.shape() == shape; };
@@ -42,13 +52,12 @@ void drawFalloff(haptic::Falloff falloff, const ImVec2& corner, const ImVec2& si
     return ImVec2(corner.x + size.x * static_cast<float>(i) / kSteps,
                   foot - (size.y - 1.0F) * static_cast<float>(weight(way)));
   };
-  const ImU32 filled = ImGui::GetColorU32(ImGuiCol_FrameBgHovered),
-              line = ImGui::GetColorU32(ImGuiCol_PlotHistogram);
+  const ImU32 filled = colourOf(PanelColour::kFieldPointed), line = colourOf(PanelColour::kText);
   for (int i = 0; i < kSteps; ++i) {
     const ImVec2 a = at(i), b = at(i + 1);
     list.AddQuadFilled(ImVec2(a.x, foot), a, b, ImVec2(b.x, foot), filled);
-    list.AddLine(a, b, line, 1.5F);
   }
+  for (int i = 0; i < kSteps; ++i) list.AddLine(at(i), at(i + 1), line, 1.5F);
 }
 
 // How smoothing falls towards the rim: a list of names, each with its profile.
@@ -133,10 +142,10 @@ void brushFields(const PanelContext& context) {
       }))
     setBrushRadius(client, radius_mm / cell, context.notices);
   const bool smooths = !haptic::isMarkTool(client.tool());
-  if (smooths) {
-    falloffField(context);
-    spacingField(context);
-  }
+  ImGui::BeginDisabled(!smooths);
+  falloffField(context);
+  spacingField(context);
+  ImGui::EndDisabled();
   if (client.mouse() != nullptr) {
     auto depth = static_cast<float>(client.mouse()->pressMm() / cell);
     if (field("depth", [&] {
@@ -159,7 +168,10 @@ void brushFields(const PanelContext& context) {
     return false;
   });
   endFields();
-  if (smooths && client.mouse() != nullptr) strengthText(client);
+  if (client.mouse() == nullptr) return;
+  beginPlace("##strength", kStrengthLines);
+  if (smooths) strengthText(client);
+  endPlace();
 }
 
 }  // namespace
@@ -174,10 +186,6 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
   actionButton("Clear marks", Action::kClearMarks, context.act);
   sameLineIfFits("Invert marks");
   actionButton("Invert marks", Action::kInvertMarks, context.act);
-  if (marking.edit.busy()) {
-    sameLineIfFits("marking ...");
-    workBar(marking.edit.progress(), -1.0F, "marking");
-  }
 }
 
 }  // namespace fettle::app

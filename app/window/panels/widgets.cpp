@@ -17,6 +17,33 @@ namespace fettle::app {
 constexpr float kTip = 24.0F;    // of a tip's width, in heights of a letter
 constexpr float kNames = 0.36F;  // of a panel's width, for the names of fields and figures
 
+namespace {
+render::Theme& themeNow() {
+  static render::Theme theme = render::Theme::kDark;
+  return theme;
+}
+}  // namespace
+
+void usePanelTheme(render::Theme theme) {
+  themeNow() = theme;
+}
+
+ImU32 colourOf(render::PanelColour colour) {
+  return render::panelColour(colour, themeNow());
+}
+
+void textIn(render::PanelColour colour, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colourOf(colour));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void writeIn(render::PanelColour colour, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colourOf(colour));
+  writeWrapped(text);
+  ImGui::PopStyleColor();
+}
+
 void figure(const char* name, const std::string& value) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::TextDisabled("%s", name);
@@ -36,6 +63,26 @@ void workBar(const WorkProgress& progress, float width, const char* what) {
   const std::string text =
       progress.left ? fmt::format("{}, {} left", what, durationText(*progress.left)) : what;
   ImGui::ProgressBar(static_cast<float>(progress.share), ImVec2(width, 0.0F), text.c_str());
+}
+
+bool cancelledBar(const WorkProgress& progress, const char* what, const char* cancel_id) {
+  workBar(progress, -ImGui::GetFontSize() * 5.0F, what);
+  ImGui::SameLine();
+  return ImGui::Button(cancel_id);
+}
+
+bool workRow(const std::optional<WorkProgress>& progress, const char* what, const char* cancel_id) {
+  if (progress) return cancelledBar(*progress, what, cancel_id);
+  ImGui::Dummy(ImVec2(0.0F, ImGui::GetFrameHeight()));
+  return false;
+}
+
+void beginPlace(const char* id, int lines) {
+  ImGui::BeginChild(id, ImVec2(0.0F, static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing()));
+}
+
+void endPlace() {
+  ImGui::EndChild();
 }
 
 void explain(std::string_view says) {

@@ -11,8 +11,17 @@
 #include "app/window/actions.h"
 #include "app/work/background.h"
 #include "render/plan/number_text.h"
+#include "render/plan/panel_colours.h"
 
 namespace fettle::app {
+
+/// The theme of all that is laid out from now on. Once per frame, as ImGui's own style.
+void usePanelTheme(render::Theme theme);
+/// A colour of it.
+[[nodiscard]] ImU32 colourOf(render::PanelColour colour);
+/// A text in it: on one line, or as wide as there is room.
+void textIn(render::PanelColour colour, const std::string& text);
+void writeIn(render::PanelColour colour, const std::string& text);
 
 /// "name   value" on one line of a panel; values that are too long are truncated, and shown completely as a
 /// tip.
@@ -21,6 +30,15 @@ void figure(const char* name, const std::string& value);
 /// The bar of a job, with what is being done and how long that still takes. `width`: below 0, the rest of the line less
 /// that.
 void workBar(const WorkProgress& progress, float width, const char* what);
+
+/// The same with a button behind it; true when the work is to end.
+[[nodiscard]] bool cancelledBar(const WorkProgress& progress, const char* what, const char* cancel_id);
+/// The same in a row that stays free while there is no work: what is below stays where it is.
+[[nodiscard]] bool workRow(const std::optional<WorkProgress>& progress, const char* what,
+                           const char* cancel_id);
+/// A place of so many lines for what comes and goes, up to endPlace(): what is below stays where it is. More of it scrolls.
+void beginPlace(const char* id, int lines);
+void endPlace();
 
 /// Receives the actions of buttons, tick boxes and menus.
 using Act = std::function<void(Action)>;

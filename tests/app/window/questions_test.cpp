@@ -198,5 +198,26 @@ TEST_F(QuestionsTest, what_was_asked_about_a_field_goes_with_it) {
   EXPECT_EQ(laid_out_, std::nullopt);
 }
 
+TEST(FeedbackTest, a_notice_that_asks_for_nothing_goes_by_itself_once_it_was_seen_long_enough) {
+  using namespace std::chrono_literals;
+  Feedback feedback;
+  feedback.notices.push_back({"as you said", "", "", 1, true, true});
+  feedback.notices.push_back({"the unit is guessed", ""});
+  const std::chrono::steady_clock::time_point start{100s};
+  feedback.dropPassed(start);
+  // One that comes later goes later.
+  feedback.dropPassed(start + 5s);
+  feedback.notices.push_back({"later", "", "", 1, false, true});
+  feedback.dropPassed(start + 6s);
+  feedback.dropPassed(start + Feedback::kPassing - 1ms);
+  EXPECT_EQ(feedback.notices.size(), 3U);
+  feedback.dropPassed(start + Feedback::kPassing);
+  ASSERT_EQ(feedback.notices.size(), 2U);
+  EXPECT_EQ(feedback.notices.back().what, "later");
+  feedback.dropPassed(start + 6s + Feedback::kPassing);
+  ASSERT_EQ(feedback.notices.size(), 1U);
+  EXPECT_EQ(feedback.notices.front().what, "the unit is guessed") << "until it is understood";
+}
+
 }  // namespace
 }  // namespace fettle::app

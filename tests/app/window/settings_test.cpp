@@ -29,6 +29,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.axes = false;
   settings.display.flights = false;
   settings.habits = Habits::kMeshLib;
+  settings.panels_theme = render::Theme::kLight;
   settings.side_panel = false;
   settings.side_width = 401.0F;
   settings.panels = {{"Tool", false}, {"Haptics", true}};

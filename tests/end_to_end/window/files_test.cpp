@@ -138,7 +138,12 @@ TEST_F(WindowTest, what_had_to_be_guessed_is_asked_before_a_scan_is_opened_and_o
   EXPECT_FALSE(says(page, "--")) << "no words of the command line";
   EXPECT_FALSE(says(page, "cell size")) << "it is no cloud of points";
   EXPECT_FALSE(says(page, "depth camera"));
-  // Who goes back has opened nothing.
+  // Who goes back has opened nothing, and is where the file was chosen.
+  (void)user.press("Escape");
+  const State back = program->until(
+      "the dialog again", [](const State& s) { return s["dialog"] == "open" && s["settled"] == true; });
+  EXPECT_EQ(back["dialog_path"], counts);
+  EXPECT_EQ(back["path"], "");
   (void)user.press("Escape");
   program->until("the start page",
                  [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
@@ -158,10 +163,16 @@ TEST_F(WindowTest, what_had_to_be_guessed_is_asked_before_a_scan_is_opened_and_o
       program->until("the scan", [&](const State& s) { return s["path"] == counts && s["settled"] == true; });
   EXPECT_TRUE(says(read, "is read as you said: no data 9999"));
   EXPECT_FALSE(says(read, "--"));
-  // Its button leads to the page.
+  // Its button leads to the page, and going back from there to the scan.
   (void)user.click("Read as ...");
   program->until("the page from the notice", asked);
   (void)user.press("Escape");
+  program->until("the scan again",
+                 [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  // It asks for nothing, and goes by itself.
+  program->until("its notice gone", [](const State& s) {
+    return s["notices"].dump().find("is read as you said") == std::string::npos;
+  });
   // As it was guessed, by Enter; it is not asked a second time.
   const std::uint32_t window = other.windowOf("fettle");
   EXPECT_EQ(other.drop(window, {other_counts}), "");
@@ -222,6 +233,8 @@ TEST_F(WindowTest, the_format_of_what_is_exported_is_chosen_from_a_list) {
   (void)opened(*program);
   (void)user.press("ctrl+e");
   program->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  // The folder as it is, not narrowed by a name that was typed elsewhere.
+  EXPECT_TRUE(user.reads("names with"));
   const std::string path = folder.file("out.tif");
   user.type(path);
   (void)user.rest();

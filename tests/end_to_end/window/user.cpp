@@ -19,6 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and notifies nobody
 constexpr int kLine = 20;       // pixels, about a line of a panel
+constexpr int kWholeLine = 15;  // pixels, of its letters at scale 1
 constexpr int kTries = 20;      // to point at a text that moves
 
 bool rests(const User::State& s) {
@@ -125,8 +126,10 @@ std::optional<User::Place> User::readable(const std::string& text) {
     const Place middle{box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2};
     const State& picture = now["picture"];
     const bool in_panels = middle.x >= picture[0].get<int>() + picture[2].get<int>();
-    // A line at the panels' lower edge may show half of itself, with its middle below the edge.
-    if (in_panels && middle.y > picture[1].get<int>() + picture[3].get<int>() - kLine) continue;
+    // A line at the panels' lower edge may show half of itself, with its middle below the edge; a whole one is that of a
+    // notice, which stand there.
+    const bool whole = box[3].get<int>() >= kWholeLine;
+    if (in_panels && !whole && middle.y > picture[1].get<int>() + picture[3].get<int>() - kLine) continue;
     return middle;
   }
   return std::nullopt;
