@@ -18,12 +18,7 @@ void writeLine(const std::string& text) {
 }  // namespace
 
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture) {
-  if (compare.busy()) {
-    workBar(compare.progress(), -ImGui::GetFontSize() * 5.0F, "aligning");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel##compare")) compare.cancel();
-    return;
-  }
+  ImGui::BeginDisabled(compare.busy());
   beginFields();
   (void)field("it is moved", [&] {
     constexpr const char* kMoves[] = {"shift, rotation, tilt", "shift, rotation", "shift", "height and tilt",
@@ -47,7 +42,7 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   endFields();
   actionButton("Choose a scan", Action::kCompare, context.act);
   const auto& compared = compare.compared();
-  if (!compared) return;
+  ImGui::BeginDisabled(!compared.has_value());
   sameLineIfFits("Again");
   actionButton("Again##compare", Action::kCompareAgain, context.act);
   sameLineIfFits("Remove");
@@ -55,12 +50,17 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
     compare.clear();
     picture.refreshRanges();
     picture.requestRedraw();
-    return;
   }
   if (ImGui::Checkbox("colours show the deviation from it", &compare.shown)) {
     picture.refreshRanges();
     picture.requestRedraw();
   }
+  ImGui::EndDisabled();
+  ImGui::EndDisabled();
+  if (workRow(compare.busy() ? std::optional(compare.progress()) : std::nullopt, "aligning",
+              "Cancel##compare"))
+    compare.cancel();
+  if (!compared) return;
   writeLine(std::filesystem::path(compared->path).filename().string());
   for (const std::string& line : compare.lines()) writeLine(line);
   if (compare.outdated()) writeLine("the field has changed since: Again");

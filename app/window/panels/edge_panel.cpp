@@ -5,6 +5,10 @@
 
 namespace fettle::app {
 
+namespace {
+constexpr int kOutcomeOfEdges = 2;  // lines
+}
+
 void edgePanel(const PanelContext& context, EdgeTool& edges) {
   using engine::EdgeResponse;
   beginFields();
@@ -34,26 +38,23 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   }
   endFields();
   if (edges.on() && scale_done) edges.search(context.client);
-  if (edges.busy() && edges.suggestion() == nullptr) {
-    workBar(edges.progress(), -ImGui::GetFontSize() * 5.0F, "looking");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel")) edges.drop();
-    return;
-  }
-  if (!edges.on()) {
-    actionButton("Suggest edges", Action::kEdges, context.act);
-    return;
-  }
-  const engine::EdgeSuggestion& found = *edges.suggestion();
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(
-      fmt::format("{} lines, {} samples, not marked yet", found.lines, found.samples).c_str());
-  ImGui::PopTextWrapPos();
+  const engine::EdgeSuggestion* const found = edges.suggestion();
+  ImGui::BeginDisabled(edges.on());
+  actionButton("Suggest edges", Action::kEdges, context.act);
+  ImGui::EndDisabled();
+  ImGui::BeginDisabled(found == nullptr);
+  sameLineIfFits("Take");
   actionButton("Take", Action::kFilterApply, context.act);
-  ImGui::SameLine();
+  sameLineIfFits("Drop");
   actionButton("Drop", Action::kNavigate, context.act);
-  sameLineIfFits("or paint over it");
-  ImGui::TextDisabled("or paint over it");
+  ImGui::EndDisabled();
+  beginPlace("##edges outcome", kOutcomeOfEdges);
+  if (found != nullptr)
+    writeWrapped(fmt::format("{} lines, {} samples, not marked yet: take them, or paint over them",
+                             found->lines, found->samples));
+  else if (edges.busy() && cancelledBar(edges.progress(), "looking", "Cancel"))
+    edges.drop();
+  endPlace();
 }
 
 }  // namespace fettle::app

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using Choice = Answer::Choice;
 using Kind = Question::Kind;
 using render::Key;
+using render::PanelColour;
 
 constexpr float kPlaces = 150.0F, kPreview = 230.0F, kHeight = 300.0F;  // at scale 1 [pixels]
 constexpr int kPage = 12;                                               // rows of Page up and Page down
@@ -144,8 +145,6 @@ void folderLine(Question& question, Parts& parts) {
   ImGui::SameLine();
   ImGui::TextDisabled("%s",
                       files.browser.busy() ? "listing" : fmt::format("{}", files.browser.count()).c_str());
-  if (const engine::Error* problem = files.browser.problem())
-    ImGui::TextColored(ImVec4(1.0F, 0.6F, 0.3F, 1.0F), "%s", problem->line().c_str());
 }
 
 void followSorting(FileBrowser& browser) {
@@ -266,10 +265,22 @@ void writingHelp(Question& question, bool& embeds) {
                                     : "the field; marks and lines go next to it, as NAME_marks.png and "
                                       "NAME_lines.csv");
   ImGui::PopTextWrapPos();
-  if (question.kind == Kind::kSaveAs && session) ImGui::Checkbox("store the scan in the session", &embeds);
+  if (question.kind != Kind::kSaveAs) return;
+  ImGui::BeginDisabled(!session);
+  ImGui::Checkbox("store the scan in the session", &embeds);
+  ImGui::EndDisabled();
+}
+
+// Behind the buttons, which stay where they are.
+void remark(const Question& question, const FileBrowser& browser) {
   std::error_code error;
-  if (fs::is_regular_file(question.path, error))
-    ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "this file exists already");
+  if (const engine::Error* problem = browser.problem()) {
+    ImGui::SameLine();
+    writeIn(PanelColour::kProblem, problem->line());
+  } else if (!reads(question) && fs::is_regular_file(question.path, error)) {
+    ImGui::SameLine();
+    textIn(PanelColour::kWarning, "this file exists already");
+  }
 }
 
 }  // namespace
@@ -309,6 +320,7 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const bool as = question.kind == Kind::kOpen && ImGui::Button("Read as ...");
   if (question.kind == Kind::kOpen) ImGui::SameLine();
   const bool left = dialogButton("Cancel", questions, Key::kEscape);
+  remark(question, files.browser);
   if (left) return Choice::kBack;
   std::error_code error;
   if (as && fs::is_regular_file(question.path, error) && !isSessionPath(question.path)) return Choice::kOther;

@@ -10,6 +10,8 @@
 namespace fettle::app {
 namespace {
 
+constexpr int kPreviewLines = 5;
+
 void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
   fieldName("filter", engine::filterOf(spec.kind).says);
   const bool open =
@@ -112,25 +114,25 @@ void limitField(const PanelContext& context, engine::FilterSpec& spec) {
 }
 
 void runButtons(const PanelContext& context, FilterPreview& filters) {
-  if (filters.computing() || filters.applying()) {
-    workBar(filters.progress(), -ImGui::GetFontSize() * 5.0F, filters.applying() ? "applying" : "filtering");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel")) filters.cancel(context.client);
-    if (const engine::FilterView::Picture& so_far = filters.soFar(); so_far.step > 0) {
-      ImGui::PushTextWrapPos(0.0F);
-      ImGui::TextUnformatted(fmt::format("{}; from means of {} x {} samples",
-                                         previewState(so_far, so_far.field.grid()), so_far.step, so_far.step)
-                                 .c_str());
-      ImGui::PopTextWrapPos();
-    }
-  } else {
-    actionButton("Preview", Action::kFilterPreview, context.act);
-    sameLineIfFits("Add preview");
-    actionButton("Add preview", Action::kFilterAdd, context.act);
-    sameLineIfFits("Apply");
-    if (ImGui::Button("Apply")) filters.apply(context.client);
-    tip(Action::kFilterApply);
-  }
+  const bool runs = filters.computing() || filters.applying();
+  ImGui::BeginDisabled(runs);
+  actionButton("Preview", Action::kFilterPreview, context.act);
+  sameLineIfFits("Add preview");
+  actionButton("Add preview", Action::kFilterAdd, context.act);
+  sameLineIfFits("Apply");
+  if (ImGui::Button("Apply")) filters.apply(context.client);
+  tip(Action::kFilterApply);
+  ImGui::EndDisabled();
+  if (workRow(runs ? std::optional(filters.progress()) : std::nullopt,
+              filters.applying() ? "applying" : "filtering", "Cancel"))
+    filters.cancel(context.client);
+}
+
+void previewSoFar(const FilterPreview& filters) {
+  const engine::FilterView::Picture& so_far = filters.soFar();
+  if ((filters.computing() || filters.applying()) && so_far.step > 0)
+    writeWrapped(fmt::format("{}; from means of {} x {} samples", previewState(so_far, so_far.field.grid()),
+                             so_far.step, so_far.step));
 }
 
 void previewList(bool anything_marked, FilterPreview& filters) {
@@ -179,8 +181,13 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);
+  ImGui::BeginDisabled(filters.variants().size() != 1);
+  ImGui::Checkbox("split line", &display.split);
+  ImGui::EndDisabled();
+  beginPlace("##previews", kPreviewLines);
+  previewSoFar(filters);
   previewList(context.client.field().reader().root().marked_children != 0, filters);
-  if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
+  endPlace();
 }
 
 }  // namespace fettle::app

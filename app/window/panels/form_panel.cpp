@@ -8,6 +8,8 @@
 namespace fettle::app {
 namespace {
 
+constexpr int kOutcomeOfForm = 6;  // lines
+
 std::string shortTitle(const engine::FormInfo& form) {
   return form.degree >= 2 ? fmt::format("polynomial {}", form.degree) : std::string(form.title);
 }
@@ -47,37 +49,40 @@ std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
 void formPanel(const PanelContext& context, FormTool& form) {
   const engine::FieldForm& over = context.client.newest().formOver();
   writeWrapped(over != nullptr ? "taken out: " + formName(*over) : std::string("nothing is taken out"));
-  if (over != nullptr && over->shape() != nullptr) writeWrapped(formFigures(*over));
   beginFields();
   formKindField(form.options);
   regionField(form.options);
   endFields();
   ImGui::Checkbox("without steps and spikes", &form.options.robust);
   form.followOptions(context.client);
+  const bool previewed = form.previewed().has_value();
+  ImGui::BeginDisabled(form.busy());
+  if (ImGui::Button("Fit")) form.measure(context.client);
+  // As wide with either word, so that the buttons beside it stay where they are.
+  const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  sameLineIfFits("Drop preview");
+  actionButton(previewed ? "Drop preview" : "Preview", Action::kFormPreview, context.act, wide);
+  sameLineIfFits("Take out");
+  actionButton("Take out", Action::kFormOut, context.act);
+  ImGui::BeginDisabled(over == nullptr);
+  sameLineIfFits("Put back");
+  actionButton("Put back", Action::kFormBack, context.act);
+  sameLineIfFits("Make it heights");
+  actionButton("Make it heights", Action::kFormHeights, context.act);
+  ImGui::EndDisabled();
+  ImGui::EndDisabled();
+  beginPlace("##form outcome", kOutcomeOfForm);
   if (form.busy()) {
-    workBar(form.progress(), -ImGui::GetFontSize() * 5.0F, "fitting");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel##form")) form.cancel();
+    if (cancelledBar(form.progress(), "fitting", "Cancel##form")) form.cancel();
     if (const auto& preview = form.previewed(); preview && preview->coarse)
       writeWrapped(fmt::format("preview, from means of {} x {} samples: {}", preview->coarse->step,
                                preview->coarse->step, coarseFormState(*preview->coarse)));
-    return;
+  } else {
+    if (over != nullptr && over->shape() != nullptr) writeWrapped("taken out: " + formFigures(*over));
+    if (previewed) writeWrapped("preview: colours are heights without the form, touch is with it");
+    if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
   }
-  if (ImGui::Button("Fit")) form.measure(context.client);
-  const bool previewed = form.previewed().has_value();
-  const char* const preview = previewed ? "Drop preview" : "Preview";
-  sameLineIfFits(preview);
-  actionButton(preview, Action::kFormPreview, context.act);
-  sameLineIfFits("Take out");
-  actionButton("Take out", Action::kFormOut, context.act);
-  if (over != nullptr) {
-    sameLineIfFits("Put back");
-    actionButton("Put back", Action::kFormBack, context.act);
-    sameLineIfFits("Make it heights");
-    actionButton("Make it heights", Action::kFormHeights, context.act);
-  }
-  if (previewed) writeWrapped("preview: colours are heights without the form, touch is with it");
-  if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
+  endPlace();
 }
 
 }  // namespace fettle::app

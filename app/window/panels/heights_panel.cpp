@@ -81,6 +81,8 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
+constexpr int kOutcomeLines = 4;
+
 struct ButtonsOf {
   Action preview;
   Action make;
@@ -91,16 +93,25 @@ constexpr ButtonsOf kLevelButtons{Action::kLevelPreview, Action::kLevelLines, "L
 
 void makeButtons(const PanelContext& context, const HeightTool& heights, const haptic::HeightsMaker& maker,
                  const ButtonsOf& buttons) {
-  const bool same = heights.filledLast() == std::holds_alternative<engine::FillOptions>(maker);
   const std::string preview = heights.previews(maker) ? "Drop preview" : "Preview";
   // As wide with either word, so that the button beside it stays where it is.
   const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
   actionButton((preview + "##" + buttons.name).c_str(), buttons.preview, context.act, wide);
   sameLineIfFits(buttons.name);
   actionButton(buttons.name, buttons.make, context.act);
-  if (!same) return;
+}
+
+// How far the work is, or what came of it.
+void outcomeOf(HeightTool& heights) {
+  if (heights.busy()) {
+    if (cancelledBar(heights.progress(), "computing heights", "Cancel##heights")) heights.cancel();
+    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
+    return;
+  }
   if (!heights.found().empty()) writeWrapped(heights.found());
-  if (heights.previewed() != nullptr && !heights.previews(maker))
+  const bool current =
+      heights.filledLast() ? heights.previews(heights.fill) : heights.previews(heights.lines);
+  if (heights.previewed() != nullptr && !current)
     ImGui::TextDisabled("not shown yet: what the fields say now");
 }
 
@@ -109,13 +120,7 @@ void makeButtons(const PanelContext& context, const HeightTool& heights, const h
 void heightsPanel(const PanelContext& context, HeightTool& heights) {
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
-  if (heights.busy()) {
-    workBar(heights.progress(), -ImGui::GetFontSize() * 5.0F, "computing heights");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel##heights")) heights.cancel();
-    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
-    return;
-  }
+  ImGui::BeginDisabled(heights.busy());
   int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
   constexpr const char* kMethods[] = {"least curvature", "membrane"};
   beginFields();
@@ -128,6 +133,10 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   ImGui::Separator();
   linesFields(heights.lines);
   makeButtons(context, heights, heights.lines, kLevelButtons);
+  ImGui::EndDisabled();
+  beginPlace("##heights outcome", kOutcomeLines);
+  outcomeOf(heights);
+  endPlace();
 }
 
 }  // namespace fettle::app

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -16,16 +14,15 @@ void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std
                                        bytesText(static_cast<double>(history.bytes())));
   sameLineIfFits(held.c_str());
   ImGui::TextDisabled("%s", held.c_str());
-  const float lines = static_cast<float>(std::clamp<std::int64_t>(history.last() + 1, 3, 8));
-  if (ImGui::BeginChild("steps", ImVec2(0.0F, lines * ImGui::GetTextLineHeightWithSpacing() + 8.0F), true)) {
+  constexpr float kSteps = 6.0F;  // whether there are as many or not: what is below stays where it is
+  if (ImGui::BeginChild("steps", ImVec2(0.0F, kSteps * ImGui::GetTextLineHeightWithSpacing() + 8.0F), true)) {
     std::int64_t chosen = -1;
     if (history.first() == 0 && ImGui::Selectable("0  the scan", history.number() == 0)) chosen = 0;
     for (std::int64_t i = history.first() + 1; i <= history.last(); ++i) {
       const engine::StepInfo& info = history.info(i);
       const std::string text =
           fmt::format("{}  {}   {}##{}", i, info.name, bytesText(static_cast<double>(info.bytes)), i);
-      if (i > history.number())
-        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+      if (i > history.number()) ImGui::PushStyleColor(ImGuiCol_Text, colourOf(render::PanelColour::kMuted));
       if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
       if (ImGui::IsItemHovered()) pointed = i;
       if (i > history.number()) ImGui::PopStyleColor();

@@ -83,21 +83,17 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   explain(kHand);
   endFields();
   const std::vector<LineFigures>& figures = lines.figures(context.client.upright());
-  if (figures.empty()) {
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextDisabled("draw along an edge with the mark tool");
-    ImGui::PopTextWrapPos();
-    return;
-  }
-  lineList(context, lines, figures);
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextDisabled("orange: a step; blue: a crease; grey: no edge found there; yellow: the chosen line");
-  ImGui::PopTextWrapPos();
+  ImGui::BeginDisabled(figures.empty());
   actionButton("Remove", Action::kRemoveLine, context.act);
   sameLineIfFits("Join");
   actionButton("Join", Action::kJoinLine, context.act);
   sameLineIfFits("Remove all");
   actionButton("Remove all", Action::kClearLines, context.act);
+  ImGui::EndDisabled();
+  if (figures.empty())
+    writeIn(render::PanelColour::kMuted, "draw along an edge with the mark tool");
+  else
+    lineList(context, lines, figures);
 }
 
 }  // namespace fettle::app

@@ -71,14 +71,13 @@ void arealTable(const MeasureTool::Figures& figures) {
 
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture) {
   measureFields(measure.options);
-  if (measure.busy()) {
-    workBar(measure.progress(), -ImGui::GetFontSize() * 5.0F, "measuring");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel##measure")) measure.cancel();
-    return;
-  }
+  ImGui::BeginDisabled(measure.busy());
   if (ImGui::Button("Measure now"))
     measure.measure(context.client, picture.seenRect(context.client.field().grid()));
+  ImGui::EndDisabled();
+  if (workRow(measure.busy() ? std::optional(measure.progress()) : std::nullopt, "measuring",
+              "Cancel##measure"))
+    measure.cancel();
   const auto& figures = measure.figures();
   if (!figures) return;
   ImGui::PushTextWrapPos(0.0F);

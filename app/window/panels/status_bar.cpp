@@ -14,7 +14,7 @@ void text(const std::string& what) {
 }
 
 // Returns whether the user cancelled.
-bool cancelledBar(const WorkProgress& progress, float width, const char* what) {
+bool statusWork(const WorkProgress& progress, float width, const char* what) {
   workBar(progress, width, what);
   ImGui::SameLine();
   return ImGui::SmallButton("Cancel");
@@ -80,20 +80,20 @@ void content(Parts& parts) {
         "them, Esc drops them",
         edges->lines));
   } else if (const auto saving = parts.saving.progress(parts.document)) {
-    if (cancelledBar(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
+    if (statusWork(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
   } else if (parts.opening.coarse() != nullptr) {
-    if (cancelledBar(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
+    if (statusWork(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
     ImGui::SameLine();
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
-    if (cancelledBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+    if (statusWork(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
   } else if (parts.marking.edit.busy()) {
-    if (cancelledBar(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
+    if (statusWork(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
       parts.marking.edit.cancel();
   } else if (parts.marking.edges.busy()) {
-    if (cancelledBar(parts.marking.edges.progress(), 240.0F, "looking for edges")) parts.marking.edges.drop();
+    if (statusWork(parts.marking.edges.progress(), 240.0F, "looking for edges")) parts.marking.edges.drop();
   } else if (PlaceTool& places = parts.marking.places; places.busy()) {
-    if (cancelledBar(places.progress(), 240.0F, "looking for places")) places.drop();
+    if (statusWork(places.progress(), 240.0F, "looking for places")) places.drop();
   } else {
     text(documentText(parts));
   }

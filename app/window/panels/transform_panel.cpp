@@ -8,12 +8,7 @@
 namespace fettle::app {
 
 bool transformPanel(const PanelContext& context, TransformTool& transform) {
-  if (transform.busy()) {
-    workBar(transform.progress(), -ImGui::GetFontSize() * 5.0F, "transforming");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel##transform")) transform.cancel();
-    return false;
-  }
+  ImGui::BeginDisabled(transform.busy());
   TransformTool::Options& options = transform.options;
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
@@ -45,6 +40,10 @@ bool transformPanel(const PanelContext& context, TransformTool& transform) {
     endFields();
   }
   const bool asked = ImGui::Button("Make a session of it") && !options.none();
+  ImGui::EndDisabled();
+  if (workRow(transform.busy() ? std::optional(transform.progress()) : std::nullopt, "transforming",
+              "Cancel##transform"))
+    transform.cancel();
   ImGui::PushTextWrapPos(0.0F);
   ImGui::TextUnformatted("beside the scan, and opened; the work here stays as it is");
   ImGui::PopTextWrapPos();

