@@ -4,6 +4,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "render/plan/panel_colours.h"
 #include "tests/end_to_end/window/window_fixture.h"
 
 namespace fettle::tests {
@@ -52,7 +53,9 @@ class HapticsTest : public WindowTest {
     EXPECT_EQ(otherwise, "");
   }
   // Pixels of a colour in the panels.
-  int inPanels(User& user, const std::string& what, int red, int green, int blue) {
+  int inPanels(User& user, const std::string& what, render::PanelColour colour) {
+    const std::uint32_t code = render::panelColour(colour, render::Theme::kDark);
+    const int red = code & 0xFFU, green = code >> 8U & 0xFFU, blue = code >> 16U & 0xFFU;
     const State now = user.program().now();
     const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
     int found = 0;
@@ -104,9 +107,9 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   (void)user.click("Haptics");
   for (const char* text : {"simulated hand", "connected", "force, 0 to", "per second", "0.5 ms"})
     EXPECT_TRUE(user.reads(text)) << text;
-  // The force as a grey line, late ticks as yellow bars.
-  EXPECT_GT(inPanels(user, "force", 156, 156, 156), 60);
-  EXPECT_GT(inPanels(user, "lateness", 230, 179, 0), 60);
+  // The force as a line, late ticks as bars.
+  EXPECT_GT(inPanels(user, "force", render::PanelColour::kCurve), 60);
+  EXPECT_GT(inPanels(user, "lateness", render::PanelColour::kProgress), 60);
 
   user.tap("Disarm");
   staysWithoutForce(*program);

@@ -91,11 +91,11 @@ TEST_F(SizeTest, a_window_changes_its_size_at_any_time) {
   expectSilence(*program);
 }
 
-// Pixels from a place up to the highest one that differs.
-int risesAbove(const Screen& a, const Screen& b, User::Place from) {
+// Pixels from a place up to the highest one of the picture that differs.
+int risesAbove(const Screen& a, const Screen& b, const State& picture, User::Place from) {
   int highest = from.y;
-  for (int y = from.y; y > std::max(0, from.y - 300); --y)
-    if (differing(a, b, {from.x - 100, y, 400, 1}) > 0) highest = y;
+  for (int y = from.y; y > picture[1].get<int>(); --y)
+    if (differing(a, b, {picture[0], y, picture[2], 1}) > 0) highest = y;
   return from.y - highest;
 }
 
@@ -112,17 +112,20 @@ TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
     // size of the letters (DejaVu: 0.760 above the line, 0.236 below), rounded at both ends.
     EXPECT_NEAR(titleHeight(seen, shown["picture"]), 13.0 * scale, 1.5) << dpi;
     for (const State& text : shown["texts"]) EXPECT_EQ(text["cut"], false) << dpi << " dpi: " << text.dump();
-    // The pen over the same surface, and away from it.
+    // The pen over the surface, and the same without a tool.
     (void)user.key("s");
     const Part surface = user.surface();
     const User::Place middle{surface.x + surface.width / 2, surface.y + surface.height / 2};
     user.at(middle);
-    (void)user.rest();
+    (void)program->until("the pen at the cursor", [](const State& now) {
+      return now["settled"] == true && now["under_cursor"].is_array() &&
+             std::abs(now["under_cursor"][0].get<int>() - now["stylus_at"][0].get<int>()) <= 1 &&
+             std::abs(now["under_cursor"][1].get<int>() - now["stylus_at"][1].get<int>()) <= 1;
+    });
     const Screen pen = user.look("a pen");
-    user.at({20, shown["frame"][1].get<int>() - 3});  // the status line
-    const Screen none =
-        user.until("no pen", [&](const Screen& now) { return risesAbove(pen, now, middle) > 20; });
-    const int rises = risesAbove(pen, none, middle);
+    (void)user.key("Escape");
+    const Screen none = user.changed("no pen", pen);
+    const int rises = risesAbove(pen, none, shown["picture"], middle);
     if (dpi == 96) usual_pen = rises;
     EXPECT_NEAR(rises, scale * usual_pen, 4.0 + 0.05 * scale * usual_pen) << dpi;
     EXPECT_GT(usual_pen, 40);

@@ -129,9 +129,10 @@ TEST_F(SteadyRows, notices_come_and_go_under_the_rows) {
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   // By key, too.
-  const auto again = start({plain});
+  const auto again = start({plain, "--theme", "light"});
   User other_user(display, *again, "notices again");
   EXPECT_FALSE(opened(*again)["notices"].empty());
+  (void)other_user.look("light");
   EXPECT_TRUE(other_user.key("alt+n")["notices"].empty());
   again->signal(SIGTERM);
   EXPECT_EQ(again->wait(), 0) << again->err();
