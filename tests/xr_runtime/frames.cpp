@@ -45,6 +45,20 @@ void advance(Runtime& r) {
   }
 }
 
+// A runtime that does not answer, as long as the script has it so.
+void hang(Runtime& r) {
+  const long frame = r.frame + 1;
+  for (bool first = true;; first = false) {
+    {
+      const std::lock_guard lock(r.mutex);
+      if (!first) r.script.readOn(r.frame);
+      if (!r.script.hangs(frame)) return;
+      if (first) r.say("hangs before frame " + std::to_string(frame));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 XRAPI_ATTR XrResult XRAPI_CALL waitFrame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
   Runtime& r = runtime();
   XrTime due = 0;
@@ -57,6 +71,8 @@ XRAPI_ATTR XrResult XRAPI_CALL waitFrame(XrSession, const XrFrameWaitInfo*, XrFr
     if (r.waited) return r.wrong("a frame is waited for while one is waited for and not begun");
     due = std::max(nowNs(), r.last_wake + period);
   }
+  hang(r);
+  due = std::max(due, nowNs());
   // A headset's clock: frames come at its own pace.
   std::this_thread::sleep_for(std::chrono::nanoseconds(due - nowNs()));
   const std::lock_guard lock(r.mutex);
@@ -169,15 +185,14 @@ XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
   if (!r.running) return r.wrong("a frame is ended without a running session", XR_ERROR_SESSION_NOT_RUNNING);
   if (!r.begun) return r.wrong("a frame is ended that was not begun");
   r.begun = false;
-  const auto events = r.script.events(r.frame);
-  if (std::find(events.begin(), events.end(), "end") != events.end())
+  if (r.script.has("end", r.frame))
     for (const XrSessionState next :
          {XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING})
       r.enter(next);
   if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
     return XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED;
   if (info->displayTime != r.shown) (void)r.wrong("a frame is ended for another time than was waited for");
-  const bool kept = !r.keep.empty() && std::find(events.begin(), events.end(), "keep") != events.end();
+  const bool kept = !r.keep.empty() && r.script.has("keep", r.frame);
   int quads = 0;
   std::string layers;
   std::array<Eye, 2> eyes;

@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "tests/xr_runtime/runtime.h"
 
@@ -38,6 +39,10 @@ XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, 
   if (!r.keep.empty()) r.log.open(r.keep + "/log.txt", std::ios::app);
   const char* script = std::getenv("FETTLE_XR_SCRIPT");
   if (script == nullptr || !r.script.read(script)) return XR_ERROR_RUNTIME_FAILURE;
+  while (r.script.hangs(0)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    r.script.readOn(0);
+  }
   for (std::uint32_t i = 0; i < info->enabledExtensionCount; ++i)
     if (std::strcmp(info->enabledExtensionNames[i], XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME) != 0)
       return XR_ERROR_EXTENSION_NOT_PRESENT;

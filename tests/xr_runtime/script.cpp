@@ -1,5 +1,6 @@
 #include "tests/xr_runtime/script.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <iterator>
 #include <set>
@@ -8,14 +9,19 @@
 namespace fettle::tests::xr {
 
 bool Script::understand(const std::string& line, long frame_now) {
-  static const std::set<std::string> kEvents{"keep", "hide", "show",     "stop",
-                                             "lose", "end",  "recentre", "busy"};
+  static const std::set<std::string> kEvents{"keep", "hide",     "show", "stop", "lose",
+                                             "end",  "recentre", "busy", "hang"};
   static const std::set<std::string> kValues{"trigger", "squeeze", "scroll", "button", "infer", "broken"};
   std::istringstream words(line.substr(0, line.find('#')));
   std::string first, what, next;
   if (!(words >> first)) return true;
   if (first == "size") return static_cast<bool>(words >> width >> height);
   if (first == "rate") return static_cast<bool>(words >> rate_hz);
+  if (first == "start-hangs") return start_hangs_ = true;
+  if (first == "answer") {
+    answered_ = frame_now + 1;
+    return true;
+  }
   std::istringstream counted(first);
   long frame = 0;
   if (!(counted >> frame && words >> what)) return false;
@@ -87,6 +93,15 @@ std::vector<std::string> Script::events(long frame) const {
   std::vector<std::string> words;
   for (auto [it, last] = events_.equal_range(frame); it != last; ++it) words.push_back(it->second);
   return words;
+}
+
+bool Script::has(const std::string& event, long frame) const {
+  const std::vector<std::string> words = events(frame);
+  return std::find(words.begin(), words.end(), event) != words.end();
+}
+
+bool Script::hangs(long frame) const {
+  return frame > answered_ && (frame == 0 ? start_hangs_ : has("hang", frame));
 }
 
 }  // namespace fettle::tests::xr

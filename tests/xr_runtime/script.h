@@ -24,6 +24,8 @@ struct Place {
 ///   30 hide, show, stop, lose        the session: no longer seen, seen again, asked to end, lost
 ///   30 end                           it ends after this frame at once: no frame between its focus and its end
 ///   30 busy                          it still reads its images in this frame: they are not free to be written
+///   30 hang                          xrWaitFrame of this frame does not come back before a line "answer" is read
+///   start-hangs                      xrCreateInstance does not, either
 ///   30 recentre                      the room has another origin from this frame on, as the program is told
 ///
 /// Frames are counted by xrWaitFrame, from 1. Lines may be appended while it runs, with frames as "+3": the third after the one
@@ -41,6 +43,9 @@ class Script {
   [[nodiscard]] double value(const std::string& of, long frame) const;
   /// Words of this frame: "keep", "hide" and so on.
   [[nodiscard]] std::vector<std::string> events(long frame) const;
+  [[nodiscard]] bool has(const std::string& event, long frame) const;
+  /// Whether the call that waits for this frame does not come back yet; 0: that which makes the instance.
+  [[nodiscard]] bool hangs(long frame) const;
 
   int width = 320, height = 360;
   double rate_hz = 90.0;
@@ -51,6 +56,8 @@ class Script {
   std::string path_;
   std::ifstream file_;
   int number_ = 0;  // of the line read last
+  bool start_hangs_ = false;
+  long answered_ = -1;  // the last frame that hangs no more
   std::map<std::string, std::map<long, Place>> places_;
   std::map<std::string, std::map<long, double>> values_;
   std::multimap<long, std::string> events_;

@@ -151,6 +151,7 @@ XRAPI_ATTR XrResult XRAPI_CALL destroySwapchain(XrSwapchain handle) {
   Runtime& r = runtime();
   const std::lock_guard lock(r.mutex);
   if (r.swapchains.erase(of(handle)) == 0) return XR_ERROR_HANDLE_INVALID;
+  r.say("swapchain destroyed");
   destroyImages(*of(handle));
   delete of(handle);
   return XR_SUCCESS;
@@ -190,8 +191,7 @@ XRAPI_ATTR XrResult XRAPI_CALL waitImage(XrSwapchain handle, const XrSwapchainIm
     return r.wrong("an image is waited for that is not acquired");
   if (info->timeout > kLongestTimeout_ns)
     return r.wrong("an image is waited for longer than a thread that ends may");
-  const auto events = r.script.events(r.frame);
-  if (std::find(events.begin(), events.end(), "busy") != events.end()) return XR_TIMEOUT_EXPIRED;
+  if (r.script.has("busy", r.frame)) return XR_TIMEOUT_EXPIRED;
   swapchain.state = Swapchain::Image::kWaited;
   return XR_SUCCESS;
 }

@@ -66,6 +66,22 @@ class XrStage {
     EXPECT_EQ(count("wrong:"), 0) << log();
     EXPECT_EQ(validation(), "");
   }
+  /// That all was destroyed, the swapchains before their session, that after its end and before the instance.
+  enum class Session { kEnded, kLost, kNeverRan };
+  void expectLeftInOrder(Session session) const {
+    const std::string all = log();
+    const auto last = [&](const char* line) { return all.rfind(std::string(line) + "\n"); };
+    const int destroyed = count("swapchain destroyed\n");
+    EXPECT_GT(destroyed, 0) << all;
+    EXPECT_EQ(count("swapchain ") - destroyed, destroyed) << all;
+    const std::size_t end = session == Session::kEnded  ? last("session ended")
+                            : session == Session::kLost ? last("state LOSS_PENDING")
+                                                        : last("state READY");
+    EXPECT_LT(end, last("swapchain destroyed")) << all;
+    EXPECT_LT(last("swapchain destroyed"), last("session destroyed")) << all;
+    EXPECT_LT(last("session destroyed"), last("instance destroyed")) << all;
+    EXPECT_NE(last("instance destroyed"), std::string::npos) << all;
+  }
 
  private:
   TempFolder folder_;

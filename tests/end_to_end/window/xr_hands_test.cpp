@@ -1,101 +1,17 @@
 // Hands in a scripted headset (tests/xr_runtime): a controller as the tip, the field held by two, the window's frame pointed
 // at. The runtime composes what each eye sees, so that it can be looked at.
-#include <chrono>
-#include <cmath>
 #include <fstream>
-#include <sstream>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 
-#include "render/png/png.h"
-#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/end_to_end/window/xr_room.h"
 #include "tests/support/process.h"
-#include "tests/xr_runtime/xr_stage.h"
 
 namespace fettle::tests {
 namespace {
 
-using State = User::State;
-
-// A head over the table, whose top lies at 0.75 m and 0.55 m ahead, and which looks down at it; 0.15 m behind it is a screen
-// of 1.1 m x 0.8 m, a millimetre for each of the window's pixels.
-constexpr const char* kRoom = "size 480 500\nrate 45\n0 head 0 1.45 -0.05 0 -42\n";
-constexpr double kScreenY_m = 1.35, kTableZ_m = -0.6;
-
-class XrHands : public WindowTest {
- protected:
-  XrHands() : stage(kRoom) {}
-
-  std::unique_ptr<ViewProgram> startIn(std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {scan, "--xr"});
-    auto program = start(more, stage.environment());
-    (void)opened(*program);
-    program->until("the field is in the room",
-                   [](const State& s) { return s["headset"] == "shown" && s["room"]["mm"] > 0.0; });
-    return program;
-  }
-  // A hand at a place that looks down.
-  static std::string over(const char* hand, double x, double y, double z = kTableZ_m, int frame = 1) {
-    return fmt::format("+{} {} {} {} {} 0 -70\n", frame, hand, x, y, z);
-  }
-  // A hand whose ray meets a pixel of the window's frame.
-  static std::string at(const char* hand, double px, double py, int frame = 1) {
-    return fmt::format("+{} {} {} {} -0.6 0 0\n", frame, hand, 1e-3 * px - 0.55,
-                       kScreenY_m + 0.4 - 1e-3 * py);
-  }
-  static std::string set(const char* what, double value, int frame = 1) {
-    return fmt::format("+{} {} {}\n", frame, what, value);
-  }
-  static State tipIs(ViewProgram& program, const State& hand) {
-    return program.until("the tip " + hand.dump(), [&](const State& s) { return s["room"]["tip"] == hand; });
-  }
-  // Keeps what is seen some frames from now; its number.
-  int keep(int frames = 2) const {
-    const int before = stage.count("\nframe ");
-    stage.act(fmt::format("+{} keep\n", frames));
-    for (int tries = 0; stage.count("\nframe ") == before && tries < 2000; ++tries)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    const std::string log = stage.log();
-    return std::atoi(log.c_str() + log.rfind("\nframe ") + 7);
-  }
-  render::Image seen(int frame, const char* eye, const char* what = "") const {
-    const auto image = render::readPng(stage.file(fmt::format("frame{}.{}{}.png", frame, eye, what)));
-    EXPECT_TRUE(image) << stage.log();
-    return image ? *image : render::Image{};
-  }
-  static int pixelsApart(const render::Image& a, const render::Image& b) {
-    int apart = 0;
-    for (std::size_t i = 0; i + 3 < std::min(a.rgba.size(), b.rgba.size()); i += 4)
-      apart += std::equal(&a.rgba[i], &a.rgba[i] + 3, &b.rgba[i]) ? 0 : 1;
-    return apart;
-  }
-  // The strongest vibration told to a hand since `from` of the log.
-  double strongest(const std::string& hand, std::size_t from) const {
-    std::istringstream lines(stage.log().substr(from));
-    double most = 0.0;
-    for (std::string line; std::getline(lines, line);)
-      if (line.find("haptics " + hand) == 0 && line.find("stopped") == std::string::npos)
-        most = std::max(most, std::atof(line.c_str() + 9 + hand.size()));
-    return most;
-  }
-  // The last word about a hand's vibration.
-  std::string lastWord(const std::string& hand) const {
-    const std::string log = stage.log();
-    const std::size_t begin = log.rfind("haptics " + hand);
-    return begin == std::string::npos ? "" : log.substr(begin, log.find('\n', begin) - begin);
-  }
-
-  // The headset's next frames tell a hand nothing more.
-  void expectStops(const std::string& hand) const {
-    for (int tries = 0; lastWord(hand).find("stopped") == std::string::npos && tries < 2000; ++tries)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    EXPECT_NE(lastWord(hand).find("stopped"), std::string::npos) << lastWord(hand);
-  }
-
-  XrStage stage;
-};
+class XrHands : public XrRoomTest {};
 
 TEST_F(XrHands, a_controller_is_the_tip_and_a_stroke_of_it_is_a_step) {
   const auto program = startIn();
@@ -260,16 +176,7 @@ TEST_F(XrHands, a_question_in_the_window_stops_the_tool_of_a_controller) {
 TEST_F(XrHands, a_headset_lost_while_a_panel_is_held_lets_go_of_it) {
   const auto program = startIn();
   User user(display, *program, "xr lost on a panel");
-  stage.act("+1 head 0 1.45 -0.05 0 -12\n");
-  State button;
-  const State now = program->now();
-  for (const State& t : now["texts"])
-    if (t["text"] == "Smooth") button = t["at"];
-  ASSERT_TRUE(button.is_array()) << now["texts"].dump();
-  const int x = button[0].get<int>() + button[2].get<int>() / 2;
-  const int y = button[1].get<int>() + button[3].get<int>() / 2;
-  stage.act(at("right", x, y));
-  (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
+  pointAt(*program, middleOf(*program, "Smooth"));
   const int buttons = program->now()["buttons"];
   stage.act(set("right trigger", 1));
   (void)program->until("held", [&](const State& s) { return s["buttons"] == buttons + 1; });
@@ -364,18 +271,8 @@ TEST_F(XrHands, the_window_is_pointed_at_in_the_room_clicked_and_scrolled) {
   stage.act("+1 head 0 1.45 -0.05 0 -12\n");
   const int before = keep();
   // Its own frame hangs there, as it is on the desktop.
-  const State texts = program->now()["texts"];
-  State button;
-  for (const State& t : texts)
-    if (t["text"] == "Smooth") button = t["at"];
-  ASSERT_TRUE(button.is_array()) << texts.dump();
-  const int x = button[0].get<int>() + button[2].get<int>() / 2;
-  const int y = button[1].get<int>() + button[3].get<int>() / 2;
-  stage.act(at("right", x, y));
-  (void)program->until("the cursor on the button", [&](const State& s) {
-    return s["room"]["points"] == true && std::abs(s["cursor"][0].get<int>() - x) <= 1 &&
-           std::abs(s["cursor"][1].get<int>() - y) <= 1;
-  });
+  const User::Place button = middleOf(*program, "Smooth");
+  pointAt(*program, button);
   const int pointing = keep();
   // Ray and spot are layers over the screen's, and each eye sees them.
   EXPECT_EQ(stage.count(fmt::format("frame {} projection quad\n", before)), 1) << stage.log();
@@ -407,7 +304,7 @@ TEST_F(XrHands, the_window_is_pointed_at_in_the_room_clicked_and_scrolled) {
   tipIs(*program, "right");
   EXPECT_EQ(program->now()["room"]["points"], false);
   // And back at the screen it is not.
-  stage.act(at("right", x, y));
+  stage.act(at("right", button.x, button.y));
   tipIs(*program, State());
   (void)program->until("it points", [](const State& s) { return s["room"]["points"] == true; });
   (void)quit(user);

@@ -55,6 +55,7 @@ TEST_F(XrTest, the_field_is_on_a_table_for_both_eyes_and_in_the_window) {
   EXPECT_EQ(stage.count("exit requested"), 1);
   EXPECT_EQ(stage.count("session ended"), 1);
   EXPECT_EQ(stage.count("instance destroyed"), 1);
+  stage.expectLeftInOrder(XrStage::Session::kEnded);
   stage.expectSilence();
   // The last kept pictures have the field.
   int shown = 0;

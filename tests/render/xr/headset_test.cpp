@@ -133,6 +133,7 @@ TEST(Headset, shows_both_eyes_and_ends_when_asked) {
   for (const char* state : {"READY", "SYNCHRONIZED", "VISIBLE", "FOCUSED", "STOPPING", "EXITING"})
     EXPECT_GE(stage.count(std::string("state ") + state + "\n"), 1) << state << '\n' << stage.log();
   EXPECT_EQ(stage.count("instance destroyed"), 1) << stage.log();
+  stage.expectLeftInOrder(XrStage::Session::kEnded);
   stage.expectSilence();
   const auto left = readPng(stage.file("frame10.left.png")), right = readPng(stage.file("frame10.right.png"));
   ASSERT_TRUE(left && right) << stage.log();
@@ -232,6 +233,7 @@ TEST(Headset, a_lost_session_is_an_error_that_says_so) {
       << shown.end.error().line();
   EXPECT_GT(shown.drawn, 5U);
   EXPECT_EQ(stage.count("session destroyed"), 1);
+  stage.expectLeftInOrder(XrStage::Session::kLost);
   stage.expectSilence();
 }
 
