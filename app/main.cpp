@@ -1,8 +1,9 @@
 #include "app/commands/program.h"
+#include "app/thread_left.h"
 
 int main(int argc, char** argv) {
   using namespace fettle::app;
-  return runProgram(argc, argv, [](Command root, Chosen& chosen) {
+  const int status = runProgram(argc, argv, [](Command root, Chosen& chosen) {
     addScanCommands(root, chosen);
     addPlan(root, chosen);
     addGather(root, chosen);
@@ -16,4 +17,5 @@ int main(int argc, char** argv) {
     addBench(root, chosen);
     addReference(root, chosen);
   });
+  return endOfMain(status);
 }

@@ -155,9 +155,9 @@ void drawField(Parts& parts, const DrawOptions& options) {
 // The pen's size is that of a window's pixels.
 constexpr StylusLook kTipInTheRoom{.pen = false, .shadow = false, .force = true, .trail = false};
 
-HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options) {
+HeadsetPicture headsetPicture(Parts& parts, const DrawOptions& options) {
   LoopClient& client = *parts.document.client();
-  HeadsetView::Picture picture;
+  HeadsetPicture picture;
   picture.shown = shownOf(parts, {});
   picture.input = frameInput(parts, render::Sharpness::kFull, options);
   const haptic::LoopState state = client.state();

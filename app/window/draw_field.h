@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/window/parts.h"
-#include "app/xr/headset_view.h"
+#include "app/xr/headset_exchange.h"
 
 namespace fettle::app {
 
@@ -16,7 +16,7 @@ struct DrawOptions {
 /// main.
 void drawField(Parts& parts, const DrawOptions& options);
 /// What a headset shows of the open document: the field without previews, in the colours of the window, and the stylus.
-[[nodiscard]] HeadsetView::Picture headsetPicture(Parts& parts, const DrawOptions& options);
+[[nodiscard]] HeadsetPicture headsetPicture(Parts& parts, const DrawOptions& options);
 /// How the tip of the hand looks in it.
 [[nodiscard]] TipLook tipLookOf(const Parts& parts);
 /// The same for the coarse picture of a scan that is being read.

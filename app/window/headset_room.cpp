@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/terminal.h"
 #include "app/work/device_loop.h"
 #include "engine/base/stopwatch.h"
 
@@ -9,13 +10,14 @@ namespace fettle::app {
 namespace {
 
 constexpr std::int64_t kAgain_ns = 25'000'000;  // between two frames of the window in the room
+constexpr const char* kStands = "the headset makes no frames";
 
 }  // namespace
 
 engine::Status HeadsetRoom::start(render::HeadsetOptions options, RoomScale scale,
                                   LoopClientOptions& client) {
   client.controllers = controllers_ = controllersBeside(client.device);
-  auto started = HeadsetView::start({options, scale, client.controllers, &render::Window::wake});
+  auto started = HeadsetView::start({{options, scale, client.controllers}, &render::Window::wake});
   if (!started) return tl::unexpected(started.error());
   headset_ = *std::move(started);
   return {};
@@ -43,12 +45,13 @@ void HeadsetRoom::takeInput(render::Window& window) {
 
 void HeadsetRoom::follow(Parts& parts, const DrawOptions& options, std::uint64_t document) {
   if (!headset_) return;
-  const HeadsetView::State state = headset_->state();
+  const HeadsetState state = headset_->state();
   note(state);
+  noteStanding(parts.feedback);
   if (controllers_) controllers_->asked.store(parts.feedback.questions.pending(), std::memory_order_relaxed);
   if (!state.over) {
     if (!parts.document.isOpen()) return;
-    HeadsetView::Picture picture = headsetPicture(parts, options);
+    HeadsetPicture picture = headsetPicture(parts, options);
     picture.field = document;
     picture.tip = tipLookOf(parts);
     if (controllers_) picture.reader = controllers_->reader.load(std::memory_order_relaxed);
@@ -75,15 +78,27 @@ void HeadsetRoom::showFrame(render::Window& window) {
 
 void HeadsetRoom::finish() {
   if (!headset_) return;
-  headset_->finish();
+  if (!headset_->finish())
+    warn("the headset's runtime did not answer: its session was left as it was; restart the runtime");
   note(headset_->state());
   headset_.reset();
 }
 
-void HeadsetRoom::note(const HeadsetView::State& state) {
+// Said when it begins, and no longer than it lasts.
+void HeadsetRoom::noteStanding(Feedback& feedback) {
+  if (std::exchange(said_standing_, figures_.stands) == figures_.stands) return;
+  if (figures_.stands)
+    feedback.notices.push_back(
+        {kStands, "the window continues; if it stays so, restart the headset's runtime"});
+  else
+    std::erase_if(feedback.notices, [](const Notice& notice) { return notice.what == kStands; });
+}
+
+void HeadsetRoom::note(const HeadsetState& state) {
   figures_ = {.name = state.headset,
               .frames = state.frames,
               .over = state.over,
+              .stands = headset_->stands(),
               .true_size = state.scale == RoomScale::kTrue,
               .metres_per_mm = state.metres_per_mm,
               .tip = state.tip,

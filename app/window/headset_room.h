@@ -13,7 +13,7 @@
 namespace fettle::app {
 
 /// The window's side of a headset (`--xr`): gives it the field and the window's frame, brings what hands do on that frame to
-/// the window, and notes the headset's end. Without a headset nothing is done.
+/// the window, and notes the headset's end, and that its frames stay away. Without a headset nothing is done.
 ///
 /// Threading: main.
 class HeadsetRoom {
@@ -28,16 +28,20 @@ class HeadsetRoom {
   void follow(Parts& parts, const DrawOptions& options, std::uint64_t document);
   /// The frame that the window has just shown.
   void showFrame(render::Window& window);
+  /// Whether it goes on, and shows the window's frame also while the window itself is not seen.
+  [[nodiscard]] bool on() const noexcept { return headset_ != nullptr; }
   /// Ends the session (HeadsetView::finish).
   void finish();
   [[nodiscard]] const HeadsetFigures& figures() const noexcept { return figures_; }
 
  private:
-  void note(const HeadsetView::State& state);
+  void note(const HeadsetState& state);
+  void noteStanding(Feedback& feedback);
 
   std::unique_ptr<HeadsetView> headset_;                 // null without one
   std::shared_ptr<haptic::ControllerLink> controllers_;  // null: they are no tip
   HeadsetFigures figures_;
+  bool said_standing_ = false;
   std::int64_t shown_ns_ = 0;  // when the window's frame was last shown there
 };
 

@@ -50,6 +50,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"device_losses", run.device_losses},
            {"headset", run.headset.name.empty() ? "none"
                        : run.headset.over       ? "over"
+                       : run.headset.stands     ? "stands"
                        : run.headset.frames > 0 ? "shown"
                                                 : "starting"},
            {"room", room},

@@ -18,6 +18,7 @@ struct HeadsetFigures {
   std::string name;                ///< empty without one
   std::uint64_t frames = 0;        ///< drawn
   bool over = false;               ///< its session has ended
+  bool stands = false;             ///< its frames stay away
   bool true_size = false;          ///< chosen, rather than a giant's
   double metres_per_mm = 0.0;      ///< of the field in the room; 0: it is not placed yet
   std::optional<std::size_t> tip;  ///< the hand that is the tip, 0 left, 1 right

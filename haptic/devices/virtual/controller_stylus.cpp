@@ -13,8 +13,7 @@ namespace {
 
 // About a frame of a headset: shorter, and the tip would move in steps; longer, and it would lag behind the hand.
 constexpr double kFollows_s = 0.012;
-// A runtime that draws on a busy processor leaves some tenths of a second between two frames.
-constexpr std::int64_t kFramesStayAway_ns = 2'000'000'000;
+constexpr std::int64_t kFramesStayAway_ns = std::chrono::nanoseconds(kFramesStayAway).count();
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,6 +14,10 @@
 #include "haptic/devices/virtual/mouse_stylus.h"
 
 namespace fettle::haptic {
+
+/// A headset whose last frame is older than this has stopped to make them: its hands let go. Not earlier: a runtime that draws on a
+/// busy processor leaves some tenths of a second between two frames.
+inline constexpr std::chrono::seconds kFramesStayAway{2};
 
 /// The hand with the tip, as one frame of a headset has it; field coordinates.
 struct ControllerHand {
