@@ -25,6 +25,7 @@ namespace {
 constexpr double kIdle_s = 0.1;   // between two frames while nothing happens
 constexpr double kBusy_s = 0.03;  // ... while only figures change
 constexpr auto kSaveSettingsEvery = std::chrono::seconds(1);
+constexpr auto kMinimised = std::chrono::milliseconds(10);
 constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two polls of the loop
 
 std::string settingsPath(const char* file) {
@@ -121,17 +122,19 @@ void Workstation::runFrame() {
   takeResults();
   parts_.showMarksMade();
   headset_.follow(parts_, options_.drawing, documents_);
+  window_->setSeenElsewhere(headset_.on());
   releaseHandsWhenAsked();
   if (!parts_.picture.made() || window_->displayLost()) {
     // No graphics device: loop and workers continue.
     renewPicture();
-  } else if (window_->minimised()) {
+  } else if (window_->canBeSeen()) {
+    showFrame();
+  } else {
     // Nothing to draw, everything else continues.
     logState(events_, parts_, input_, figures());
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  } else {
-    showFrame();
   }
+  // There is no display to wait for.
+  if (window_->minimised()) std::this_thread::sleep_for(kMinimised);
 }
 
 // Also called repeatedly while the device draws: passes the cursor to the loop, and takes the loop's reports

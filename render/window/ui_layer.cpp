@@ -187,8 +187,8 @@ void UiLayer::makeStyle(double scale) const {
 }
 
 void UiLayer::setTheme(Theme theme) {
-  theme_ = theme;
-  damage_.forget();  // what lies behind the panels has another colour
+  if (std::exchange(theme_, theme) != theme)
+    damage_.forget();  // what lies behind the panels has another colour
   ImVec4* const colours = ImGui::GetStyle().Colors;
   for (const StyleRow& row : kStyle)
     colours[row.of] = ImGui::ColorConvertU32ToFloat4(panelColour(row.colour, theme));

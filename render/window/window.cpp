@@ -162,6 +162,7 @@ struct Window::Impl {
   bool picture_changed = false;  // since the last frame
   bool usable = false;           // according to the last present()
   bool seen = false;             // the window is on the screen
+  bool seen_elsewhere = false;
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
   std::vector<InputEvent> input;
@@ -381,6 +382,13 @@ void Window::poll(double wait_s) {
     glfwPollEvents();
 }
 
+void Window::setSeenElsewhere(bool seen) noexcept {
+  impl_->seen_elsewhere = seen;
+}
+bool Window::canBeSeen() const {
+  const vk::Extent2D size = impl_->frameSize();
+  return size.width > 0 && size.height > 0 && (impl_->seen_elsewhere || !minimised());
+}
 void Window::setWhileWaiting(std::function<void()> work) {
   impl_->while_waiting = std::move(work);
 }
@@ -391,7 +399,7 @@ void Window::point(InputEvent event) {
   Impl& w = *impl_;
   // A window without a picture begins nothing, and ends what was begun.
   const bool ends = event.kind == InputKind::kButtonUp || event.kind == InputKind::kLeave;
-  if (!ends && (!w.usable || minimised())) return;
+  if (!ends && (!w.usable || !canBeSeen())) return;
   const glm::dvec2 at = glm::dvec2(event.x, event.y) / w.framePixels();
   if (event.kind == InputKind::kLeave) {
     w.ui->leavePointer();
@@ -548,7 +556,19 @@ engine::Result<PresentReport> Window::present() {
   w.ui->endFrame();
   try {
     if (display_lost.load()) return tl::unexpected(lost(w.device_name, ""));
-    if (minimised()) return report;
+    const auto combine = [&w](const vk::raii::CommandBuffer& commands) {
+      const vk::Extent2D size = w.picture.extent();
+      w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
+                            {std::max(w.area.x, 0), std::max(w.area.y, 0), static_cast<int>(size.width),
+                             static_cast<int>(size.height)},
+                            std::exchange(w.picture_changed, false)});
+    };
+    if (minimised()) {
+      if (!canBeSeen()) return report;
+      w.ui->fit(w.frameSize());
+      w.context->run(combine);
+      return report;
+    }
     const auto while_waiting = [&w] {
       if (w.while_waiting) w.while_waiting();
       // A lost display returns no image, and not every driver reports that.
@@ -559,19 +579,9 @@ engine::Result<PresentReport> Window::present() {
       if (!w.swapchain->fit(w.frameSize())) return report;
       w.ui->fit(w.swapchain->extent());
       const engine::Stopwatch watch;
-      const bool shown = w.swapchain->show(
-          w.ui->image().image(),
-          [&](const vk::raii::CommandBuffer& commands) {
-            w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
-                                  {std::max(w.area.x, 0), std::max(w.area.y, 0),
-                                   static_cast<int>(w.picture.extent().width),
-                                   static_cast<int>(w.picture.extent().height)},
-                                  std::exchange(w.picture_changed, false)});
-          },
-          while_waiting,
-          [&w] {
-            if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
-          });
+      const bool shown = w.swapchain->show(w.ui->image().image(), combine, while_waiting, [&w] {
+        if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
+      });
       report.waited_ms += w.swapchain->waitedMs();
       report.draw_ms = watch.ms() - w.swapchain->waitedMs();
       report.shown_ns = engine::steadyNs();

@@ -165,7 +165,11 @@ class Window {
   /// The VkFormat of the picture's target.
   [[nodiscard]] static std::uint32_t pictureFormat();
 
-  /// Draws the panels over the picture and shows the frame. Nothing is shown while the window has no size.
+  /// Whether frames are drawn also while the window is minimised: for who sees them elsewhere, by capture().
+  void setSeenElsewhere(bool seen) noexcept;
+  /// Whether there is anything to draw on: it has a size, and is on the screen or seen elsewhere.
+  [[nodiscard]] bool canBeSeen() const;
+  /// Draws the panels over the picture and shows the frame. Nothing is shown while the window has no size or is minimised.
   /// The window itself appears with its first frame. Errors (kFailed): the device, the surface or the display
   /// was lost, or memory ran out; see usable() and renew().
   [[nodiscard]] engine::Result<PresentReport> present();

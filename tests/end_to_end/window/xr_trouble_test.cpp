@@ -191,6 +191,35 @@ TEST_F(XrTrouble, presses_that_wait_while_a_dialog_opens_do_nothing_in_it) {
   stage.expectSilence();
 }
 
+TEST_F(XrTrouble, all_goes_on_in_the_room_while_the_window_is_minimised) {
+  const auto program = startIn();
+  User user(display, *program, "xr minimised");
+  (void)user.key("s");
+  const User::Place mark = middleOf(*program, "Mark");
+  const std::uint32_t window = other.windowOf("fettle");
+  other.minimise(window);
+  (void)program->until("minimised", [](const State& s) { return s["minimised"] == true; });
+  stage.act(over("right", 0.0, 0.95) + set("right trigger", 1, 2) + over("right", 0.0, 0.755, kTableZ_m, 20) +
+            over("right", 0.1, 0.755, kTableZ_m, 32) + set("right trigger", 0, 34));
+  (void)program->until("a step", [](const State& s) { return s["steps"] == 1; });
+  // Its frame goes on as well, and is worked on.
+  pointAt(*program, mark);
+  const int before = keep();
+  stage.act(set("right trigger", 1) + set("right trigger", 0, 4));
+  (void)program->until("the tool",
+                       [](const State& s) { return s["tool"] == "mark" && s["settled"] == true; });
+  const int after = keep(10);
+  EXPECT_GT(pixelsApart(seen(before, "quad0"), seen(after, "quad0")), 100);
+  EXPECT_TRUE(program->now()["minimised"]);
+  other.restore(window);
+  (void)program->until("restored",
+                       [](const State& s) { return s["minimised"] == false && s["settled"] == true; });
+  (void)user.look("restored");
+  EXPECT_EQ(user.click("Smooth")["tool"], "smooth");
+  (void)quitWithoutSaving(user);
+  stage.expectSilence();
+}
+
 TEST_F(XrTrouble, ended_in_a_stroke_it_keeps_the_work_and_leaves_the_runtime_in_order) {
   const auto program = startIn();
   User user(display, *program, "xr ended");
