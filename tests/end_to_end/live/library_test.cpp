@@ -37,20 +37,35 @@ class LibraryDevice : public testing::TestWithParam<Maker> {
     page_ = fake::SharedPage::map(folder_.file("page").c_str());
     ASSERT_NE(page_, nullptr);
   }
-  // The program armed, and the hand pressing into the surface.
-  void press() {
+  void start() {
     const std::string scan = folder_.file("flat.tif");
     ASSERT_NO_FATAL_FAILURE(writePlate(scan));
     program_ = std::make_unique<LiveProgram>(
         std::vector<std::string>{"record", scan, folder_.file("s.csv"), folder_.file("o.tif"), "--device",
                                  GetParam().word, "--keys", "--json"},
         folder_.path().string());
+  }
+  void armUntil(const char* state) {
     ASSERT_TRUE(eventually([&] {
       program_->press('a');
-      return program_->says(" s: active", 2s);
+      return program_->says(state, 2s);
     })) << program_->err();
+  }
+  // The program armed, and the hand pressing into the surface.
+  void press() {
+    ASSERT_NO_FATAL_FAILURE(start());
+    ASSERT_NO_FATAL_FAILURE(armUntil(" s: active"));
     pressDown();
     ASSERT_TRUE(eventually([&] { return now() > 0.2; })) << program_->err();
+  }
+  // The next forces, about a millisecond apart.
+  [[nodiscard]] double strongestOfTheNext(std::size_t count) {
+    const std::size_t first = page_->forces;
+    EXPECT_TRUE(eventually([&] { return page_->forces >= first + count; }));
+    double most = 0.0;
+    for (std::size_t i = first; i < page_->forces; ++i)
+      most = std::max(most, static_cast<double>(page_->force_n[i].load()));
+    return most;
   }
   void pressDown() {
     for (double up = page_->up_mm; up > -2.0; up -= 0.1) {
@@ -108,6 +123,33 @@ TEST_P(LibraryDevice, IsListedWithItsLimitsWhileItIsThere) {
   page_->plugged = false;
   const nlohmann::json gone = rowIn(listed());
   EXPECT_TRUE(gone.is_null() || gone["state"] != "ready") << gone;
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, ArmedInsideTheSurfaceThenTakenOutAndPressed) {
+  page_->up_mm = -2.0;
+  ASSERT_NO_FATAL_FAILURE(start());
+  ASSERT_NO_FATAL_FAILURE(armUntil(" s: armed"));
+  EXPECT_EQ(strongestOfTheNext(300), 0.0);
+  page_->up_mm = 30.0;
+  EXPECT_TRUE(program_->says(" s: active")) << program_->err();
+  pressDown();
+  EXPECT_TRUE(eventually([&] { return now() > 0.2; }));
+  program_->press('q');
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectWithinLimits("armed 2 mm inside, taken out, pressed");
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_P(LibraryDevice, DisarmedWhilePressingAndArmedThere) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  program_->press('d');
+  EXPECT_TRUE(eventually([&] { return now() == 0.0; }));
+  ASSERT_NO_FATAL_FAILURE(armUntil(" s: armed"));
+  EXPECT_EQ(strongestOfTheNext(300), 0.0);
+  program_->press('q');
+  EXPECT_EQ(program_->wait(), 0) << program_->err();
+  expectWithinLimits("disarmed while pressing, armed there");
   EXPECT_EQ(broken(), "");
 }
 

@@ -23,19 +23,28 @@ constexpr double kMaxForceN = 3.0;  // of an unknown device: the service states 
 
 class ServiceDevice : public testing::Test {
  protected:
-  // The program armed, and the hand pressing into the surface.
-  void press() {
+  void start(double up_mm) {
     const std::string scan = folder_.file("flat.tif");
     ASSERT_NO_FATAL_FAILURE(writePlate(scan));
-    raise(30.0);
+    raise(up_mm);
     program_ = std::make_unique<LiveProgram>(
         std::vector<std::string>{"record", scan, folder_.file("s.csv"), folder_.file("o.tif"), "--device",
                                  "inverse3", "--keys", "--json"},
         folder_.path().string(), service_.address());
+  }
+  void armUntil(const char* state) {
     ASSERT_TRUE(eventually([&] {
       program_->press('a');
-      return program_->says(" s: active", 2s);
+      return program_->says(state, 2s);
     })) << program_->err();
+  }
+  // The program armed, and the hand pressing into the surface.
+  void press() {
+    ASSERT_NO_FATAL_FAILURE(start(30.0));
+    ASSERT_NO_FATAL_FAILURE(armUntil(" s: active"));
+    ASSERT_NO_FATAL_FAILURE(pressDown());
+  }
+  void pressDown() {
     for (double up = 30.0; up > -2.0; up -= 0.1) {
       raise(up);
       std::this_thread::sleep_for(2ms);  // the speed of the hand
@@ -54,6 +63,14 @@ class ServiceDevice : public testing::Test {
   [[nodiscard]] double now() const {
     const auto f = service_.received().force_n;
     return std::hypot(f[0], f[1], f[2]);
+  }
+  // The next forces, as often as there are messages.
+  [[nodiscard]] double strongestOfTheNext(std::size_t count) {
+    const std::size_t first = service_.received().forces_n.size();
+    EXPECT_TRUE(eventually([&] { return service_.received().forces_n.size() >= first + count; }));
+    const std::vector<float> forces = service_.received().forces_n;
+    return static_cast<double>(
+        *std::max_element(forces.begin() + static_cast<std::ptrdiff_t>(first), forces.end()));
   }
   // By key; the whole connection was within the rules.
   void quit() {
@@ -108,6 +125,40 @@ TEST_F(ServiceDevice, IsListedWithItsLimitsWhileItIsThere) {
   const nlohmann::json gone = rowNow();
   EXPECT_TRUE(gone.is_null() || gone["state"] != "ready") << gone;
   expectNoRuleBroken();
+}
+
+TEST_F(ServiceDevice, ArmedInsideTheSurfaceThenTakenOutAndPressed) {
+  ASSERT_NO_FATAL_FAILURE(start(-2.0));
+  ASSERT_NO_FATAL_FAILURE(armUntil(" s: armed"));
+  EXPECT_EQ(strongestOfTheNext(300), 0.0);
+  raise(30.0);
+  EXPECT_TRUE(program_->says(" s: active")) << program_->err();
+  ASSERT_NO_FATAL_FAILURE(pressDown());
+  quit();
+  expectWithinLimits("armed 2 mm inside, taken out, pressed");
+}
+
+TEST_F(ServiceDevice, DisarmedWhilePressingAndArmedThere) {
+  ASSERT_NO_FATAL_FAILURE(press());
+  program_->press('d');
+  EXPECT_TRUE(eventually([&] { return now() == 0.0; }));
+  ASSERT_NO_FATAL_FAILURE(armUntil(" s: armed"));
+  EXPECT_EQ(strongestOfTheNext(300), 0.0);
+  quit();
+  expectWithinLimits("disarmed while pressing, armed there");
+}
+
+TEST_F(ServiceDevice, OfTwoTheOtherIsAskedForNoForce) {
+  service_.change([](auto& w) {
+    fake::InverseUnit other;
+    other.id = "04A0";
+    w.units.push_back(other);
+  });
+  ASSERT_NO_FATAL_FAILURE(press());
+  const auto other = service_.received().other_force_n;
+  EXPECT_EQ(std::hypot(other[0], other[1], other[2]), 0.0);
+  quit();
+  expectWithinLimits("two of one kind, the first pressed");
 }
 
 TEST_F(ServiceDevice, UnpluggedWhilePressingAndBack) {
