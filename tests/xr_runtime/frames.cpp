@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <thread>
+#include <utility>
 
-#include "tests/xr_runtime/runtime.h"
+#include "tests/xr_runtime/keeper.h"
 
 namespace fettle::tests::xr {
 
@@ -121,28 +121,19 @@ bool good(Runtime& r, const XrSwapchainSubImage& part, const char* what) {
   return true;
 }
 
-// The picture of a layer, kept as a file.
-Pixels keep(Runtime& r, const XrSwapchainSubImage& part, const std::string& name) {
+// The picture of a layer.
+Pixels pictureOf(const XrSwapchainSubImage& part) {
   const auto* swapchain = reinterpret_cast<const Swapchain*>(part.swapchain);
-  const std::string path = r.keep + "/frame" + std::to_string(r.frame) + "." + name + ".png";
   Pixels pixels;
-  if (readPicture(swapchain->images[static_cast<std::size_t>(swapchain->released)],
-                  static_cast<VkFormat>(swapchain->info.format), part.imageRect, part.imageArrayIndex,
-                  pixels) &&
-      keepPicture(pixels, path))
-    r.say("kept " + path);
+  if (!readPicture(swapchain->images[static_cast<std::size_t>(swapchain->released)],
+                   static_cast<VkFormat>(swapchain->info.format), part.imageRect, part.imageArrayIndex,
+                   pixels))
+    pixels = {};
   return pixels;
 }
 
-// What an eye sees in a frame that is kept: its own picture, and what is laid over it.
-struct Eye {
-  XrPosef pose{};
-  XrFovf fov{};
-  Pixels seen;
-};
-
-void takeProjection(Runtime& r, const XrCompositionLayerProjection& layer, bool kept,
-                    std::array<Eye, 2>& eyes) {
+// `kept`: null where the frame is not.
+void takeProjection(Runtime& r, const XrCompositionLayerProjection& layer, KeptFrame* kept) {
   if (layer.viewCount != 2) {
     (void)r.wrong("a projection without two views", XR_ERROR_VALIDATION_FAILURE);
     return;
@@ -151,13 +142,12 @@ void takeProjection(Runtime& r, const XrCompositionLayerProjection& layer, bool 
   const bool placed = placeOf(layer.space, base);
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const XrCompositionLayerProjectionView& view = layer.views[eye];
-    if (!good(r, view.subImage, "a projection") || !kept || !placed) continue;
-    eyes[eye] = {times(base, view.pose), view.fov, keep(r, view.subImage, eye == 0 ? "left" : "right")};
+    if (good(r, view.subImage, "a projection") && kept != nullptr && placed)
+      kept->eyes[eye] = {times(base, view.pose), view.fov, pictureOf(view.subImage)};
   }
 }
 
-void takeQuad(Runtime& r, const XrCompositionLayerQuad& quad, bool kept, int number,
-              std::array<Eye, 2>& eyes) {
+void takeQuad(Runtime& r, const XrCompositionLayerQuad& quad, KeptFrame* kept) {
   const XrQuaternionf& q = quad.pose.orientation;
   const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   // "A unit quaternion", to within a hundredth (specification 2.17, XrQuaternionf).
@@ -166,16 +156,10 @@ void takeQuad(Runtime& r, const XrCompositionLayerQuad& quad, bool kept, int num
     return;
   }
   if (!(quad.size.width > 0.0F && quad.size.height > 0.0F)) (void)r.wrong("a quad without an area");
-  if (!good(r, quad.subImage, "a quad") || !kept) return;
-  const Pixels picture = keep(r, quad.subImage, "quad" + std::to_string(number));
+  if (!good(r, quad.subImage, "a quad") || kept == nullptr) return;
   XrPosef base{};
-  if (!placeOf(quad.space, base)) return;
-  for (std::size_t eye = 0; eye < 2; ++eye) {
-    const bool sees = quad.eyeVisibility == XR_EYE_VISIBILITY_BOTH ||
-                      quad.eyeVisibility == (eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT);
-    if (sees)
-      composeQuad(quad, times(base, quad.pose), picture, eyes[eye].pose, eyes[eye].fov, eyes[eye].seen);
-  }
+  const bool placed = placeOf(quad.space, base);
+  kept->quads.push_back({quad, times(base, quad.pose), placed, pictureOf(quad.subImage)});
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
@@ -192,29 +176,26 @@ XRAPI_ATTR XrResult XRAPI_CALL endFrame(XrSession, const XrFrameEndInfo* info) {
   if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
     return XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED;
   if (info->displayTime != r.shown) (void)r.wrong("a frame is ended for another time than was waited for");
-  const bool kept = !r.keep.empty() && r.script.has("keep", r.frame);
-  int quads = 0;
-  std::string layers;
-  std::array<Eye, 2> eyes;
+  const bool keeps = !r.keep.empty() && r.script.has("keep", r.frame);
+  KeptFrame kept;
+  kept.number = r.frame;
+  kept.takes_s = r.script.keep_takes_s;
   if (info->layerCount > XR_MIN_COMPOSITION_LAYERS_SUPPORTED)
     return r.wrong("more layers than the system has", XR_ERROR_LAYER_LIMIT_EXCEEDED);
   for (std::uint32_t i = 0; i < info->layerCount; ++i) {
     const XrCompositionLayerBaseHeader* layer = info->layers[i];
     if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
-      takeProjection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer), kept, eyes);
-      layers += " projection";
+      takeProjection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer),
+                     keeps ? &kept : nullptr);
+      kept.layers += " projection";
     } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
-      takeQuad(r, *reinterpret_cast<const XrCompositionLayerQuad*>(layer), kept, quads, eyes);
-      ++quads;
-      layers += " quad";
+      takeQuad(r, *reinterpret_cast<const XrCompositionLayerQuad*>(layer), keeps ? &kept : nullptr);
+      kept.layers += " quad";
     } else {
       return r.wrong("a layer of an unknown kind", XR_ERROR_LAYER_INVALID);
     }
   }
-  for (std::size_t eye = 0; eye < 2 && kept && quads > 0; ++eye)
-    (void)keepPicture(eyes[eye].seen, r.keep + "/frame" + std::to_string(r.frame) +
-                                          (eye == 0 ? ".left.seen.png" : ".right.seen.png"));
-  if (kept) r.say("frame " + std::to_string(r.frame) + layers);
+  if (keeps) keeper().keep(std::move(kept));
   return XR_SUCCESS;
 }
 

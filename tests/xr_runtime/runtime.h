@@ -2,7 +2,7 @@
 // poses from a script, pictures kept as files, and a check of the order of calls. The loader finds it by XR_RUNTIME_JSON.
 //
 //   FETTLE_XR_SCRIPT   the script (script.h); without one the instance is refused
-//   FETTLE_XR_KEEP     folder for log.txt and the kept pictures
+//   FETTLE_XR_KEEP     folder for log.txt and the kept pictures (keeper.h)
 //
 // A kept frame has files for each eye's picture, for each quad, and, where there are quads, for what each eye sees of both
 // ("frame10.left.seen.png").

@@ -17,6 +17,7 @@ bool Script::understand(const std::string& line, long frame_now) {
   if (!(words >> first)) return true;
   if (first == "size") return static_cast<bool>(words >> width >> height);
   if (first == "rate") return static_cast<bool>(words >> rate_hz);
+  if (first == "keep-takes") return static_cast<bool>(words >> keep_takes_s);
   if (first == "start-hangs") return start_hangs_ = true;
   if (first == "answer") {
     answered_ = frame_now + 1;

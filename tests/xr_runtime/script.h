@@ -25,6 +25,7 @@ struct Place {
 ///   30 end                           it ends after this frame at once: no frame between its focus and its end
 ///   30 busy                          it still reads its images in this frame: they are not free to be written
 ///   30 hang                          xrWaitFrame of this frame does not come back before a line "answer" is read
+///   keep-takes 2                     seconds that pass before the files of a kept frame are written
 ///   start-hangs                      xrCreateInstance does not, either
 ///   30 recentre                      the room has another origin from this frame on, as the program is told
 ///
@@ -49,6 +50,7 @@ class Script {
 
   int width = 320, height = 360;
   double rate_hz = 90.0;
+  double keep_takes_s = 0.0;
 
  private:
   [[nodiscard]] bool understand(const std::string& line, long frame_now);

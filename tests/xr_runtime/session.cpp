@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/xr_runtime/runtime.h"
+#include "tests/xr_runtime/keeper.h"
 
 namespace fettle::tests::xr {
 
@@ -63,6 +63,7 @@ XRAPI_ATTR XrResult XRAPI_CALL createSession(XrInstance, const XrSessionCreateIn
 
 XRAPI_ATTR XrResult XRAPI_CALL destroySession(XrSession) {
   Runtime& r = runtime();
+  keeper().finish();
   const std::lock_guard lock(r.mutex);
   if (!r.session) return XR_ERROR_HANDLE_INVALID;
   // Its children go with it.

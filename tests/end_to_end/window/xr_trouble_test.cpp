@@ -90,6 +90,28 @@ TEST_F(XrTrouble, a_stroke_of_a_controller_ends_where_its_runtime_does_not_answe
   stage.expectSilence();
 }
 
+TEST_F(XrTrouble, hands_that_hold_the_field_let_go_of_it_where_frames_stay_away) {
+  const auto program = startIn();
+  User user(display, *program, "xr held without an answer");
+  stage.act(over("left", -0.1, 0.95) + over("right", 0.1, 0.95) + set("left squeeze", 1, 3) +
+            set("right squeeze", 1, 3) + over("left", -0.1, 0.95, kTableZ_m, 5) +
+            over("right", 0.1, 0.95, kTableZ_m, 5) + over("left", -0.15, 0.95, kTableZ_m, 15) +
+            over("right", 0.15, 0.95, kTableZ_m, 15));
+  const double giant = program->now()["room"]["mm"];
+  const State held = program->until("larger by a half", [&](const State& s) {
+    return std::abs(s["room"]["mm"].get<double>() / giant - 1.5) < 0.01;
+  });
+  stage.act("+1 hang\n");
+  (void)program->until("it stands", [](const State& s) { return s["headset"] == "stands"; });
+  // Elsewhere when the frames come again: nothing jumps there.
+  stage.act(over("left", -0.3, 0.95) + over("right", 0.3, 0.95) + "answer\n");
+  (void)program->until("it goes on", [](const State& s) { return s["headset"] == "shown"; });
+  (void)keep(10);
+  EXPECT_EQ(program->now()["room"]["mm"], held["room"]["mm"]);
+  (void)quit(user);
+  stage.expectSilence();
+}
+
 TEST_F(XrTrouble, a_runtime_that_never_answers_does_not_keep_the_program) {
   const auto program = startIn();
   User user(display, *program, "xr never answers");

@@ -315,6 +315,15 @@ TEST(Headset, frames_whose_images_are_not_free_have_no_picture_and_the_next_ones
   stage.expectSilence();
 }
 
+// A program takes frames that stay away for a runtime that has stopped to make them.
+TEST(Headset, the_test_runtime_makes_frames_while_it_writes_pictures) {
+  const XrStage stage(std::string(kBefore) + "keep-takes 2\n10 keep\n11 recentre\n12 stop\n");
+  stage.set();
+  EXPECT_TRUE(show(wall(), Stereo::Passes::kBest).ended);
+  EXPECT_LT(stage.log().find("room moved"), stage.log().find("frame 10 projection")) << stage.log();
+  EXPECT_TRUE(readPng(stage.file("frame10.left.png"))) << "it is there at the end";
+}
+
 TEST(Headset, a_panel_hangs_in_the_room_with_its_own_picture) {
   const XrStage stage(std::string(kBefore) + "10 keep\n12 stop\n");
   stage.set();
