@@ -56,10 +56,15 @@ VendorLibrary::VendorLibrary(const LibraryPlaces& places) : places_(places) {
   const char* const named = std::getenv(std::string(places.environment).c_str());
   if (named != nullptr && *named != '\0') {
     std::error_code error;
-    const std::string path =
-        std::filesystem::is_directory(named, error) ? fmt::format("{}/{}", named, file) : named;
-    looked_.push_back(fmt::format("{} ({})", path, places.environment));
-    tryFile(path);
+    if (std::filesystem::is_directory(named, error)) {
+      // Where the maker's archive was unpacked.
+      looked_.push_back(fmt::format("{} in {} and the folders in it ({})", file, named, places.environment));
+      bool found = false;
+      for (const std::string& path : filesBelow(named, places.file)) found = found || tryFile(path);
+    } else {
+      looked_.push_back(fmt::format("{} ({})", named, places.environment));
+      tryFile(named);
+    }
   } else {
     looked_.push_back(fmt::format("{} in LD_LIBRARY_PATH and the system's folders", file));
     bool found = tryFile(file);
@@ -99,7 +104,7 @@ bool VendorLibrary::tryFile(const std::string& path) {
 std::string VendorLibrary::remedy() const {
   if (handle_ != nullptr)
     return fmt::format("install a current version of {}; {} was loaded", places_.package, path_);
-  return fmt::format("install {}, or name its file with {}; looked for {}", places_.package,
+  return fmt::format("install {}, or name its file or folder with {}; looked for {}", places_.package,
                      places_.environment, fmt::join(looked_, ", "));
 }
 

@@ -1,6 +1,7 @@
 // fettle devices, and the refusals of fettle record that need no session.
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -62,6 +63,23 @@ TEST(LiveDevices, MissingSoftwareOfMakersSaysWhatToInstallAndWhereItWasLookedFor
     EXPECT_EQ(makers[i]["state"], states[i]);
     EXPECT_NE(makers[i]["remedy"].get<std::string>().find(places[i]), std::string::npos) << makers[i];
   }
+}
+
+TEST(LiveDevices, ALibraryIsFoundInTheFolderWhereItsArchiveWasUnpacked) {
+  const TempFolder folder;
+  // What the program is started with names folders here.
+  const std::filesystem::path touch = folder.file("libHD.so"), omega = folder.file("libdhd.so");
+  std::filesystem::create_directories(touch);
+  std::filesystem::create_directories(omega / "lib" / "release");
+  std::filesystem::create_symlink(FETTLE_FAKE_DHD, omega / "lib" / "release" / "libdhd.so.3.17.6");
+  LiveProgram program({"devices", "--json"}, folder.path().string());
+  EXPECT_EQ(program.wait(), 0) << program.err();
+  const nlohmann::json makers = program.report()["makers"];
+  EXPECT_EQ(makers[1]["state"], "ready") << makers[1];
+  EXPECT_NE(makers[0]["remedy"].get<std::string>().find("libHD.so in " + touch.string() +
+                                                        " and the folders in it (FETTLE_LIBHD)"),
+            std::string::npos)
+      << makers[0];
 }
 
 TEST(LiveDevices, ALibraryThatIsNoneSaysTheLoadersWords) {
