@@ -87,7 +87,8 @@ engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& j
   if (spec.scope == engine::FilterScope::kOnlyMarks && at.field.reader().root().marked_children == 0)
     warn(fmt::format("{}: step {} filters marked samples only, and none is marked", shownInput(at.task.in),
                      at.step()));
-  const auto ready = engine::withMeasuredRange(spec, at.field, job);
+  const auto ready =
+      engine::withMeasuredRange(spec, step.noise_of == NoiseOf::kOriginal ? at.original : at.field, job);
   if (!ready) return tl::unexpected(ready.error());
   const std::string out = keptOutOf(at.task.out, at.step());
   auto kept = openKeptWork(at.options.resume, out, at.field, at.original, *ready, "");
@@ -167,6 +168,19 @@ engine::Status take(const RecipeFill& step, Applied& at, engine::JobControl& job
   return {};
 }
 
+engine::Status take(const RecipeRemove& step, Applied& at, engine::JobControl& job) {
+  const auto options = removeOptionsOf(step.what, at.field.grid());
+  if (!options) return tl::unexpected(options.error());
+  auto removed = engine::removeSamples(at.field, *options, job);
+  if (!removed && removed.error().kind == engine::ErrorKind::kInput)
+    return engine::inputError(removed.error().what, shownInput(at.task.in), removed.error().remedy);
+  if (!removed) return tl::unexpected(removed.error());
+  at.field = std::move(removed->field);
+  at.steps.push_back(
+      {{"do", "remove"}, {"removed", removed->counts.removed}, {"spared", removed->counts.spared}});
+  return {};
+}
+
 engine::Status take(const RecipeTransform& step, Applied& at, engine::JobControl& job) {
   const bool shared = at.original == at.field;
   auto field = transformed(at.field, step.what, job);
@@ -227,7 +241,8 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       spec.threads = options.threads;
       spec.scope = engine::FilterScope::kKeepMarks;  // marks of an earlier step are not there yet
       if (filter->range_sigma) spec.range_sigma = filter->range_sigma->in(field.grid());
-      const auto ready = engine::withMeasuredRange(spec, field, job);
+      const auto ready =
+          engine::withMeasuredRange(spec, filter->noise_of == NoiseOf::kOriginal ? original : field, job);
       // As in foresee(): the step says it itself.
       if (!ready && !options.estimate && ready.error().kind == engine::ErrorKind::kInput) return Foreseen{};
       if (!ready) return tl::unexpected(ready.error());
@@ -252,6 +267,10 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       const auto fill = fillOptionsOf(filling->what, grid);
       if (!fill) return tl::unexpected(fill.error());
       steps.emplace_back(plannedFill(field, *fill));
+    } else if (const auto* removing = std::get_if<RecipeRemove>(&step)) {
+      const auto remove = removeOptionsOf(removing->what, grid);
+      if (!remove) return tl::unexpected(remove.error());
+      steps.emplace_back(plannedRemove(field, *remove));
     } else if (const auto* moving = std::get_if<RecipeTransform>(&step)) {
       const auto made = transformedGrid(grid, moving->what);
       if (!made && !options.estimate) return Foreseen{};

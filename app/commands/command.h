@@ -66,6 +66,7 @@ void addSynth(Command root, Chosen& chosen);
 void addFilter(Command root, Chosen& chosen);
 void addLevel(Command root, Chosen& chosen);
 void addFill(Command root, Chosen& chosen);
+void addRemove(Command root, Chosen& chosen);
 void addTransform(Command root, Chosen& chosen);
 void addMeasure(Command root, Chosen& chosen);
 void addAlign(Command root, Chosen& chosen);

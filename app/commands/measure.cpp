@@ -60,12 +60,11 @@ engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& ty
                                               const engine::Grid& grid) {
   std::vector<double> heights;
   for (const std::string& text : typed) {
-    const bool below = text.starts_with('-');
-    const auto height = parseHeight(below ? text.substr(1) : text, grid, "--at-height");
+    const auto height = parseSignedHeight(text, grid, "--at-height");
     if (!height)
       return engine::inputError(height.error().what, "--at-height",
                                 "give numbers about the mean, below it with -, such as 0,-0.5um");
-    heights.push_back(below ? -*height : *height);
+    heights.push_back(*height);
   }
   return heights;
 }

@@ -28,11 +28,13 @@ namespace {
 
 constexpr int kRecipeVersion = 1;
 constexpr const char* kFilterWord = "filter";
+constexpr const char* kOriginalWord = "original";
 constexpr const char* kEdgesWord = "mark_edges";
 constexpr const char* kLinesWord = "locate_edges";
 constexpr const char* kInvertWord = "invert";
 constexpr const char* kLevelWord = "level";
 constexpr const char* kFillWord = "fill";
+constexpr const char* kRemoveWord = "remove";
 constexpr const char* kTransformWord = "transform";
 constexpr const char* kFormWord = "form";
 constexpr std::string_view kLeftOut = "# Left out: ";
@@ -46,13 +48,13 @@ class StepReader {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   [[nodiscard]] RecipeStep read() {
-    const std::string what = word(
-        "do",
-        {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord, kTransformWord, kFormWord},
-        "");
+    const std::string what = word("do",
+                                  {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord,
+                                   kRemoveWord, kTransformWord, kFormWord},
+                                  "");
     if (what == kFilterWord) {
-      onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change",
-                      "cutoff", "radius", "element"});
+      onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "noise_of",
+                      "max_change", "cutoff", "radius", "element"});
       return filter();
     }
     if (what == kEdgesWord || what == kLinesWord) {
@@ -66,6 +68,10 @@ class StepReader {
     if (what == kFillWord) {
       onlyKeys(what, {"do", "method", "max_extent", "max_area", "border"});
       return fill();
+    }
+    if (what == kRemoveWord) {
+      onlyKeys(what, {"do", "below", "above", "between", "region"});
+      return remove();
     }
     if (what == kTransformWord) {
       onlyKeys(what, {"do", "crop", "crop_samples", "mirror", "turn", "angle", "to_spacing", "method"});
@@ -153,9 +159,9 @@ class StepReader {
     return std::nullopt;
   }
 
-  // A length across the field as it is typed on a command line, which reads it in the unit of the scan.
-  std::string typedLength(const std::string& key, const toml::node& node) {
-    const std::optional<RecipeLength> read = lengthOf(key, node, 1e-15);
+  // A length as it is typed on a command line, which reads it in the unit of the scan.
+  std::string typedLength(const std::string& key, const toml::node& node, double least = 1e-15) {
+    const std::optional<RecipeLength> read = lengthOf(key, node, least);
     return read ? fmt::format("{}{}", read->value, read->unit ? read->unit->name : "") : std::string();
   }
 
@@ -206,6 +212,13 @@ class StepReader {
     step.spec.element = static_cast<engine::Element>(std::ranges::find(elements, element) - elements.begin());
     length("range_sigma", step.range_sigma, engine::FilterSpec::kLeastRange);
     length("max_change", step.max_change, 0.0);
+    if (const toml::node* node = table_.get("noise_of")) {
+      if (word("noise_of", {"field", kOriginalWord}, "field") == kOriginalWord)
+        step.noise_of = NoiseOf::kOriginal;
+      if (step.range_sigma || !engine::hasRange(step.spec.kind))
+        complain(*node, step.range_sigma ? "range_sigma says already what noise is"
+                                         : fmt::format("{} has no range", name));
+    }
     engine::FilterSpec ranged = step.spec;
     if (engine::hasRange(step.spec.kind) || step.range_sigma) ranged.range_sigma = 1.0;
     if (const auto valid = engine::validate(ranged); !valid) {
@@ -269,6 +282,28 @@ class StepReader {
       step.what.most_extent = typedLength("max_extent", *node);
     number("max_area", step.what.most_area, 1e-15, 1e15);
     yesOrNo("border", step.what.at_border);
+    return step;
+  }
+
+  RecipeRemove remove() {
+    RecipeRemove step;
+    RemoveArguments& what = step.what;
+    constexpr double kAnySign = -1e30;
+    if (const toml::node* node = table_.get("below")) what.below = typedLength("below", *node, kAnySign);
+    if (const toml::node* node = table_.get("above")) what.above = typedLength("above", *node, kAnySign);
+    if (const toml::node* node = table_.get("between")) {
+      const toml::array* list = node->as_array();
+      if (list == nullptr || list->size() != 2)
+        complain(*node, "between is not a list of two heights");
+      else
+        for (std::size_t k = 0; k < 2; ++k)
+          what.between.push_back(typedLength("between", *list->get(k), kAnySign));
+    }
+    if (table_.contains("region")) what.region = word("region", {"unmarked", "marked", "all"}, "");
+    if (!problem_.empty()) return step;
+    // In millimetres, since the unit of each scan is not known: what may not come together is known without.
+    if (const auto valid = removeOptionsOf(what, engine::Grid{}); !valid)
+      complain(table_, valid.error().what);
     return step;
   }
 
@@ -336,7 +371,10 @@ std::string textOf(const RecipeFilter& step) {
   if (step.range_sigma)
     text += fmt::format("range_sigma = {}\n", textOf(*step.range_sigma));
   else if (filter.range_sigma.exists())
-    text += "# range_sigma: from the noise of each scan\n";
+    text += step.noise_of == NoiseOf::kOriginal
+                ? fmt::format("noise_of = \"{}\"  # range_sigma: from the noise of each scan as it was\n",
+                              kOriginalWord)
+                : "# range_sigma: from the noise of each scan\n";
   if (step.spec.scope == engine::FilterScope::kOnlyMarks) text += "marks = \"only\"\n";
   if (step.max_change) text += fmt::format("max_change = {}\n", textOf(*step.max_change));
   return text;
@@ -369,6 +407,17 @@ std::string textOf(const RecipeFill& step) {
     text += fmt::format("max_extent = {}\n", shownLength(step.what.most_extent));
   if (step.what.most_area > 0.0) text += fmt::format("max_area = {}  # mm^2\n", step.what.most_area);
   if (step.what.at_border) text += "border = true\n";
+  return text;
+}
+
+std::string textOf(const RecipeRemove& step) {
+  const RemoveArguments& what = step.what;
+  std::string text = fmt::format("do = \"{}\"\n", kRemoveWord);
+  if (!what.below.empty()) text += fmt::format("below = {}\n", shownLength(what.below));
+  if (!what.above.empty()) text += fmt::format("above = {}\n", shownLength(what.above));
+  if (what.between.size() == 2)
+    text += fmt::format("between = [{}, {}]\n", shownLength(what.between[0]), shownLength(what.between[1]));
+  if (!what.region.empty()) text += fmt::format("region = \"{}\"\n", what.region);
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include "app/commands/filling.h"
 #include "app/commands/form_option.h"
 #include "app/commands/levelling.h"
+#include "app/commands/removing.h"
 #include "app/commands/transforming.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -29,11 +30,18 @@ struct RecipeLength {
   [[nodiscard]] double in(const engine::Grid& grid) const noexcept;  ///< [height_unit]
 };
 
+/// Whose noise gives a range that is not given.
+enum class NoiseOf : std::uint8_t {
+  kField,     ///< as the step finds it
+  kOriginal,  ///< the scan that changes are limited from: as the window has it, also after other filters
+};
+
 /// A filter over the whole field.
 struct RecipeFilter {
   engine::FilterSpec spec;                  ///< without lengths, which are set when the scan is known
   std::optional<RecipeLength> range_sigma;  ///< above 0; none: from the noise of each scan
-  std::optional<RecipeLength> max_change;   ///< at least 0; none: no limit
+  NoiseOf noise_of = NoiseOf::kField;
+  std::optional<RecipeLength> max_change;  ///< at least 0; none: no limit
 };
 
 /// What the suggested edges become.
@@ -62,6 +70,11 @@ struct RecipeFill {
   FillArguments what;
 };
 
+/// Samples become holes, as `fettle remove` does.
+struct RecipeRemove {
+  RemoveArguments what;
+};
+
 /// Crop, mirror, turn and resample, as `fettle transform` does.
 struct RecipeTransform {
   TransformArguments what;
@@ -74,7 +87,7 @@ struct RecipeForm {
 };
 
 using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel, RecipeFill,
-                                RecipeTransform, RecipeForm>;
+                                RecipeRemove, RecipeTransform, RecipeForm>;
 
 struct Recipe {
   std::vector<RecipeStep> steps;

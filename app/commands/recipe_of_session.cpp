@@ -123,6 +123,34 @@ RecipeFill recipeFillOf(const engine::FillOptions& fill) {
   return step;
 }
 
+// Heights with the unit of the scan, where a recipe can read that.
+RecipeRemove recipeRemoveOf(const engine::RemoveOptions& remove, const engine::Grid& grid) {
+  const auto typed = [&](double height) {
+    if (!std::isfinite(height)) return std::string();
+    const RecipeLength length = recipeLength(height, grid);
+    return fmt::format("{}{}", length.value, length.unit ? length.unit->name : "");
+  };
+  RecipeRemove step;
+  const std::string low = typed(remove.low), high = typed(remove.high);
+  if (remove.heights == engine::RemoveOptions::Heights::kOutside) {
+    step.what.below = low;
+    step.what.above = high;
+  } else if (!low.empty() && !high.empty()) {
+    step.what.between = {low, high};
+  }
+  step.what.region = engine::wordOf(remove.region);
+  return step;
+}
+
+// Whether the steps so far leave a field upside down: the journal has heights of the upright one.
+bool isTurned(const Recipe& recipe) {
+  return std::ranges::count_if(
+             recipe.steps,
+             [](const RecipeStep& step) { return std::holds_alternative<RecipeInvert>(step); }) %
+             2 !=
+         0;
+}
+
 using Reason = tl::unexpected<const char*>;
 
 // The steps of the form over the field, as they follow each other.
@@ -207,6 +235,12 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
     } else if (entry != made.end() && entry->second.step.maker) {
       if (const auto* fill = std::get_if<engine::FillOptions>(&*entry->second.step.maker))
         recipe.steps.emplace_back(recipeFillOf(*fill));
+      else if (const auto* remove = std::get_if<engine::RemoveOptions>(&*entry->second.step.maker);
+               remove != nullptr && remove->region != engine::Region::kMarked)
+        recipe.steps.emplace_back(recipeRemoveOf(isTurned(recipe) ? engine::upsideDown(*remove) : *remove,
+                                                 history.current().grid()));
+      else if (remove != nullptr)
+        leave("which samples were marked belongs to this scan");
       else
         leave("a recipe levels lines together with a form: fettle level --rows");
     } else if (info.kind != engine::StepKind::kFilter) {
@@ -222,11 +256,20 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
         of_noise.range_sigma = 0.0;
         const auto before = engine::SeenField::of(history.state(k - 1), job);
         if (!before) return tl::unexpected(before.error());
-        const auto measured = engine::withMeasuredRange(of_noise, before->seen(), job);
-        if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
-          return tl::unexpected(measured.error());
-        if (!measured || measured->range_sigma != step.spec.range_sigma)
-          step.range_sigma = length(step.spec.range_sigma);
+        // Of the field before the step, as all were before the window took that of the scan; else of the scan, under the form of the step.
+        auto scan = engine::seenLike(session.original, before->seen(), job);
+        if (!scan) return tl::unexpected(scan.error());
+        bool found = false;
+        for (const NoiseOf of : {NoiseOf::kField, NoiseOf::kOriginal}) {
+          const auto measured =
+              engine::withMeasuredRange(of_noise, of == NoiseOf::kField ? before->seen() : *scan, job);
+          if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
+            return tl::unexpected(measured.error());
+          found = measured && measured->range_sigma == step.spec.range_sigma;
+          step.noise_of = found ? of : NoiseOf::kField;
+          if (found) break;
+        }
+        if (!found) step.range_sigma = length(step.spec.range_sigma);
         step.spec.range_sigma = 0.0;
       }
       if (step.spec.max_change) step.max_change = length(*step.spec.max_change);

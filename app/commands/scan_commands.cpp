@@ -8,6 +8,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addFilter(root, chosen);
   addLevel(root, chosen);
   addFill(root, chosen);
+  addRemove(root, chosen);
   addTransform(root, chosen);
   addMeasure(root, chosen);
   addSection(root, chosen);

@@ -31,6 +31,14 @@ engine::Result<double> parseHeight(const std::string& text, const engine::Grid& 
   return value * unit->mm / grid.height_unit.mm;
 }
 
+engine::Result<double> parseSignedHeight(const std::string& text, const engine::Grid& grid,
+                                         const std::string& option) {
+  const bool below = text.starts_with('-');
+  const auto height = parseHeight(below ? text.substr(1) : text, grid, option);
+  if (!height) return tl::unexpected(height.error());
+  return below ? -*height : *height;
+}
+
 std::string seedProblem(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

@@ -16,6 +16,10 @@ namespace fettle::app {
 [[nodiscard]] engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
                                                  const std::string& option);
 
+/// The same with a sign: "-0.5mm". Errors: as above, without "negative".
+[[nodiscard]] engine::Result<double> parseSignedHeight(const std::string& text, const engine::Grid& grid,
+                                                       const std::string& option);
+
 /// Allowed sides of a size, both ends included.
 struct SideRange {
   int smallest;

@@ -33,6 +33,16 @@ engine::Result<ComputedHeights> made(const engine::Version& before, const engine
   return result;
 }
 
+engine::Result<ComputedHeights> made(const engine::Version& before, const engine::RemoveOptions& options,
+                                     engine::JobControl& job) {
+  auto removed = engine::removeSamples(before, options, job);
+  if (!removed) return tl::unexpected(removed.error());
+  ComputedHeights result;
+  result.field = std::move(removed->field);
+  result.removed = removed->counts;
+  return result;
+}
+
 struct Showing {
   engine::Status operator()(const engine::FillOptions& options) const {
     return engine::showFilled(before, options, view, show, job);
@@ -40,6 +50,7 @@ struct Showing {
   engine::Status operator()(const engine::LineOptions& options) const {
     return engine::showLevelled(before, options, view, show, job);
   }
+  engine::Status operator()(const engine::RemoveOptions&) const { return {}; }
   const engine::Version& before;
   const engine::FieldView& view;
   const engine::ShowEarly& show;

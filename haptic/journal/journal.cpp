@@ -103,6 +103,7 @@ std::optional<journal::FormFitted> fittedOf(const json& in) {
 constexpr std::array<std::string_view, 2> kFillMethods = {"membrane", "curvature"};
 constexpr std::array<std::string_view, 4> kLineMethods = {"median", "polynomial", "difference", "matching"};
 constexpr std::array<std::string_view, 2> kScanAxes = {"x", "y"};
+constexpr std::array<std::string_view, 2> kRemovedHeights = {"between", "outside"};
 constexpr std::array<std::string_view, 3> kRegions = {"all", "marked", "unmarked"};
 
 // Limits that are infinite are left out.
@@ -120,6 +121,14 @@ json jsonOf(const engine::LineOptions& lines) {
           {"robust", lines.robust}};
 }
 
+json jsonOf(const engine::RemoveOptions& remove) {
+  json out = {{"remove", kRemovedHeights[static_cast<std::size_t>(remove.heights)]},
+              {"region", engine::wordOf(remove.region)}};
+  if (std::isfinite(remove.low)) out["low"] = remove.low;
+  if (std::isfinite(remove.high)) out["high"] = remove.high;
+  return out;
+}
+
 HeightsMaker makerOf(const json& in) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   if (in.contains("fill"))
@@ -127,6 +136,12 @@ HeightsMaker makerOf(const json& in) {
                                .most_extent_mm = in.value("most_extent_mm", kAny),
                                .most_area_mm2 = in.value("most_area_mm2", kAny),
                                .at_border = in.at("border").get<bool>()};
+  if (in.contains("remove"))
+    return engine::RemoveOptions{
+        .heights = static_cast<engine::RemoveOptions::Heights>(wordOf(in.at("remove"), kRemovedHeights)),
+        .low = in.value("low", -kAny),
+        .high = in.value("high", kAny),
+        .region = static_cast<engine::Region>(wordOf(in.at("region"), kRegions))};
   return engine::LineOptions{.method = static_cast<engine::LineMethod>(wordOf(in.at("lines"), kLineMethods)),
                              .degree = in.at("degree").get<int>(),
                              .axis = static_cast<engine::ScanAxis>(wordOf(in.at("axis"), kScanAxes)),

@@ -582,6 +582,16 @@ SHOWN = {
         585
         """,
     ),
+    "remove": (
+        "Field: rows x columns as before, with NaN in place of what is removed. `report` counts it.",
+        """
+        >>> heights = np.arange(12.0).reshape(3, 4)
+        >>> f = Field(heights, spacing=0.1, unit="mm")
+        >>> part = f.remove(below=3, above="10mm")
+        >>> part.holes, part.report["removed"]
+        (4, 4)
+        """,
+    ),
     "transformed": (
         "Field: of another shape; `report` has its size in samples and its spacing and origin, in `unit`.",
         """

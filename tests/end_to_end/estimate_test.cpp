@@ -121,6 +121,7 @@ TEST(Estimate, OfTransformsAndFillsForeseesTheDiskOfTheResult) {
       {"transform", in, folder.file("o.ply"), "--to-spacing", "0.06,0.09"},
       {"transform", in, folder.file("o.fettle"), "--angle", "-7"},
       {"fill", in, folder.file("o.tif")},
+      {"remove", in, folder.file("o.tif"), "--below", "0"},
       {"apply", recipe, in, folder.file("o.tif")}};
   for (std::vector<std::string> command : commands) {
     const std::string out = command[0] == "apply" ? command[3] : command[2];

@@ -96,6 +96,7 @@ TEST(HardCases, EveryFigureIsANumberOrADash) {
              {"level", path, out, "--form", "poly5"},
              {"level", path, out, "--rows", "matching", "--form", "none"},
              {"fill", path, out, "--border"},
+             {"remove", path, out, "--between=-1,0.5"},
              {"fit", path, "--csv", csv},
              {"fit", path, "--shape", "cylinder", "--robust", "--csv", csv},
              {"align", path, path, out, "--csv", csv},

@@ -70,6 +70,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid", "--s-filter", "3", "--l-filter", "20"});
   run({"fill", scan, file("full.fettle"), "--border"});
+  run({"remove", scan, file("fewer.tif"), "--below", "0"});
   run({"info", file("full.fettle")});
   run({"measure", file("full.fettle"), "--only", "hybrid", "--region", "measured"});
   run({"transform", scan, file("turned.tif"), "--turn", "90", "--crop", "0,0,9,9"});

@@ -100,7 +100,7 @@ class Tables(unittest.TestCase):
 
     def test_a_method_has_an_example_and_says_what_it_returns(self):
         for function in FUNCTIONS:
-            if function._command.table["name"] in ("level", "fill", "transform", "measure", "section", "align"):
+            if function._command.table["name"] in ("level", "fill", "remove", "transform", "measure", "section", "align"):
                 self.assertIn(">>> ", function.__doc__, function.__name__)
                 self.assertNotIn("what the command prints", function.__doc__, function.__name__)
 

@@ -158,6 +158,7 @@ class Hashes(unittest.TestCase):
             ("level", {"form": "poly3", "robust": True}),
             ("level", {"rows": "median", "scan_axis": "y"}),
             ("fill", {}),
+            ("remove", {"between": ("0mm", "1mm")}),
             ("fill", {"method": "membrane", "max_extent": "20mm"}),
             ("transform", {"crop": (3, 2, 60, 70)}),
             ("transform", {"crop_samples": (1, 2, 90, 80), "mirror": "x"}),

@@ -53,6 +53,16 @@ class Work {
     ASSERT_TRUE(session_.history.push(info, after));
     note(haptic::journal::StepMade{session_.history.number(), name, kind, {}, false, false, suggested});
   }
+  // As LoopClient::changeHeights() makes it; what becomes of the heights is no matter here.
+  void made(const std::string& name, const haptic::HeightsMaker& maker) {
+    engine::StepInfo info;
+    info.name = name;
+    info.kind = StepKind::kFilter;
+    ASSERT_TRUE(session_.history.push(info, field().inverted()));
+    haptic::journal::StepMade step{session_.history.number(), name, StepKind::kFilter, {}};
+    step.maker = maker;
+    note(step);
+  }
   // As LoopClient::changeForm() makes it: under a form, or under none.
   void form(const std::string& name, const engine::Version& after,
             std::optional<haptic::journal::FormFitted> fitted = {}, bool heights = false) {
@@ -160,6 +170,47 @@ TEST(Recipe, ARangeThatIsTheNoisesIsLeftToTheNoiseOfEachScan) {
   EXPECT_FALSE(std::get<RecipeFilter>(recipe.steps.at(0)).range_sigma);
   ASSERT_TRUE(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma);
   EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma->value, 0.0625);
+}
+
+// As the window takes it after other filters.
+TEST(Recipe, ARangeThatIsOfTheNoiseOfTheScanIsLeftToThatOfEachScan) {
+  Work work(scan());
+  engine::JobControl job;
+  const auto ready = engine::withMeasuredRange(specOf(FilterKind::kTotalVariation, 31), work.field(), job);
+  work.filter(specOf(FilterKind::kGaussian, 5), "Gaussian");
+  work.filter(*ready, "TV");
+  work.filter(*engine::withMeasuredRange(specOf(FilterKind::kTotalVariation, 31), work.field(), job), "TV");
+  const std::string text = recipeText(work.recipe());
+  const auto read = parseRecipe(text, "recipe");
+  ASSERT_TRUE(read) << read.error().line() << text;
+  const auto& of_scan = std::get<RecipeFilter>(read->steps.at(1));
+  const auto& of_field = std::get<RecipeFilter>(read->steps.at(2));
+  EXPECT_FALSE(of_scan.range_sigma);
+  EXPECT_EQ(of_scan.noise_of, NoiseOf::kOriginal);
+  EXPECT_FALSE(of_field.range_sigma);
+  EXPECT_EQ(of_field.noise_of, NoiseOf::kField);
+  const std::string step = "recipe = 1\n[[step]]\ndo = \"filter\"\nnoise_of = \"original\"\n";
+  EXPECT_TRUE(parseRecipe(step + "filter = \"planes\"\n", "r"));
+  EXPECT_FALSE(parseRecipe(step + "filter = \"box\"\n", "r"));
+  EXPECT_FALSE(parseRecipe(step + "filter = \"planes\"\nrange_sigma = \"20um\"\n", "r"));
+}
+
+TEST(Recipe, HasRemovedSamplesButNotThoseOfMarks) {
+  Work work(scan());
+  const engine::RemoveOptions below{.heights = engine::RemoveOptions::Heights::kOutside, .low = 0.1 + 0.2};
+  const engine::RemoveOptions between{.low = -1.0, .high = 0.5, .region = engine::Region::kAll};
+  work.made("Remove", below);
+  work.made("Remove", between);
+  work.made("Remove", engine::RemoveOptions{.region = engine::Region::kMarked});
+  const Recipe recipe = work.recipe();
+  ASSERT_EQ(recipe.steps.size(), 2U);
+  EXPECT_EQ(recipe.left_out,
+            std::vector<std::string>{"step 3, Remove: which samples were marked belongs to this scan"});
+  const auto read = parseRecipe(recipeText(recipe), "recipe");
+  ASSERT_TRUE(read) << read.error().line();
+  const engine::Grid& grid = work.field().grid();
+  EXPECT_EQ(*removeOptionsOf(std::get<RecipeRemove>(read->steps.at(0)).what, grid), below);
+  EXPECT_EQ(*removeOptionsOf(std::get<RecipeRemove>(read->steps.at(1)).what, grid), between);
 }
 
 TEST(Recipe, AFilterOfACommandIsLeftOutSinceNoSessionStoresItsNumbers) {

@@ -148,6 +148,9 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   filled.maker = fill;
   levelled.maker = engine::LineOptions{engine::LineMethod::kPolynomial, 2, engine::ScanAxis::kY,
                                        engine::Region::kUnmarked, true};
+  haptic::journal::StepMade removed{12, "Remove samples", engine::StepKind::kFilter, there};
+  removed.maker = engine::RemoveOptions{engine::RemoveOptions::Heights::kOutside, -1.0 / 3.0,
+                                        std::numeric_limits<double>::infinity(), engine::Region::kMarked};
   const std::vector<haptic::journal::Entry> all = {
       haptic::journal::Begin{3, anyScene(random)},
       haptic::journal::Ticks{17},
@@ -170,6 +173,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::StepMade{10, "Heights", engine::StepKind::kForm, there, false, false, {}, false, true},
       filled,
       levelled,
+      removed,
       haptic::journal::FilterBegun{2, edge_preserving},
       haptic::journal::FilterBegun{3, rolling},
   };
@@ -215,6 +219,14 @@ TEST(JournalText, OfComputedHeightsHasTheirNumbers) {
   EXPECT_EQ(read.kind, engine::StepKind::kFilter);
   EXPECT_FALSE(haptic::journalEntry(
       R"({"do":"computed","state":4,"name":"x","tick":1,"by":{"fill":"glue","border":false}})"));
+  EXPECT_FALSE(haptic::journalEntry(
+      R"({"do":"computed","state":4,"name":"x","tick":1,"by":{"remove":"everything","region":"all"}})"));
+  const engine::RemoveOptions remove{engine::RemoveOptions::Heights::kBetween, -0.1, 0.7,
+                                     engine::Region::kAll};
+  step.maker = remove;
+  const auto again = haptic::journalEntry(haptic::journalText(step));
+  ASSERT_TRUE(again) << again.error().line();
+  EXPECT_EQ(std::get<engine::RemoveOptions>(*std::get<haptic::journal::StepMade>(*again).maker), remove);
   EXPECT_FALSE(haptic::journalEntry(R"({"do":"computed","state":4,"name":"x","tick":1})"));
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/work/work_estimate.h"
+#include "engine/base/error.h"
+#include "engine/field/grid.h"
+#include "engine/field/version.h"
+#include "engine/remove/remove.h"
+
+namespace fettle::app {
+
+/// Which samples `fettle remove` and the step "remove" of a recipe make holes of. Heights as typed, with a sign; empty: none.
+struct RemoveArguments {
+  std::string below, above;
+  std::vector<std::string> between;  ///< two, or none
+  std::string region;                ///< of engine::regionNamed; empty: unmarked
+};
+
+/// Errors (kInput): nothing that chooses, heights that exclude each other or are none, limits that are no interval.
+[[nodiscard]] engine::Result<engine::RemoveOptions> removeOptionsOf(const RemoveArguments& arguments,
+                                                                    const engine::Grid& grid);
+
+/// The work for an estimate. The field lives as long as what is returned.
+[[nodiscard]] PlannedOnPieces plannedRemove(const engine::Version& field,
+                                            const engine::RemoveOptions& options);
+
+}  // namespace fettle::app
