@@ -383,6 +383,20 @@ template <void (HeightTool::*make)()>
 void computeHeights(Parts& p) {
   (p.heights.*make)();
 }
+// A step of its own, whatever the panel says: it is asked for by name, and undo brings heights and marks back.
+inline void removeMarked(Parts& p) {
+  if (clientOf(p).newest().reader().root().marked_children == 0)
+    p.feedback.notices.push_back(
+        {"nothing is marked that could be removed", "mark with a box (B) or the brush (M) first"});
+  else
+    p.heights.removeMarked();
+}
+inline void openRemoval(Parts& p) {
+  p.settings.side_panel = true;
+  p.settings.panels["Remove samples"] = true;
+  p.enter_removal = true;
+  p.picture.requestRedraw();
+}
 template <void (SectionTool::*act)()>
 void withSection(Parts& p) {
   (p.section.*act)();

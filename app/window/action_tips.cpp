@@ -27,7 +27,8 @@ constexpr Tip kTips[] = {
      "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
     {Action::kEdges, "Shows where the scan has edges; Enter takes them as marks or edge lines."},
     {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
-    {Action::kFilterAdd, "One more filter beside the others, to compare them."},
+    {Action::kFilterAdd,
+     "Keeps what is shown and puts another beside it, which follows the fields from then on."},
     {Action::kFilterApply, "Makes the previewed filter a step, which undo takes back."},
     {Action::kFilterScope,
      "\"keep marks\": marked samples keep their heights. \"only marks\": nothing else changes."},
@@ -35,6 +36,16 @@ constexpr Tip kTips[] = {
      "No sample is farther than this from the scan afterwards. What earlier steps moved farther comes back "
      "to "
      "this limit."},
+    {Action::kRemoveOpen,
+     "Samples below, above, between or outside heights, or marked ones, become holes: no-data plateaus, the "
+     "table "
+     "around a part, dust."},
+    {Action::kRemovePreview, "Shows it beside the scan and changes nothing."},
+    {Action::kRemoveSamples,
+     "Holes in place of these samples, as a step: undo brings them back with their marks. Marked samples "
+     "stay "
+     "unless they are named."},
+    {Action::kRemoveMarked, "What is marked becomes holes, and its marks go; undo brings both back."},
     {Action::kFillPreview, "Shows it beside the scan and changes nothing."},
     {Action::kLevelPreview, "Shows it beside the scan and changes nothing."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},

@@ -130,6 +130,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   filters.finish(*document.client());
   form.clear();
   heights.clear();
+  removal.clear();
   measure.clear();
   if (auto kept = section.takeKept()) document.keepSections(*std::move(kept));
   section.reset();

@@ -32,6 +32,7 @@
 #include "app/work/height_tool.h"
 #include "app/work/measure_tool.h"
 #include "app/work/recent_files.h"
+#include "app/work/removal_count.h"
 #include "app/work/section_tool.h"
 #include "app/work/transform_tool.h"
 #include "render/plan/number_text.h"
@@ -79,6 +80,7 @@ struct Parts {
   FilterPreview filters;
   FormTool form;
   HeightTool heights;
+  RemovalCount removal;
   MeasureTool measure;
   SectionTool section;
   TransformTool transform;
@@ -95,7 +97,8 @@ struct Parts {
   std::int64_t steps_seen = 0;               ///< of showMarksMade()
   bool shows_before = false;                 ///< the scan as it was, while a key is held
   bool full_screen = false;                  ///< the picture and the status line alone, on all of the screen
-  bool enter_panels = false;                 ///< the panels get the keyboard focus with the next frame
+  bool enter_removal = false;  ///< the panel of removed samples comes into view with the next frame
+  bool enter_panels = false;   ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
   /// How a file is to be read: as the command line says, else as was said of this file before.

@@ -11,6 +11,8 @@ namespace {
 void noteHeights(Parts& p) {
   const engine::Version& original = p.document.client()->original();
   const render::ValueRange heights = render::heightSpan(original).robust;
+  // Limits of other heights mean nothing in these.
+  p.heights.remove = {.heights = engine::RemoveOptions::Heights::kOutside, .low = heights.low};
   p.colours.clear(p.settings.display);
   p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
   if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
@@ -41,11 +43,15 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   followForm(p);
   if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
   bool changed = p.filters.poll(client, notices);
+  const auto seen = [&] { return p.picture.seenPart(client.field().grid(), p.view); };
+  p.filters.follow(client, seen);
   // An adoption ends first: its result belongs to the form under which it was computed.
   if (!p.filters.applying()) {
     changed |= p.form.poll(client, notices);
     changed |= p.heights.poll(client, notices);
+    p.heights.follow(seen);
   }
+  changed |= p.removal.poll(client);
   changed |= p.measure.poll(client, notices);
   if (p.compare.poll(client, notices)) {
     p.picture.refreshRanges();

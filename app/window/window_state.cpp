@@ -156,6 +156,7 @@ void addFilters(const Parts& p, Report& r) {
   r["max_change"] = filters.spec.max_change ? Report(*filters.spec.max_change) : Report();
   r["variants"] = variants;
   r["filtering"] = filters.computing();
+  r["preview_is_behind"] = filters.isBehind();
   const engine::FilterView::Picture& so_far = filters.soFar();
   r["preview_so_far"] = so_far.field.empty() ? Report() : Report(previewState(so_far, so_far.field.grid()));
   r["suggested"] = edges.suggestion() != nullptr ? edges.suggestion()->samples : 0;
@@ -182,6 +183,8 @@ void addFilters(const Parts& p, Report& r) {
   r["heights_found"] = p.heights.found();
   const haptic::HeightsMaker* const previewed = p.heights.previewed();
   r["heights_preview"] = previewed != nullptr ? Report(makerName(*previewed)) : Report();
+  const auto& removal = p.removal.counts();
+  r["would_remove"] = removal ? Report(removal->removed) : Report();
   r["heights_so_far"] = p.heights.soFar();
   r["measuring"] = p.measure.busy();
   Report parameters = Report::object();
@@ -292,9 +295,11 @@ Report waitedFor(const Parts& p, const Input& input) {
   const LoopClient& client = *p.document.client();
   const haptic::MouseStylus* const mouse = p.document.client()->mouse();
   waits("the mouse's stylus", mouse != nullptr && mouse->busy());
-  waits("a filter", p.filters.computing() || p.filters.applying());
+  waits("a filter", p.filters.computing() || p.filters.applying() || p.filters.awaitsRest());
+  waits("the noise", p.filters.measuresNoise());
   waits("a form", p.form.busy());
-  waits("heights", p.heights.busy());
+  waits("heights", p.heights.busy() || p.heights.awaitsRest());
+  waits("a count", p.removal.busy());
   waits("a comparison", p.compare.busy());
   waits("a transform", p.transform.busy());
   waits("figures", p.measure.busy());

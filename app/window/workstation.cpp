@@ -36,9 +36,11 @@ std::string settingsPath(const char* file) {
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
-         p.saving.busy(p.document) || p.filters.computing() || p.filters.applying() || p.form.busy() ||
-         p.measure.busy() || p.section.busy() || p.heights.busy() || p.colours.busy() || p.compare.busy() ||
-         p.transform.busy() || (p.document.isOpen() && (p.picture.refining() || p.picture.smoothing()));
+         p.saving.busy(p.document) || p.filters.computing() || p.filters.awaitsRest() ||
+         p.filters.measuresNoise() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
+         p.section.busy() || p.heights.busy() || p.heights.awaitsRest() || p.removal.busy() ||
+         p.colours.busy() || p.compare.busy() || p.transform.busy() ||
+         (p.document.isOpen() && (p.picture.refining() || p.picture.smoothing()));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/filter/noise_range.h"
+
 namespace fettle::app {
 namespace {
 
@@ -22,6 +24,10 @@ bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
 }
 
 }  // namespace
+
+bool FilterPreview::Fields::operator==(const Fields& other) const {
+  return same(spec, other.spec);
+}
 
 std::string filterName(const engine::FilterSpec& spec) {
   const engine::Filter& filter = engine::filterOf(spec.kind);
@@ -52,16 +58,73 @@ void FilterPreview::compute(LoopClient& client, Keep keep, const engine::FieldVi
   // After a jump over a step that changes the form, field and original are still those under the form before.
   client.awaitRestored();
   const engine::Version original = client.scene().invert ? client.original().inverted() : client.original();
-  dropSoFar();
+  // What was seen of the values before stays until something of these is.
+  const bool stays = std::exchange(again_, std::nullopt).has_value();
+  approximating_.cancel();
+  if (!stays) so_far_ = {};
+  seen_ = follows_ = false;
+  fields_.settle({spec});
   view_ = std::make_shared<engine::FilterView>(client.field(), original, view);
   of_view_ = spec;
   begun_ = looked_ = Clock::now();
-  computing_.replace([base = client.field(), id = client.noteFilterBase(), filtering = view_,
-                      asked = spec](engine::JobControl& job) -> engine::Result<Variant> {
-    auto done = filtering->run(asked, job);
+  if (!view.tiles.empty()) paces_[spec.kind].begin(begun_, view.tiles.tiles());
+  // The same number as would be measured again.
+  engine::FilterSpec ready = spec;
+  if (const auto range = rangeOfNoise(client); range && spec.range_sigma == 0.0) ready.range_sigma = *range;
+  computing_.replace([base = client.field(), id = client.noteFilterBase(), filtering = view_, asked = spec,
+                      ready](engine::JobControl& job) -> engine::Result<Variant> {
+    auto done = filtering->run(ready, job);
     if (!done) return tl::unexpected(done.error());
     return Variant{asked, done->spec, base, std::move(done->filtered), id};
   });
+}
+
+std::optional<double> FilterPreview::rangeOfNoise(const LoopClient& client) {
+  if (!engine::hasRange(spec.kind)) return std::nullopt;
+  noise_.want();
+  const engine::NoiseEstimate* const noise = noise_.of(client.original());
+  if (noise == nullptr) return std::nullopt;
+  engine::FilterSpec of_noise = spec;
+  of_noise.range_sigma = 0.0;
+  const auto ready = engine::withRangeOf(of_noise, *noise);
+  return ready ? std::optional(ready->range_sigma) : std::nullopt;
+}
+
+void FilterPreview::follow(LoopClient& client, const std::function<engine::FieldView()>& view) {
+  const auto now = Clock::now();
+  const bool changed = fields_.look({spec}, now);
+  const bool asked = again_.has_value() || computes();
+  if (applying() || apply_when_done_ || !(asked || !variants_.empty())) return stopFollowing();
+  const engine::FilterSpec& newest = asked ? of_view_ : variants_.back().asked;
+  if (changed && spec.kind != newest.kind) return stopFollowing();
+  if (!fields_.changed()) return;
+  const engine::FieldView seen = view();
+  if (changed && !paces_[spec.kind].isSoon(seen.tiles.tiles())) return stopFollowing();
+  if (changed && computes()) {
+    again_ = keep_;
+    computing_.cancel();
+    approximating_.cancel();
+    view_.reset();
+  }
+  // One that was cancelled ends first: nothing waits for it here.
+  if (!fields_.rest(now) || computing()) return;
+  if (!again_ && same(newest, spec)) return fields_.settle();
+  compute(client, again_.value_or(Keep::kRenew), seen);
+  follows_ = true;
+}
+
+void FilterPreview::stopFollowing() {
+  fields_.settle();
+  if (std::exchange(again_, std::nullopt)) dropSoFar();
+}
+
+bool FilterPreview::isBehind() const {
+  const auto current = [&](const Variant& v) { return isCurrent(v); };
+  return !variants_.empty() && !computes() && std::none_of(variants_.begin(), variants_.end(), current);
+}
+
+bool FilterPreview::followsSoon() const {
+  return awaitsRest() || (follows_ && Clock::now() - begun_ < PreviewPace::kSoon);
 }
 
 bool FilterPreview::wantsView() const {
@@ -81,9 +144,9 @@ void FilterPreview::dropSoFar() {
 // The picture so far, some times in a second. True when it is another one.
 bool FilterPreview::takeSoFar() {
   (void)approximating_.take();
-  if (!view_ || !computing() || computing_.cancelling()) return false;
+  if (!view_ || !computes()) return false;
   const auto now = Clock::now();
-  const bool first = so_far_.field.empty();
+  const bool first = !seen_;
   if (!first && now - looked_ < kLookAgain) return false;
   if (!approximating_.busy() && view_->wantsCoarse() && !first)
     approximating_.start([view = view_](engine::JobControl& job) -> engine::Result<bool> {
@@ -95,7 +158,14 @@ bool FilterPreview::takeSoFar() {
   looked_ = now;
   if (picture.field == so_far_.field) return false;
   so_far_ = std::move(picture);
+  of_so_far_ = of_view_;
+  noteSeen();
   return true;
+}
+
+void FilterPreview::noteSeen() {
+  seen_ = true;
+  paces_[of_view_.kind].see(Clock::now());
 }
 
 bool FilterPreview::isCurrent(const Variant& variant) const {
@@ -114,7 +184,7 @@ void FilterPreview::apply(LoopClient& client) {
     adopt(client, variants_.back());
     return;
   }
-  if (!computing()) compute(client, Keep::kReplace);
+  if (!computes() || !same(of_view_, spec)) compute(client, Keep::kReplace);
   apply_when_done_ = true;
 }
 
@@ -135,25 +205,30 @@ void FilterPreview::cancel(LoopClient& client) {
   apply_when_done_ = false;
   variants_.clear();
   dropSoFar();
+  stopFollowing();
 }
 
 void FilterPreview::finish(LoopClient& client) {
   cancel(client);
+  noise_.clear();
   (void)applying_.wait();
 }
 
 void FilterPreview::drop(std::size_t variant) {
   if (variant < variants_.size()) variants_.erase(variants_.begin() + static_cast<std::ptrdiff_t>(variant));
+  stopFollowing();
 }
 
 std::vector<PreviewPicture> FilterPreview::pictures() const {
   std::vector<PreviewPicture> pictures;
-  const bool additional = so_far_.field.empty() || keep_ == Keep::kAdd;
-  if (additional)
-    for (const Variant& variant : variants_)
-      pictures.push_back({variant.result.field, filterName(variant.spec)});
+  // As many of the variants as stay beside what is computed.
+  std::size_t beside = variants_.size();
+  if (!so_far_.field.empty() && keep_ == Keep::kReplace) beside = 0;
+  if (!so_far_.field.empty() && keep_ == Keep::kRenew && beside > 0) --beside;
+  for (std::size_t i = 0; i < beside; ++i)
+    pictures.push_back({variants_[i].result.field, filterName(variants_[i].spec)});
   if (!so_far_.field.empty())
-    pictures.push_back({so_far_.field, fmt::format("{}: {}", filterName(of_view_),
+    pictures.push_back({so_far_.field, fmt::format("{}: {}", filterName(of_so_far_),
                                                    previewState(so_far_, so_far_.field.grid()))});
   if (pictures.size() > kMostVariants)
     pictures.erase(pictures.begin(), pictures.end() - static_cast<std::ptrdiff_t>(kMostVariants));
@@ -169,19 +244,23 @@ bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
       computing_.cancel();
       apply_when_done_ = false;
       variants_.clear();
+      stopFollowing();
       changed = true;
     }
   }
   changed |= takeSoFar();
+  changed |= noise_.poll(client.original());
   // A cancelled job may have finished meanwhile.
   const bool dropped = computing_.cancelling();
   if (auto done = computing_.take(); done && dropped) {
     changed = true;
   } else if (done) {
     changed = true;
+    if (*done && !seen_) noteSeen();
     dropSoFar();
     if (*done) {
       if (keep_ == Keep::kReplace) variants_.clear();
+      if (keep_ == Keep::kRenew && !variants_.empty()) variants_.pop_back();
       if (variants_.size() == kMostVariants) variants_.erase(variants_.begin());
       variants_.push_back(std::move(**done));
       if (apply_when_done_) adopt(client, variants_.back());

@@ -1,13 +1,17 @@
 #pragma once
 
-#include <chrono>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/preview_pace.h"
 #include "app/work/preview_picture.h"
+#include "app/work/scan_noise.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/filter_view.h"
 #include "haptic/loop/adopt_filtered.h"
@@ -35,13 +39,29 @@ class FilterPreview {
     std::uint64_t base_id = 0;  ///< the base's in the journal (LoopClient::noteFilterBase)
   };
 
-  /// Edited by the panel. A range sigma of 0 means one for the field's noise (engine::withMeasuredRange).
+  /// Edited by the panel. A range sigma of 0 means one for the noise of the scan as it was opened (engine::withMeasuredRange),
+  /// also after other filters, which leave less.
   engine::FilterSpec spec;
+  /// What that 0 stands for [height_unit], measured from now on where it is not known; nothing until then, for filters
+  /// without a range, and where no noise is seen.
+  [[nodiscard]] std::optional<double> rangeOfNoise(const LoopClient& client);
 
-  /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them.
-  /// `view`: what is shown of the field (visiblePart) is filtered first, approximately where that takes long.
-  enum class Keep : std::uint8_t { kReplace, kAdd };
+  [[nodiscard]] bool measuresNoise() const noexcept { return noise_.busy(); }
+
+  /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them, or the newest of
+  /// them. `view`: what is shown of the field (visiblePart) is filtered first, approximately where that takes long.
+  enum class Keep : std::uint8_t { kReplace, kAdd, kRenew };
   void compute(LoopClient& client, Keep keep, const engine::FieldView& view = {});
+  /// Lets the newest preview follow the fields of its filter, once a frame: where the last one of that filter was soon seen
+  /// (PreviewPace), it is renewed when the fields have rested, and what was computed of their values before is cancelled at
+  /// once. Another filter, or one that takes longer, waits until it is asked for. `view`: as of compute().
+  void follow(LoopClient& client, const std::function<engine::FieldView()>& view);
+  /// Whether follow() will begin a preview when the fields rest.
+  [[nodiscard]] bool awaitsRest() const noexcept { return fields_.changed(); }
+  /// Whether no preview, shown or on its way, is what `spec` asks for; false without any.
+  [[nodiscard]] bool isBehind() const;
+  /// Whether what is computed follows the fields and has not taken long, so that the panel need not say so.
+  [[nodiscard]] bool followsSoon() const;
   /// Whether it is time to say what is shown now, since something is computed in its order.
   [[nodiscard]] bool wantsView() const;
   void look(const engine::FieldView& view);
@@ -72,9 +92,17 @@ class FilterPreview {
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = PreviewPace::Clock;
+  // The fields of a filter; threads are none.
+  struct Fields {
+    engine::FilterSpec spec;
+    bool operator==(const Fields& other) const;
+  };
   [[nodiscard]] bool takeSoFar();
   void dropSoFar();
+  void noteSeen();
+  void stopFollowing();
+  [[nodiscard]] bool computes() const { return computing_.busy() && !computing_.cancelling(); }
   void adopt(LoopClient& client, Variant variant);
 
   std::vector<Variant> variants_;
@@ -85,8 +113,15 @@ class FilterPreview {
   engine::FieldForm form_;                    // over the field that is previewed
   std::shared_ptr<engine::FilterView> view_;  // of what is computed
   engine::FilterSpec of_view_;
-  engine::FilterView::Picture so_far_;
+  engine::FilterView::Picture so_far_;  // or the last one of what was computed before, until there is one
+  engine::FilterSpec of_so_far_;
+  bool seen_ = false;     // something of what is computed
+  bool follows_ = false;  // what is computed was begun by follow()
+  std::map<engine::FilterKind, PreviewPace> paces_;
+  RestingFields<Fields> fields_;
+  std::optional<Keep> again_;  // of a computation that was cancelled since the fields changed
   Clock::time_point begun_, looked_;
+  ScanNoise noise_;
   Background<Variant> computing_;
   Background<bool> approximating_;  // what came into view meanwhile
   Background<haptic::AdoptionReport> applying_;

@@ -1,6 +1,7 @@
 #include "app/work/height_tool.h"
 
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -24,11 +25,29 @@ struct MakerName {
         lines.method == engine::LineMethod::kPolynomial ? fmt::format(" {}", lines.degree) : "";
     return fmt::format("Level {}: {}{}", axis, kMethods[static_cast<std::size_t>(lines.method)], degree);
   }
+  std::string operator()(const engine::RemoveOptions& remove) const {
+    constexpr const char* kOf[] = {"all samples", "marked samples", "samples not marked"};
+    const bool low = std::isfinite(remove.low), high = std::isfinite(remove.high);
+    const bool between = remove.heights == engine::RemoveOptions::Heights::kBetween;
+    const char* by = !low && !high ? ""
+                     : between     ? ": between two heights"
+                     : low && high ? ": outside two heights"
+                     : low         ? ": below a height"
+                                   : ": above a height";
+    return fmt::format("Remove {}{}", kOf[static_cast<std::size_t>(remove.region)], by);
+  }
 };
+
+std::string removedText(const engine::RemoveCounts& counts) {
+  std::string text = fmt::format("{} of {} samples removed", counts.removed, counts.heights);
+  if (counts.spared > 0) text += fmt::format("; {} stay since they are marked", counts.spared);
+  return text;
+}
 
 std::string foundIn(const haptic::ComputedHeights& heights, const haptic::HeightsMaker& maker,
                     const engine::Version& before) {
   const engine::Grid& grid = before.grid();
+  if (std::holds_alternative<engine::RemoveOptions>(maker)) return removedText(heights.removed);
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
     return fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
@@ -68,6 +87,7 @@ std::string earlyState(const engine::EarlyPicture& picture) {
 }
 
 void HeightTool::make(const haptic::HeightsMaker& maker) {
+  stopFollowing();
   if (previews(maker)) return applyPreview();
   // On its way as a preview: it becomes a step when it is there.
   if (working_.busy() && !working_.cancelling() && !asked_ && wanted_.maker == maker) {
@@ -82,7 +102,58 @@ void HeightTool::make(const haptic::HeightsMaker& maker) {
 void HeightTool::preview(const haptic::HeightsMaker& maker, const engine::FieldView& view) {
   cancel();
   preview_.reset();
+  fields_[maker.index()].settle(maker);
   asked_ = Wanted{maker, Becomes::kPreview, view};
+}
+
+haptic::HeightsMaker HeightTool::fieldsOf(std::size_t kind) const {
+  const haptic::HeightsMaker all[kKinds] = {fill, lines, remove};
+  return *std::ranges::find(all, kind, &haptic::HeightsMaker::index);
+}
+
+const haptic::HeightsMaker* HeightTool::newestPreview() const noexcept {
+  if (asked_ && asked_->becomes == Becomes::kPreview) return &asked_->maker;
+  if (computesPreview() || again_) return &wanted_.maker;
+  return preview_ ? &preview_->maker : nullptr;
+}
+
+void HeightTool::follow(const std::function<engine::FieldView()>& view) {
+  const auto now = PreviewPace::Clock::now();
+  bool changed[kKinds];
+  for (std::size_t kind = 0; kind < kKinds; ++kind) changed[kind] = fields_[kind].look(fieldsOf(kind), now);
+  const haptic::HeightsMaker* const newest = newestPreview();
+  if (newest == nullptr) return stopFollowing();
+  const std::size_t kind = newest->index();
+  for (std::size_t other = 0; other < kKinds; ++other)
+    if (other != kind) fields_[other].settle();
+  if (!fields_[kind].changed()) return;
+  const engine::FieldView seen = view();
+  if (changed[kind] && !paces_[kind].isSoon(seen.tiles.tiles())) return stopFollowing();
+  if (changed[kind] && (computesPreview() || asked_)) {
+    again_ = !asked_;
+    working_.cancel();
+    dropEarly();
+  }
+  if (!fields_[kind].rest(now) || (working_.busy() && !asked_)) return;
+  const bool same = !again_ && !asked_ && *newest == fieldsOf(kind);
+  stopFollowing();
+  // The one that is shown stays until this is there.
+  if (!same) asked_ = Wanted{fieldsOf(kind), Becomes::kPreview, seen};
+  follows_ = !same;
+}
+
+void HeightTool::stopFollowing() noexcept {
+  for (auto& fields : fields_) fields.settle();
+  again_ = false;
+  follows_ = false;
+}
+
+bool HeightTool::awaitsRest() const noexcept {
+  return std::ranges::any_of(fields_, &RestingFields<haptic::HeightsMaker>::changed);
+}
+
+bool HeightTool::followsSoon() const {
+  return awaitsRest() || (follows_ && (asked_ || PreviewPace::Clock::now() - begun_ < PreviewPace::kSoon));
 }
 
 void HeightTool::applyPreview() {
@@ -95,6 +166,7 @@ void HeightTool::applyPreview() {
 
 void HeightTool::dropPreview() {
   preview_.reset();
+  stopFollowing();
   forgetFound();
 }
 
@@ -114,6 +186,7 @@ bool HeightTool::forgetUndone(const LoopClient& client) {
 }
 
 void HeightTool::cancel() noexcept {
+  stopFollowing();
   working_.cancel();
   asked_.reset();
   done_.reset();
@@ -126,7 +199,7 @@ void HeightTool::dropEarly() {
 }
 
 bool HeightTool::dropOutdated(const LoopClient& client) {
-  const bool computing = working_.busy() && !working_.cancelling() && wanted_.becomes == Becomes::kPreview;
+  const bool computing = computesPreview();
   if (!computing && !preview_) return false;
   const engine::Version now = client.newest();
   bool dropped = false;
@@ -146,6 +219,7 @@ bool HeightTool::takeEarly() {
   const std::scoped_lock lock(slot_->mutex);
   if (!slot_->picture) return false;
   early_ = std::exchange(slot_->picture, std::nullopt);
+  paces_[wanted_.maker.index()].see(PreviewPace::Clock::now());
   return true;
 }
 
@@ -158,10 +232,18 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
     changed = true;
     base_ = {};
     dropEarly();
-    if (!dropped && *result)
+    if (!dropped && *result) {
       done_ = *std::move(*result);
-    else if (!dropped && result->error().kind != engine::ErrorKind::kCancelled)
-      notices.push_back({result->error().what, result->error().remedy});
+    } else if (!dropped && result->error().kind != engine::ErrorKind::kCancelled) {
+      // Of values on their way to others a notice would come for each of them: the panel says it, and the next values are
+      // shown again.
+      if (follows_ && wanted_.becomes == Becomes::kPreview) {
+        found_ = result->error().what;
+        again_ = true;
+      } else {
+        notices.push_back({result->error().what, result->error().remedy});
+      }
+    }
   }
   const bool step = wanted_.becomes == Becomes::kStep;
   // Under a stroke the field is another one every tick.
@@ -170,12 +252,14 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
     forgetFound();
     found_ = foundIn(done_->heights, wanted_.maker, done_->base);
     if (step) made_from_ = done_->base;
-    if (!step)
+    if (!step) {
+      paces_[wanted_.maker.index()].see(PreviewPace::Clock::now());
       preview_ = Preview{wanted_.maker, *std::move(done_)};
-    else if (!(done_->base == done_->heights.field) &&
-             !client.changeHeights(done_->base, done_->heights.field, makerName(wanted_.maker),
-                                   wanted_.maker))
+    } else if (!(done_->base == done_->heights.field) &&
+               !client.changeHeights(done_->base, done_->heights.field, makerName(wanted_.maker),
+                                     wanted_.maker)) {
       asked_ = wanted_;
+    }
     done_.reset();
   }
   if (asked_ && !working_.busy() && !client.strokeIsUnderWay()) start(client);
@@ -189,6 +273,8 @@ void HeightTool::start(LoopClient& client) {
   if (wanted_.becomes == Becomes::kPreview) {
     base_ = base;
     slot_ = std::make_shared<Slot>();
+    begun_ = PreviewPace::Clock::now();
+    paces_[wanted_.maker.index()].begin(begun_, wanted_.view.tiles.tiles());
   }
   working_.start([base = std::move(base), wanted = wanted_,
                   slot = slot_](engine::JobControl& job) -> engine::Result<Work> {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -8,13 +11,15 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/preview_pace.h"
 #include "app/work/preview_picture.h"
 #include "haptic/journal/computed_heights.h"
 
 namespace fettle::app {
 
-/// Fills holes of the field that is worked on and levels the lines of a line scanner, as `fettle fill` and `fettle level --rows` do: each a step,
-/// worked out in the background while the hand goes on. A stroke meanwhile is kept: it is worked out again with it.
+/// Fills holes of the field that is worked on, levels the lines of a line scanner and removes samples, as `fettle fill`, `fettle level
+/// --rows` and `fettle remove` do: each a step, worked out in the background while the hand goes on. A stroke meanwhile is
+/// kept: it is worked out again with it.
 ///
 /// A preview is the same beside the field, and no step; what is seen of it comes first (haptic::computeHeights). It becomes
 /// the step as it is. It is of one state of the field, and ends with it: with an edit, an undo, another form, other marks. Threading: main.
@@ -23,11 +28,21 @@ class HeightTool {
   /// Edited by the panel.
   engine::FillOptions fill;
   engine::LineOptions lines;
+  engine::RemoveOptions remove;
 
   void fillHoles() { make(fill); }
   void levelLines() { make(lines); }
+  void removeSamples() { make(remove); }
+  /// Marked samples of any height, whatever the fields say.
+  void removeMarked() { make(engine::RemoveOptions{.region = engine::Region::kMarked}); }
   /// `view`: what is shown of the field (visiblePart).
   void preview(const haptic::HeightsMaker& maker, const engine::FieldView& view);
+  /// Lets a preview follow the fields that it is of, once a frame, where it is soon seen: as FilterPreview::follow.
+  void follow(const std::function<engine::FieldView()>& view);
+  /// Whether follow() will begin a preview when the fields rest.
+  [[nodiscard]] bool awaitsRest() const noexcept;
+  /// Whether what is computed follows the fields and has not taken long, so that the panel need not say so.
+  [[nodiscard]] bool followsSoon() const;
   void dropPreview();
   /// Makes what is previewed the step.
   void applyPreview();
@@ -41,9 +56,9 @@ class HeightTool {
   [[nodiscard]] const char* stage() const noexcept { return working_.stage(); }
   /// What the last one found, in a sentence; empty before.
   [[nodiscard]] const std::string& found() const noexcept { return found_; }
-  /// Whether the last one filled holes instead of levelling lines.
-  [[nodiscard]] bool filledLast() const noexcept {
-    return std::holds_alternative<engine::FillOptions>(wanted_.maker);
+  /// Whether the last one was of this kind.
+  [[nodiscard]] bool wasLast(const haptic::HeightsMaker& maker) const noexcept {
+    return wanted_.maker.index() == maker.index();
   }
   /// What makes the whole result that is previewed; null without one.
   [[nodiscard]] const haptic::HeightsMaker* previewed() const noexcept {
@@ -82,6 +97,13 @@ class HeightTool {
   void make(const haptic::HeightsMaker& maker);
   void dropEarly();
   void forgetFound() noexcept;
+  void stopFollowing() noexcept;
+  [[nodiscard]] haptic::HeightsMaker fieldsOf(std::size_t kind) const;
+  // Of a preview that is asked for, worked out or shown, in this order; null without.
+  [[nodiscard]] const haptic::HeightsMaker* newestPreview() const noexcept;
+  [[nodiscard]] bool computesPreview() const noexcept {
+    return working_.busy() && !working_.cancelling() && wanted_.becomes == Becomes::kPreview;
+  }
   [[nodiscard]] bool dropOutdated(const LoopClient& client);
   [[nodiscard]] bool takeEarly();
   /// What was found goes with the step, when it is undone.
@@ -98,10 +120,16 @@ class HeightTool {
   std::string found_;
   std::optional<engine::Version> made_from_;  // by the step that was found; nothing: it was none
   bool made_ = false;                         // and the step is there
+  static constexpr std::size_t kKinds = std::variant_size_v<haptic::HeightsMaker>;
+  std::array<PreviewPace, kKinds> paces_;
+  std::array<RestingFields<haptic::HeightsMaker>, kKinds> fields_;
+  bool again_ = false;    // a preview was cancelled since its fields changed
+  bool follows_ = false;  // what is worked out was asked for by follow()
+  PreviewPace::Clock::time_point begun_;
   Background<Work> working_;
 };
 
-/// "Fill holes: least curvature", "Level rows: median": the step in the list of steps.
+/// "Fill holes: least curvature", "Level rows: median", "Remove marked samples": the step in the list of steps.
 [[nodiscard]] std::string makerName(const haptic::HeightsMaker& maker);
 
 /// "approximate, off by 12 um rms", "40 % so far", "exact in view".

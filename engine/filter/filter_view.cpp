@@ -142,8 +142,8 @@ FieldView FilterView::viewNow() const {
 
 Result<FilterView::Done> FilterView::run(const FilterSpec& asked, JobControl& job) {
   approximateIfSlow(asked, job);
-  // Of the whole field: a part has a noise of its own.
-  const auto spec = withMeasuredRange(asked, input_, job);
+  // Of the whole scan: a part has a noise of its own, and of what filters left a range would do next to nothing.
+  const auto spec = withMeasuredRange(asked, original_, job);
   if (!spec) return tl::unexpected(spec.error());
   passes_ = spec->passes;
   if (comesInPieces(*spec) && piecesAreExact(*spec, input_)) filterPieces(*spec, job);
@@ -162,7 +162,7 @@ void FilterView::approximateIfSlow(const FilterSpec& asked, JobControl& job) {
   const bool range_is_missing = hasRange(asked.kind) && asked.range_sigma == 0.0;
   JobControl quiet = JobControl::partOf(job);
   const auto spec =
-      withMeasuredRange(asked, range_is_missing ? middleOf(input_, view, 8 * kTileSide) : input_, quiet);
+      withMeasuredRange(asked, range_is_missing ? middleOf(original_, view, 8 * kTileSide) : input_, quiet);
   if (!spec || !validate(*spec, grid)) return;
   const auto each = secondsASample(input_, view, *spec, job);
   if (!each) return;

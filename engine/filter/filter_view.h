@@ -40,7 +40,7 @@ class FilterView : private FilterWork {
   void look(const FieldView& view);
 
   struct Done {
-    FilterSpec spec;  ///< with its range (withMeasuredRange)
+    FilterSpec spec;  ///< with its range (withMeasuredRange of the original)
     Filtered filtered;
   };
   /// As withMeasuredRange and applyFilter, and with their errors.

@@ -80,27 +80,28 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
 }
 
-void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units) {
+void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
+                 const std::optional<double>& range_of_noise) {
   const engine::Filter& filter = engine::filterOf(spec.kind);
-  const auto orElse = [](double value, const std::string& format, const engine::FilterParameter& parameter) {
-    return value > 0.0 ? format : "0: " + std::string(parameter.when_zero);
-  };
   if (filter.sigma.exists())
     (void)field("sigma", "Standard deviation of the weights in the window.", [&] {
-      return typeNumber("##sigma", spec.sigma, 0.0, 1000.0, orElse(spec.sigma, "%.2f samples", filter.sigma));
+      return typeNumber("##sigma", spec.sigma, 0.0, 1000.0,
+                        spec.sigma > 0.0 ? "%.2f samples" : "0: " + std::string(filter.sigma.when_zero));
     });
+  // With its number as soon as that is known.
+  const std::string by_noise = range_of_noise ? lengthText(*range_of_noise, units.change, 3) + " by the noise"
+                                              : std::string(filter.range_sigma.when_zero);
   if (filter.range_sigma.exists())
-    (void)field("range sigma",
-                "Heights that differ by no more than about this differ by noise, which goes; what differs by "
-                "more stays.",
-                [&] {
-                  double shown = spec.range_sigma * units.change.per_unit;
-                  if (!typeNumber("##range", shown, 0.0, filter.range_sigma.most * units.change.per_unit,
-                                  orElse(spec.range_sigma, "%.4g " + units.change.name, filter.range_sigma)))
-                    return false;
-                  spec.range_sigma = shown / units.change.per_unit;
-                  return true;
-                });
+    (void)field(
+        "range sigma",
+        fmt::format("Heights that differ by no more than about this differ by noise, which goes; what "
+                    "differs by more stays. 0: {}, that of the scan as it was opened, also after other "
+                    "filters.",
+                    filter.range_sigma.when_zero),
+        [&] {
+          return typeLength("##range", spec.range_sigma, 0.0, filter.range_sigma.most, units.change,
+                            by_noise);
+        });
 }
 
 void limitField(const PanelContext& context, engine::FilterSpec& spec) {
@@ -114,9 +115,11 @@ void limitField(const PanelContext& context, engine::FilterSpec& spec) {
 }
 
 void runButtons(const PanelContext& context, FilterPreview& filters) {
-  const bool runs = filters.computing() || filters.applying();
+  const bool runs = filters.applying() || (filters.computing() && !filters.followsSoon());
   ImGui::BeginDisabled(runs);
-  actionButton("Preview", Action::kFilterPreview, context.act);
+  previewButton(
+      !runs && filters.isBehind() && !filters.awaitsRest() ? PreviewWord::kBehind : PreviewWord::kNone, "",
+      Action::kFilterPreview, context.act);
   sameLineIfFits("Add preview");
   actionButton("Add preview", Action::kFilterAdd, context.act);
   sameLineIfFits("Apply");
@@ -155,11 +158,6 @@ void previewList(bool anything_marked, FilterPreview& filters) {
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);
-  // Previews stay, so that another can be put beside them: one says so where the fields are ahead of them.
-  const auto current = [&](const FilterPreview::Variant& v) { return filters.isCurrent(v); };
-  const std::vector<FilterPreview::Variant>& all = filters.variants();
-  if (!all.empty() && !filters.computing() && std::none_of(all.begin(), all.end(), current))
-    ImGui::TextDisabled("not shown yet: what the fields say now (P)");
 }
 
 }  // namespace
@@ -170,7 +168,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   beginFields();
   kindField(spec, grid);
   sizeFields(spec, grid, context.units);
-  sigmaFields(spec, context.units);
+  sigmaFields(spec, context.units, filters.rangeOfNoise(context.client));
   limitField(context, spec);
   endFields();
   int scope = static_cast<int>(spec.scope);

@@ -81,46 +81,41 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
-constexpr int kOutcomeLines = 4;
-
-struct ButtonsOf {
-  Action preview;
-  Action make;
-  const char* name;
-};
-constexpr ButtonsOf kFillButtons{Action::kFillPreview, Action::kFillHoles, "Fill holes"};
-constexpr ButtonsOf kLevelButtons{Action::kLevelPreview, Action::kLevelLines, "Level lines"};
-
-void makeButtons(const PanelContext& context, const HeightTool& heights, const haptic::HeightsMaker& maker,
-                 const ButtonsOf& buttons) {
-  const std::string preview = heights.previews(maker) ? "Drop preview" : "Preview";
-  // As wide with either word, so that the button beside it stays where it is.
-  const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
-  actionButton((preview + "##" + buttons.name).c_str(), buttons.preview, context.act, wide);
-  sameLineIfFits(buttons.name);
-  actionButton(buttons.name, buttons.make, context.act);
-}
-
-// How far the work is, or what came of it.
-void outcomeOf(HeightTool& heights) {
-  if (heights.busy()) {
-    if (cancelledBar(heights.progress(), "computing heights", "Cancel##heights")) heights.cancel();
-    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
-    return;
-  }
-  if (!heights.found().empty()) writeWrapped(heights.found());
-  const bool current =
-      heights.filledLast() ? heights.previews(heights.fill) : heights.previews(heights.lines);
-  if (heights.previewed() != nullptr && !current)
-    ImGui::TextDisabled("not shown yet: what the fields say now");
-}
+constexpr HeightButtons kFillButtons{Action::kFillPreview, Action::kFillHoles, "Fill holes"};
+constexpr HeightButtons kLevelButtons{Action::kLevelPreview, Action::kLevelLines, "Level lines"};
 
 }  // namespace
+
+void heightButtons(const PanelContext& context, HeightTool& heights, const haptic::HeightsMaker& maker,
+                   const HeightButtons& buttons) {
+  const haptic::HeightsMaker* const previewed = heights.previewed();
+  const bool behind = previewed != nullptr && previewed->index() == maker.index() && !(*previewed == maker) &&
+                      !heights.followsSoon();
+  ImGui::BeginDisabled(heights.busy() && !heights.followsSoon());
+  previewButton(heights.previews(maker) ? PreviewWord::kShown
+                : behind                ? PreviewWord::kBehind
+                                        : PreviewWord::kNone,
+                buttons.name, buttons.preview, context.act);
+  sameLineIfFits(buttons.name);
+  actionButton(buttons.name, buttons.make, context.act);
+  ImGui::EndDisabled();
+}
+
+void heightOutcome(HeightTool& heights, bool here) {
+  constexpr int kLines = 4;
+  beginPlace("##heights outcome", kLines);
+  if (here && heights.busy() && !heights.followsSoon()) {
+    if (cancelledBar(heights.progress(), "computing heights", "Cancel##heights")) heights.cancel();
+    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
+  } else if (here && !heights.found().empty()) {
+    writeWrapped(heights.found());
+  }
+  endPlace();
+}
 
 void heightsPanel(const PanelContext& context, HeightTool& heights) {
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
-  ImGui::BeginDisabled(heights.busy());
   int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
   constexpr const char* kMethods[] = {"least curvature", "membrane"};
   beginFields();
@@ -129,14 +124,11 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   endFields();
   extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
   ImGui::Checkbox("at the border too", &heights.fill.at_border);
-  makeButtons(context, heights, heights.fill, kFillButtons);
+  heightButtons(context, heights, heights.fill, kFillButtons);
   ImGui::Separator();
   linesFields(heights.lines);
-  makeButtons(context, heights, heights.lines, kLevelButtons);
-  ImGui::EndDisabled();
-  beginPlace("##heights outcome", kOutcomeLines);
-  outcomeOf(heights);
-  endPlace();
+  heightButtons(context, heights, heights.lines, kLevelButtons);
+  heightOutcome(heights, heights.wasLast(heights.fill) || heights.wasLast(heights.lines));
 }
 
 }  // namespace fettle::app

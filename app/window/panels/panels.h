@@ -32,6 +32,19 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
 void formPanel(const PanelContext& context, FormTool& form);
 /// Holes that are filled, lines that are levelled.
 void heightsPanel(const PanelContext& context, HeightTool& heights);
+/// Samples that become holes; `picture`: whose colours have limits.
+void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount& count,
+                 const WindowPicture& picture);
+/// The buttons of one of these.
+struct HeightButtons {
+  Action preview;
+  Action make;
+  const char* name;
+};
+void heightButtons(const PanelContext& context, HeightTool& heights, const haptic::HeightsMaker& maker,
+                   const HeightButtons& buttons);
+/// How far the work is or what came of it, where that is `here`; as high without.
+void heightOutcome(HeightTool& heights, bool here);
 /// Crop, mirror, turn, resample; true when the user asks for it.
 [[nodiscard]] bool transformPanel(const PanelContext& context, TransformTool& transform);
 /// Surface texture parameters; `picture`: what is visible.

@@ -10,7 +10,8 @@ namespace {
 // A section of the panels that can be collapsed; its state is stored in the settings.
 bool section(Settings& settings, const char* name, bool open_at_first) {
   const auto known = settings.panels.find(name);
-  ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first, ImGuiCond_Once);
+  // In each frame: an action opens a panel by its setting, too.
+  ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first);
   const bool open = ImGui::CollapsingHeader(name);
   settings.panels[name] = open;
   return open;
@@ -37,6 +38,9 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     linePanel(context, parts.marking.lines, settings.draw_lines);
   }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
+  if (std::exchange(parts.enter_removal, false)) ImGui::SetScrollHereY(0.0F);
+  if (section(settings, "Remove samples", false))
+    removePanel(context, parts.heights, parts.removal, parts.picture);
   if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
   if (section(settings, "Form", false)) formPanel(context, parts.form);
   if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);

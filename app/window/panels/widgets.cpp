@@ -109,6 +109,18 @@ void actionButton(const char* name, Action action, const Act& act, float width) 
   tip(action);
 }
 
+void previewButton(PreviewWord word, const char* id, Action action, const Act& act) {
+  constexpr const char* kWords[] = {"Preview", "Drop preview", "Show it"};
+  float wide = 0.0F;
+  for (const char* each : kWords) wide = std::max(wide, ImGui::CalcTextSize(each).x);
+  wide += 2.0F * ImGui::GetStyle().FramePadding.x;
+  const bool behind = word == PreviewWord::kBehind;
+  if (behind) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+  actionButton(fmt::format("{}###preview {}", kWords[static_cast<std::size_t>(word)], id).c_str(), action,
+               act, wide);
+  if (behind) ImGui::PopStyleColor();
+}
+
 void writeWrapped(const std::string& text) {
   ImGui::PushTextWrapPos(0.0F);
   ImGui::TextUnformatted(text.c_str());
@@ -200,8 +212,11 @@ bool typeNumber(const char* id, double& value, double low, double high, const st
   return true;
 }
 
-bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit) {
-  const auto typed = typedText(id, fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
+bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit,
+                const std::string& when_zero) {
+  const auto typed = typedText(id, value == 0.0 && !when_zero.empty()
+                                       ? "0: " + when_zero
+                                       : fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
   if (!typed) return false;
   const auto ratio = ratioOfUnits(typed->unit.empty() ? unit.name : typed->unit, unit.name);
   if (!ratio) return false;

@@ -53,6 +53,12 @@ void writeWrapped(const std::string& text);
 void actionButton(const char* name, Action action, const Act& act, float width = 0.0F);
 void actionTick(const char* name, bool ticked, Action action, const Act& act);
 
+/// The button of a preview, as wide with each of its words, so that what is beside it stays where it is: "Preview", "Drop
+/// preview" while one is shown, and in the colour of what is to be pressed "Show it" where the fields say something else than
+/// what is shown. `id`: which of several in a panel.
+enum class PreviewWord : std::uint8_t { kNone, kShown, kBehind };
+void previewButton(PreviewWord word, const char* id, Action action, const Act& act);
+
 /// Puts the next button or tick box, with the label `text`, next to the last item where there is room for it,
 /// otherwise below.
 enum class ItemKind : std::uint8_t { kButton, kTick };
@@ -85,8 +91,9 @@ bool field(const char* name, std::string_view says, const auto& edit) {
 
 /// The same for a length that is kept in one unit and shown in another: `value`, `low` and `high` in the unit it is kept
 /// in. What is typed is taken in the unit that stands beside it, or in one that is typed behind the number.
+/// `when_zero`: what stands there in place of a 0, after "0: "; empty: the number.
 [[nodiscard]] bool typeLength(const char* id, double& value, double low, double high,
-                              const render::ShownUnit& unit);
+                              const render::ShownUnit& unit, const std::string& when_zero = {});
 
 /// "12.3 \u00b5m", of a length in the unit that it is kept in; `digits` significant ones.
 [[nodiscard]] std::string lengthText(double value, const render::ShownUnit& unit, int digits = 4);

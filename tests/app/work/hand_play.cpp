@@ -194,12 +194,19 @@ std::string HandPlay::form() {
 }
 
 std::string HandPlay::heights() {
-  const bool fills = random_() % 2 == 0;
+  const bool fills = random_() % 2 == 0, removes = random_() % 4 == 0;
   heights_.fill.method = random_() % 2 == 0 ? engine::FillMethod::kMembrane : engine::FillMethod::kCurvature;
   heights_.lines.method = static_cast<engine::LineMethod>(random_() % 4);
   heights_.lines.degree = heights_.lines.method == engine::LineMethod::kPolynomial ? 1 : 0;
   heights_.lines.axis = random_() % 2 == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
-  if (fills)
+  // Some of the surface, so that holes come and go; or what is marked.
+  const engine::HeightBounds bounds = client_.newest().reader().bounds();
+  heights_.remove = {.low = bounds.min, .high = bounds.min + 0.02 * (bounds.max - bounds.min)};
+  if (removes && random_() % 2 == 0)
+    heights_.removeSamples();
+  else if (removes)
+    heights_.removeMarked();
+  else if (fills)
     heights_.fillHoles();
   else
     heights_.levelLines();
@@ -208,13 +215,16 @@ std::string HandPlay::heights() {
   if (random_() % 2 == 0) static_cast<void>(stroke(true));
   press(u_, v_, false);
   while (heights_.busy()) wait(1);
-  return fills ? "holes filled" : "lines levelled";
+  return removes ? "samples removed" : fills ? "holes filled" : "lines levelled";
 }
 
 void HandPlay::make(const haptic::HeightsMaker& maker) {
   if (const auto* fill = std::get_if<engine::FillOptions>(&maker)) {
     heights_.fill = *fill;
     heights_.fillHoles();
+  } else if (const auto* remove = std::get_if<engine::RemoveOptions>(&maker)) {
+    heights_.remove = *remove;
+    heights_.removeSamples();
   } else {
     heights_.lines = std::get<engine::LineOptions>(maker);
     heights_.levelLines();

@@ -172,6 +172,38 @@ TEST_F(WindowTest, a_preview_that_was_approximate_is_adopted_exactly) {
   EXPECT_EQ(compare(expected->field, load(saved)).changed, 0);
 }
 
+// A field is changed, and the picture follows; another filter waits for a button that is easy to see, where the other was.
+TEST_F(WindowTest, a_preview_follows_its_fields) {
+  const auto program = start({scan});
+  User user(display, *program, "follows");
+  (void)opened(*program);
+  user.at({20, 790});
+  const Screen alone = user.look("scan");
+  for (int i = 0; i < 2; ++i) (void)user.key("n");
+  EXPECT_EQ(user.key("p")["variants"], State{"Median 3 x 3"});
+  user.at({20, 790});
+  const Screen three = user.changed("median of 3", alone, 300);
+  EXPECT_EQ(user.enter("window", "11")["variants"], State{"Median 11 x 11"});
+  user.at({20, 790});
+  const Screen eleven = user.changed("median of 11, without a key", three, 300);
+  EXPECT_FALSE(user.reads("Show it"));
+  // By keys, too, and what is marked alone.
+  EXPECT_EQ(user.key("shift+w")["variants"], State{"Median 9 x 9"});
+  EXPECT_EQ(user.key("o")["variants"], State{"Median 9 x 9, only marks"});
+  (void)user.same("nothing is marked", alone);
+  EXPECT_EQ(user.key("o")["preview_is_behind"], false);
+  EXPECT_EQ(program->now()["steps"], 0);
+  const State other = user.key("n");
+  EXPECT_EQ(other["filter"], "Bilateral 9 x 9");
+  EXPECT_EQ(other["variants"], State{"Median 9 x 9"});
+  EXPECT_EQ(other["preview_is_behind"], true);
+  EXPECT_TRUE(user.reads("Show it"));
+  (void)user.look("another filter");
+  EXPECT_EQ(user.click("Show it")["variants"], State{"Bilateral 9 x 9"});
+  EXPECT_TRUE(user.reads("Preview"));
+  (void)quit(user);
+}
+
 // Of a large field what is left without a form is seen before all of its samples are fitted.
 TEST_F(WindowTest, a_form_of_a_large_field_is_previewed_approximately_first) {
   const std::string large = folder.file("large.tif");
