@@ -107,8 +107,10 @@ void HeightTool::preview(const haptic::HeightsMaker& maker, const engine::FieldV
 }
 
 haptic::HeightsMaker HeightTool::fieldsOf(std::size_t kind) const {
-  const haptic::HeightsMaker all[kKinds] = {fill, lines, remove};
-  return *std::ranges::find(all, kind, &haptic::HeightsMaker::index);
+  using Maker = haptic::HeightsMaker;
+  static_assert(std::variant_size_v<Maker> == kKinds);
+  if (kind == Maker(fill).index()) return fill;
+  return kind == Maker(lines).index() ? Maker(lines) : Maker(remove);
 }
 
 const haptic::HeightsMaker* HeightTool::newestPreview() const noexcept {

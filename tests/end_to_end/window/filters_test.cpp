@@ -193,10 +193,10 @@ TEST_F(WindowTest, a_preview_follows_its_fields) {
   (void)user.same("nothing is marked", alone);
   EXPECT_EQ(user.key("o")["preview_is_behind"], false);
   EXPECT_EQ(program->now()["steps"], 0);
-  const State other = user.key("n");
-  EXPECT_EQ(other["filter"], "Bilateral 9 x 9");
-  EXPECT_EQ(other["variants"], State{"Median 9 x 9"});
-  EXPECT_EQ(other["preview_is_behind"], true);
+  const State another = user.key("n");
+  EXPECT_EQ(another["filter"], "Bilateral 9 x 9");
+  EXPECT_EQ(another["variants"], State{"Median 9 x 9"});
+  EXPECT_EQ(another["preview_is_behind"], true);
   EXPECT_TRUE(user.reads("Show it"));
   (void)user.look("another filter");
   EXPECT_EQ(user.click("Show it")["variants"], State{"Bilateral 9 x 9"});
