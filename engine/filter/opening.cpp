@@ -16,12 +16,17 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/field/tile.h"
+#include "engine/filter/ball_erosion.h"
 #include "engine/filter/erosion.h"
 #include "engine/filter/surface_pass.h"
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
 namespace {
+
+#define FETTLE_KERNEL "engine/filter/opening-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 enum class Rolling { kBelow, kAbove };  // opening, closing
 
@@ -32,12 +37,6 @@ SampleRect grownWithin(const SampleRect& rect, std::int32_t columns, std::int32_
           std::min(rect.row + rect.rows + rows, field.height()) - r0};
 }
 
-// The largest difference of two heights.
-double reliefOf(const FieldReader& field) {
-  const HeightBounds bounds = field.bounds();
-  return bounds.empty() ? 0.0 : static_cast<double>(bounds.max) - static_cast<double>(bounds.min);
-}
-
 class Opening {
  public:
   Opening(const Version& input, const FilterSpec& spec, Rolling rolling, CpuLevel level)
@@ -45,10 +44,14 @@ class Opening {
         // The scan's own heights: turned over, its peaks are the same.
         sign_((rolling == Rolling::kBelow ? 1.0F : -1.0F) * reader_.sign()),
         level_(level) {
-    if (spec.element == Element::kBall)
-      ball_.emplace(spec.nesting_mm, reliefOf(reader_), input.grid());
-    else
+    const HeightBounds bounds = reader_.bounds();
+    const auto low = static_cast<double>(bounds.min), high = static_cast<double>(bounds.max);
+    if (spec.element != Element::kBall)
       flat_.emplace(spec.element, spec.nesting_mm, input.grid());
+    else if (bounds.empty())
+      ball_.emplace(spec.nesting_mm, 0.0, 0.0, input.grid());
+    else
+      ball_.emplace(spec.nesting_mm, sign_ < 0.0F ? -high : low, sign_ < 0.0F ? -low : high, input.grid());
   }
 
   [[nodiscard]] std::int32_t columns() const noexcept { return ball_ ? ball_->columns() : flat_->columns; }
@@ -74,8 +77,9 @@ class Opening {
  private:
   struct Scratch {
     Patch<float> heights, eroded, opened;
-    Patch<double> wide, wide_eroded, wide_opened;
+    Patch<double> wide_eroded, wide_opened;
     ErosionScratch erosion;
+    BallScratch ball;
   };
 
   bool work(const SampleRect& rect, bool parallel, Scratch& scratch, float* out, std::ptrdiff_t stride,
@@ -88,10 +92,7 @@ class Opening {
       reader_.readHeights(heights.rect.column, heights.rect.row + begin, heights.rect.columns, end - begin,
                           from, heights.stride);
       for (std::int32_t r = 0; r < end - begin; ++r)
-        for (std::int32_t c = 0; c < heights.rect.columns; ++c) {
-          float& z = from[r * heights.stride + c];
-          z = z == z ? sign_ * z : std::numeric_limits<float>::infinity();
-        }
+        FETTLE_AT_LEVEL(level_, readyRow)(from + r * heights.stride, sign_, heights.rect.columns);
     });
     return ball_ ? rollBall(rect, parallel, scratch, out, stride, job)
                  : rollFlat(rect, parallel, scratch, out, stride, job);
@@ -127,14 +128,9 @@ class Opening {
   bool rollBall(const SampleRect& rect, bool parallel, Scratch& scratch, float* out, std::ptrdiff_t stride,
                 const JobControl& job) const {
     const Patch<float>& heights = scratch.heights;
-    Patch<double>&wide = scratch.wide, &eroded = scratch.wide_eroded, &opened = scratch.wide_opened;
-    wide.resize(heights.rect);
-    eachRow(wide.rect.rows, parallel, [&](std::int32_t begin, std::int32_t end) {
-      for (std::int32_t r = wide.rect.row + begin; r < wide.rect.row + end; ++r)
-        std::copy_n(heights.row(r), wide.rect.columns, wide.row(r));
-    });
+    Patch<double>&eroded = scratch.wide_eroded, &opened = scratch.wide_opened;
     eroded.resize(grownWithin(rect, columns(), rows(), reader_));
-    if (!erode(*ball_, wide, eroded, parallel, level_, scratch.erosion, job)) return false;
+    if (!erode(*ball_, heights, eroded, parallel, level_, scratch.ball, job)) return false;
     // Where there is no sample, infinite.
     eachRow(eroded.rect.rows, parallel, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t r = eroded.rect.row + begin; r < eroded.rect.row + end; ++r) {
@@ -143,24 +139,15 @@ class Opening {
       }
     });
     opened.resize(rect);
-    if (!erode(*ball_, eroded, opened, parallel, level_, scratch.erosion, job)) return false;
+    if (!erode(*ball_, eroded, opened, parallel, level_, scratch.ball, job)) return false;
     eachRow(rect.rows, parallel, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t r = begin; r < end; ++r) {
         const double* const low = opened.row(rect.row + r);
         const float* const z = heights.row(rect.row + r) + (rect.column - heights.rect.column);
-        for (std::int32_t c = 0; c < rect.columns; ++c)
-          out[r * stride + c] = sign_ * (0.0F + touched(-low[c], z[c]));
+        FETTLE_AT_LEVEL(level_, settleRow)(low, z, ball_->deepest(), sign_, out + r * stride, rect.columns);
       }
     });
     return true;
-  }
-
-  // A sample that the ball touches keeps its height: the sum of depth and height was rounded once and the depth is taken
-  // away again.
-  [[nodiscard]] float touched(double height, float sample) const noexcept {
-    const auto z = static_cast<double>(sample);
-    const double rounding = 0x1p-51 * (std::fabs(z) + ball_->deepest());
-    return height >= z - rounding ? sample : static_cast<float>(height);
   }
 
   static void eachRow(std::int32_t rows, bool parallel, const auto& f) {
