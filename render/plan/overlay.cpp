@@ -154,6 +154,7 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Decoratio
   const int wanted = std::clamp(static_cast<int>((bottom - top) / (3.2 * line)), 2, 9);
   const std::vector<Tick> steps = ticks(low, high, wanted);
   std::vector<std::string> figures;
+  figures.reserve(steps.size());
   for (const Tick& tick : steps) figures.push_back(tick.text);
   const double text_left = left + width + 9 * s;
   const int figures_px = pen.sizeFor(figures, view.width - text_left - 2 * s, layout.text_px, kRegular);
