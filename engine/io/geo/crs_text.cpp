@@ -1,7 +1,6 @@
 #include "engine/io/geo/crs_text.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "engine/io/files/gdal_calls.h"
