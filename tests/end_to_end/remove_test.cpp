@@ -15,7 +15,7 @@ namespace {
 constexpr int kWide = 60, kHigh = 50;
 
 // A part of height 1 to 2.475 mm on a table at -0.5, with three samples of 9 and one hole. ESRI ASCII.
-void writePart(const std::string& path) {
+void writePartOnTable(const std::string& path) {
   std::ofstream out(path);
   out << "ncols 60\nnrows 50\nxllcenter 0\nyllcenter 0\ncellsize 0.5\nNODATA_value -9999\n";
   for (int r = kHigh - 1; r >= 0; --r) {
@@ -49,7 +49,7 @@ std::string writeMarks(const TempFolder& folder, int columns, int rows) {
 TEST(RemoveCommand, MakesHolesBelowAboveBetweenAndOutsideHeights) {
   const TempFolder folder;
   const std::string scan = folder.file("s.asc"), out = folder.file("o.tif");
-  writePart(scan);
+  writePartOnTable(scan);
   const auto run = [&](std::vector<std::string> more) {
     std::vector<std::string> line{"remove", scan, out, "--unit", "mm"};
     line.insert(line.end(), more.begin(), more.end());
@@ -70,7 +70,7 @@ TEST(RemoveCommand, MakesHolesBelowAboveBetweenAndOutsideHeights) {
 TEST(RemoveCommand, MarkedSamplesStayUnlessTheyAreNamed) {
   const TempFolder folder;
   const std::string scan = folder.file("s.asc"), out = folder.file("o.fettle");
-  writePart(scan);
+  writePartOnTable(scan);
   const std::string marks = writeMarks(folder, 10, 10);
   const auto run = [&](std::vector<std::string> more) {
     std::vector<std::string> line{"remove", scan, out, "--unit", "mm", "--force", "--marks", marks};
@@ -93,7 +93,7 @@ TEST(RemoveCommand, MarkedSamplesStayUnlessTheyAreNamed) {
 TEST(RemoveCommand, SaysWhatItCannotDo) {
   const TempFolder folder;
   const std::string scan = folder.file("s.asc"), out = folder.file("o.tif");
-  writePart(scan);
+  writePartOnTable(scan);
   const auto refused = [&](std::vector<std::string> more, const std::string& names) {
     std::vector<std::string> line{"remove", scan, out, "--unit", "mm"};
     line.insert(line.end(), more.begin(), more.end());
@@ -121,7 +121,7 @@ TEST(RemoveCommand, IsAStepOfARecipe) {
   const TempFolder folder;
   const std::string scan = folder.file("s.asc"), session = folder.file("o.fettle");
   const std::string recipe = folder.file("r.toml");
-  writePart(scan);
+  writePartOnTable(scan);
   const auto command =
       fettleJson({"remove", scan, session, "--unit", "mm", "--below", "-0.1mm", "--above", "3"});
   const Outcome printed = fettle({"recipe", session});
