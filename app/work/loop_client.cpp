@@ -204,6 +204,8 @@ void LoopClient::takeTicks() {
 }
 
 void LoopClient::take(haptic::LoopEvent&& event) {
+  // Not of the tool that is chosen by now: one that Shift or Ctrl took for a stroke is given back when the button is up.
+  steps_.strokeIsOf(event.tool);
   // The history is already where the loop will be after its answer.
   const bool replaced = restores_open_ > 0;
   // A stroke running when a filter's result was adopted is a separate step before it.
@@ -217,7 +219,6 @@ void LoopClient::take(haptic::LoopEvent&& event) {
   switch (event.kind) {
     case EventKind::kEdited:
       latency_.noteEdit(event, loop_.loop().state(), rate());
-      steps_.strokeIsOf(tool_);
       break;
     case EventKind::kStrokeEnded:
       if (replaced) break;

@@ -44,6 +44,7 @@ LoopEvent LoopTick::eventNow(EventKind kind, std::uint64_t id) noexcept {
   event.id = id;
   event.tick = state_.tick;
   event.stroke = state_.stroke;
+  event.tool = edited_with_;
   event.merged = std::exchange(merged_, 0);
   event.rect = std::exchange(dirty_, {});
   event.before = std::move(published_);
@@ -262,6 +263,7 @@ void LoopTick::noteEdit(const ForceSample& force, Tool tool) noexcept {
     stroke_.rested(tool == Tool::kFeel, options_.stroke_gap_ticks);
     return;
   }
+  edited_with_ = tool;
   const auto reach = static_cast<std::int32_t>(std::floor(scene_->scene.*brushRadiusOf(tool)));
   const CellIndex centre = scene_->tick.contact().proxy.cell;
   const engine::Grid& grid = scene_->field.grid();

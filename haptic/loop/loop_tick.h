@@ -193,6 +193,7 @@ class LoopTick {
   std::uint32_t merged_ = 0;
 
   RunningStroke stroke_;
+  Tool edited_with_ = Tool::kFeel;
   EditsSince since_snapshot_;
 
   std::int64_t first_ns_ = -1;        // wake-up of the first tick: the session's time 0

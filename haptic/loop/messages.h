@@ -88,6 +88,7 @@ struct LoopEvent {
   std::uint64_t id = 0;      ///< of the command it answers
   std::uint64_t tick = 0;    ///< ticks whose edits `version` holds
   std::uint64_t stroke = 0;  ///< strokes begun so far
+  Tool tool = Tool::kFeel;   ///< that made the last edit, whatever was chosen since
   std::uint32_t merged = 0;  ///< earlier publications that found the ring full and are part of this one
   engine::SampleRect
       rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well

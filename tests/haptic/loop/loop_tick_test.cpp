@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -549,9 +550,14 @@ class ButtonHand {
   [[nodiscard]] std::vector<std::uint64_t> endedStrokes() {
     std::vector<std::uint64_t> ended;
     for (LoopEvent event; channels_->events.pop(event);)
-      if (event.kind == EventKind::kStrokeEnded) ended.push_back(event.stroke);
+      if (event.kind == EventKind::kStrokeEnded) {
+        ended.push_back(event.stroke);
+        tool_of_ended_ = event.tool;
+      }
     return ended;
   }
+  // Of the last of them.
+  [[nodiscard]] std::optional<Tool> toolOfEnded() const { return tool_of_ended_; }
 
  private:
   engine::Version start_;
@@ -559,6 +565,7 @@ class ButtonHand {
   LoopOptions options_ = testOptions(Tool::kMark);
   std::unique_ptr<LoopChannels> channels_;
   std::unique_ptr<LoopTick> loop_;
+  std::optional<Tool> tool_of_ended_;
   int moved_ = 0;
 };
 constexpr std::uint32_t kClutched = kSecondaryButton | kPrimaryButton;
@@ -679,14 +686,18 @@ TEST(LoopTick, AToolThatComesDuringAStrokeEndsItAndBeginsAnother) {
   hand.hold(kPrimaryButton, 20);
   EXPECT_EQ(before, std::vector<std::uint64_t>{});
   EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{1U});  // before the other tool touched anything
+  EXPECT_EQ(hand.toolOfEnded(), Tool::kMark);
   EXPECT_EQ(hand.state().tool, Tool::kUnmark);
   EXPECT_EQ(hand.state().stroke, 2U);
   // The tool that is in effect already begins no other stroke.
   hand.choose(Tool::kUnmark);
   hand.hold(kPrimaryButton, 20);
   EXPECT_EQ(hand.state().stroke, 2U);
+  // One that is chosen while a stroke ends does not change whose it was.
+  hand.choose(Tool::kMark);
   hand.hold(0, 5);
   EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{2U});
+  EXPECT_EQ(hand.toolOfEnded(), Tool::kUnmark);
 }
 
 }  // namespace
