@@ -95,6 +95,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     const double lived = watch.seconds();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
+  saveSettingsNow();
   Report report = runReport(parts_, figures());
   // A user who quits has saved what was to be saved. Otherwise there was no question: unsaved work is
   // restored when the scan is opened again.
@@ -253,7 +254,7 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
 // a power cut takes no more than that.
 void Workstation::saveSettings() {
   const auto now = std::chrono::steady_clock::now();
-  if (parts_.quit == Quit::kNo && now - settings_looked_at_ < kSaveSettingsEvery) return;
+  if (now - settings_looked_at_ < kSaveSettingsEvery) return;
   settings_looked_at_ = now;
   saveSettingsNow();
 }

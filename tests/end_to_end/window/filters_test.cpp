@@ -190,7 +190,6 @@ TEST_F(WindowTest, a_preview_follows_its_fields) {
   // By keys, too, and what is marked alone.
   EXPECT_EQ(user.key("shift+w")["variants"], State{"Median 9 x 9"});
   EXPECT_EQ(user.key("o")["variants"], State{"Median 9 x 9, only marks"});
-  (void)user.same("nothing is marked", alone);
   EXPECT_EQ(user.key("o")["preview_is_behind"], false);
   EXPECT_EQ(program->now()["steps"], 0);
   const State another = user.key("n");

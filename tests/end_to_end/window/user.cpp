@@ -51,7 +51,7 @@ User::State User::key(const std::string& name) {
 void User::type(const std::string& text) {
   (void)waitFor("a place to type",
                 [](const State& s) { return s["text_field"] == true || s["adjusting"] != ""; });
-  display_.hands({"type", "--delay", "0", text});
+  display_.hands({"type", "--delay", "0", "--", text});
   (void)waitFor("typed " + text,
                 [&](const State& s) { return s["dialog_path"] == text || s["typed"] == text; });
 }
@@ -186,7 +186,7 @@ bool User::typeIn(const std::string& name, const std::string& value) {
   }
   (void)waitFor("a field to type " + name + " in", [](const State& s) { return s["text_field"] == true; });
   (void)press("ctrl+a");
-  display_.hands({"type", "--delay", "0", value});
+  display_.hands({"type", "--delay", "0", "--", value});
   (void)waitFor("typed " + value, [&](const State& s) { return s["field_text"] == value; });
   return true;
 }
