@@ -154,6 +154,9 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
     // Room for what is enlarged from every fourth pixel.
     const vk::Extent2D fourth = everyNth(extent, 4);
     makeLayer(whole_, extent, {4 * fourth.width, 4 * fourth.height});
+    // What is resized into it is not that of before, however large: a size may come back.
+    half_.extent = quarter_.extent = vk::Extent2D{};
+    reduce_.reset();
   }
   if (half) makeSmall(half_, extent, 2, enlarge_);
   if (quarter) makeSmall(quarter_, extent, 4, enlarge_more_);

@@ -146,5 +146,27 @@ TEST(Live, AQuarterAsSharpIsTheSamePictureWithLessDetailAndLeavesNoTrace) {
   }
 }
 
+// Layers of a size that was left are not taken up again with pictures that are gone.
+TEST(Live, ASizeThatComesBackIsDrawnAsItWas) {
+  for (const Sharpness sharpness : {Sharpness::kHalf, Sharpness::kQuarter, Sharpness::kFine}) {
+    SCOPED_TRACE(static_cast<int>(sharpness));
+    auto picture = makePicture();
+    ASSERT_TRUE(picture);
+    ASSERT_TRUE(picture->update(partField()));
+    FrameInput input = views().front();
+    const auto drawn = [&](int width, Sharpness as) {
+      input.view.width = width;
+      input.view.height = 321;
+      input.sharpness = as;
+      return shoot(*picture, input).image;
+    };
+    const Image before = drawn(480, sharpness);
+    (void)drawn(500, Sharpness::kFull);
+    (void)drawn(480, Sharpness::kFull);
+    EXPECT_EQ(drawn(480, sharpness).rgba, before.rgba);
+    for (const std::string& message : picture->validationMessages()) ADD_FAILURE() << message;
+  }
+}
+
 }  // namespace
 }  // namespace fettle::render
