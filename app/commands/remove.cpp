@@ -154,15 +154,13 @@ void addRemove(Command root, Chosen& chosen) {
       "shows. All other samples keep every bit, marks and edge lines stay. It is refused to remove every "
       "sample.\n"
       "In a session the scan that it began with keeps these heights: changes are limited from them, and "
-      "holes "
-      "that are filled afterwards do not count as filled there. Written to another format, what is removed "
-      "is "
-      "a hole like any other.");
+      "holes that are filled afterwards do not count as filled there. Written to another format, what is "
+      "removed is a hole like any other.");
   command.examples(
       {{"fettle remove scan.tif part.tif --below -0.2mm", "A part without the table it stands on"},
        {"fettle remove scan.tif part.tif --between 0,0", "Zeros that stand for no data"},
-       {"fettle remove scan.tif clean.tif --region marked --marks dust.png", "What was marked"},
-       {"fettle remove scan.tif part.tif --region unmarked --marks part.png", "All but what was marked"}});
+       {"fettle remove scan.tif clean.tif --region marked --marks marks.png", "What was marked"},
+       {"fettle remove scan.tif part.tif --region unmarked --marks marks.png", "All but what was marked"}});
 }
 
 }  // namespace fettle::app

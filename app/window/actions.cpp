@@ -179,7 +179,7 @@ constexpr ActionRow kRows[] = {
               letter('X'),
               kAlt,
               kNoKey,
-              {3, "Edit"},
+              {2, "Edit"},
               kField,
               openRemoval},
     ActionRow{Action::kRemovePreview, "Filter", "Preview removed samples", letter('X'), kControl, kNoKey,
