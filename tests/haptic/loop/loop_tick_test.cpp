@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
