@@ -145,12 +145,14 @@ namespace fettle::engine {
 
 /// GDAL by its own names: gdal().GDALOpenEx(...).
 struct GdalCalls {
+// NOLINTBEGIN(bugprone-macro-parentheses): what is declared is a name
 #define FETTLE_CALL(name) decltype(&::name) name = nullptr;
   FETTLE_GDAL_CALLS(FETTLE_CALL)
 #undef FETTLE_CALL
 #define FETTLE_CALL(name) void (*name)() = nullptr;
   FETTLE_GDAL_DRIVERS(FETTLE_CALL)
 #undef FETTLE_CALL
+  // NOLINTEND(bugprone-macro-parentheses)
 };
 
 /// Loads GDAL when it is first called: with the 88 libraries that it alone needs that takes two thirds of the time in which the
