@@ -113,7 +113,6 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   while (t <= end) {
     // The largest square that the line passes above or below: starting at the block of the cell, upwards.
     int shift = 0;
-    double leave = end;
     for (int level = 0; level <= reader.topLevel(); ++level) {
       const int s = 3 * (level + 1);
       const std::int32_t x = c >> s, y = r >> s;
@@ -131,12 +130,11 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
       const bool clear = low > high || std::min(z0, z1) > high + thick || std::max(z0, z1) < low - thick;
       if (!clear) break;
       shift = s;
-      leave = out;
     }
     if (shift != 0) {
       above = 0.0;  // outside of both: the line is not that near
     } else {
-      leave = std::min({end, exit(o.x, d.x, c, c + 1), exit(o.y, d.y, r, r + 1)});
+      const double leave = std::min({end, exit(o.x, d.x, c, c + 1), exit(o.y, d.y, r, r + 1)});
       const Corners p = cornersOf(reader, c, r);
       if (!p.whole) {
         above = 0.0;

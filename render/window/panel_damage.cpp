@@ -36,13 +36,18 @@ struct Triangle {
 };
 
 bool sameLook(const ImDrawCmd& a, const ImDrawCmd& b) {
-  return std::memcmp(&a.ClipRect, &b.ClipRect, sizeof(a.ClipRect)) == 0 && a.TextureId == b.TextureId;
+  const ImVec4 &p = a.ClipRect, &q = b.ClipRect;
+  return p.x == q.x && p.y == q.y && p.z == q.z && p.w == q.w && a.TextureId == b.TextureId;
+}
+
+bool sameLook(const ImDrawVert& a, const ImDrawVert& b) {
+  return a.pos.x == b.pos.x && a.pos.y == b.pos.y && a.uv.x == b.uv.x && a.uv.y == b.uv.y && a.col == b.col;
 }
 
 bool operator==(const Triangle& a, const Triangle& b) {
   if (!sameLook(*a.command, *b.command)) return false;
   for (std::size_t k = 0; k < 3; ++k)
-    if (std::memcmp(a.corners[k], b.corners[k], sizeof(ImDrawVert)) != 0) return false;
+    if (!sameLook(*a.corners[k], *b.corners[k])) return false;
   return true;
 }
 
