@@ -130,8 +130,13 @@ void MouseStylus::move(double passed_s) noexcept {
   const glm::dvec3 left = target - tip_mm_;
   if (stage_ == Stage::kLanding && std::abs(left.z) < kArrived * (feel_.hover_mm + now_.press_mm))
     stage_ = Stage::kStroke;
-  else if (stage_ == Stage::kEnding && (!now_.over || std::hypot(left.x, left.y) < kArrived * feel_.hover_mm))
+  else if (stage_ == Stage::kEnding && isThere())
     stage_ = Stage::kHover;
+}
+
+bool MouseStylus::isThere() const noexcept {
+  const glm::dvec3 left = now_.surface_mm - tip_mm_;
+  return !now_.over || std::hypot(left.x, left.y) < kArrived * feel_.hover_mm;
 }
 
 DeviceInput MouseStylus::readAt(std::int64_t now_ns) noexcept {
@@ -139,14 +144,17 @@ DeviceInput MouseStylus::readAt(std::int64_t now_ns) noexcept {
       last_read_ns_ == 0 ? 0.0 : std::max(1e-9 * static_cast<double>(now_ns - last_read_ns_), 0.0);
   last_read_ns_ = now_ns;
   takeRequests();
-  if (stage_ == Stage::kHover) followed_.store(accepted_, std::memory_order_release);
-  if (!now_.over && !placed_) return input_;  // never was over the field: no position yet
+  if (!now_.over && !placed_) {  // never was over the field: no position yet
+    followed_.store(accepted_, std::memory_order_release);
+    return input_;
+  }
   if (!placed_) {
     // Comes down from the hover height, wherever it first appears.
     tip_mm_ = now_.surface_mm + glm::dvec3{0.0, 0.0, feel_.hover_mm};
     placed_ = true;
   }
   move(passed_s);
+  if (stage_ == Stage::kHover && isThere()) followed_.store(accepted_, std::memory_order_release);
   input_.link = LinkState::kConnected;
   input_.arrival_ns = now_ns;
   ++input_.sequence;

@@ -68,7 +68,8 @@ class MouseStylus final : public Device {
   void wheel(double steps) noexcept;
   /// Window thread: depth the button presses to now [mm].
   [[nodiscard]] double pressMm() const noexcept { return request_.press_mm; }
-  /// Window thread: whether a request sent here is not completed yet; a stroke is completed with its end.
+  /// Window thread: whether a request sent here is not completed yet; a stroke is completed with its end, the cursor's place
+  /// when the tip is over it.
   [[nodiscard]] bool busy() const noexcept { return followed_.load(std::memory_order_acquire) != sent_; }
 
   /// read() at a time given by the caller [ns]; read() takes the steady clock. For tests.
@@ -88,6 +89,7 @@ class MouseStylus final : public Device {
   void takeRequests() noexcept;
   [[nodiscard]] bool accept(const Request& request) noexcept;
   void move(double passed_s) noexcept;
+  [[nodiscard]] bool isThere() const noexcept;  // over the cursor's place, if that is over the surface
 
   const MouseFeel feel_;
   DeviceProfile profile_;

@@ -221,6 +221,22 @@ TEST(MouseStylus, AStrokeBeginsWhereTheButtonWasPressedAndEndsWhereItWasLetGo) {
   EXPECT_NEAR(after.position_mm.z, 3.0, 1e-9);
 }
 
+TEST(MouseStylus, AHandIsFollowedWhenTheTipIsWhereItPoints) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  (void)loop.tick();
+  EXPECT_FALSE(loop.mouse.busy()) << "the tip appears at the cursor";
+  loop.mouse.setCursor({10.0, 0.0, 0.0});
+  (void)loop.tick();
+  EXPECT_TRUE(loop.mouse.busy()) << "on its way";
+  EXPECT_NEAR(loop.ticks(200).position_mm.x, 10.0, 0.05);
+  EXPECT_FALSE(loop.mouse.busy());
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  loop.mouse.leave();
+  (void)loop.tick();
+  EXPECT_FALSE(loop.mouse.busy()) << "over no surface there is no place to come to";
+}
+
 TEST(MouseStylus, APressBetweenTwoTicksIsAStroke) {
   MouseLoop loop;
   loop.mouse.setCursor({1.0, 2.0, 3.0});
