@@ -112,7 +112,11 @@ void drawField(Parts& parts, const DrawOptions& options) {
   WindowPicture& picture = parts.picture;
   LoopClient& client = *parts.document.client();
   const haptic::LoopState state = client.state();
-  if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) picture.requestRedraw();
+  const auto now = SparedShadow::Clock::now();
+  if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) {
+    parts.spared_shadow.moved(now);
+    picture.requestRedraw();
+  }
   picture.fit(parts.view);
   const std::vector<PreviewPicture> previews = previewsOf(parts);
   if (const auto status = picture.show(shownOf(parts, previews)); !status) {
@@ -121,6 +125,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
     return;
   }
   picture.adapt(!options.steady);
+  if (parts.spared_shadow.due(picture.spares(), now)) picture.requestRedraw();
   const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
   picture.smoothAtRest(parts.settings.display.smooth_at_rest && options.smooth_at_rest);
   if (!picture.takeDue(Draws::kRefined)) return;
@@ -130,8 +135,10 @@ void drawField(Parts& parts, const DrawOptions& options) {
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr || client.controllerLeads();
   // The shadow is three quarters of what a frame with a brush takes.
   StylusLook look = parts.settings.display.stylus;
-  if (picture.spares()) look.shadow = false;
-  if (stylus && state.link == haptic::LinkState::kConnected)
+  const bool shown = stylus && state.link == haptic::LinkState::kConnected;
+  const bool left_out = shown && look.pen && look.shadow && !parts.spared_shadow.shown(picture.spares(), now);
+  if (left_out) look.shadow = false;
+  if (shown)
     parts.stylus_overlay.append(client, state, picture.mmPerPixel(), parts.window.scale(), look,
                                 input.overlays);
   else
@@ -148,6 +155,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();
+  parts.spared_shadow.drawn(left_out);
   if (parts.stylus_overlay.fades()) picture.requestRedraw();
   client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }

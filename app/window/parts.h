@@ -21,6 +21,7 @@
 #include "app/window/radial_menu.h"
 #include "app/window/saving.h"
 #include "app/window/settings.h"
+#include "app/window/spared_shadow.h"
 #include "app/window/stylus.h"
 #include "app/window/view_text.h"
 #include "app/window/window_picture.h"
@@ -65,6 +66,7 @@ struct Parts {
   Flight flight;  ///< of `view`
   Bookmarks bookmarks;
   StylusOverlay stylus_overlay;
+  SparedShadow spared_shadow;
   LineOverlay line_overlay;
   PlaceOverlay place_overlay;
   SectionOverlay section_overlay;

@@ -290,6 +290,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   } else {
     waits("a movement", isActive(p, input));
     waits("a finer picture", p.document.isOpen() && p.picture.refining());
+    waits("the pen's shadow", p.document.isOpen() && p.spared_shadow.pending());
   }
   if (!p.document.isOpen()) return names;
   const LoopClient& client = *p.document.client();

@@ -40,7 +40,8 @@ bool working(const Parts& p) {
          p.filters.measuresNoise() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
          p.section.busy() || p.heights.busy() || p.heights.awaitsRest() || p.removal.busy() ||
          p.colours.busy() || p.compare.busy() || p.transform.busy() ||
-         (p.document.isOpen() && (p.picture.refining() || p.picture.smoothing()));
+         (p.document.isOpen() &&
+          (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
 }
 
 }  // namespace

@@ -37,8 +37,43 @@ class LoadTest : public WindowTest {
     return seen;
   }
 
+  // Moves the stylus over the part, each frame being held up; whether drawing left something out.
+  bool moveSlowly(User& user) {
+    ViewProgram& program = user.program();
+    program.skipToNewest();
+    bool spares = false;
+    EXPECT_TRUE(gate_.hold());
+    for (int i = 1; i <= 12; ++i) {
+      display.hands({"mousemove", std::to_string(300 + 5 * i), "400"});
+      std::this_thread::sleep_for(kHeldUp);
+      EXPECT_TRUE(gate_.step());
+      program.each([&](const State& s) { spares = spares || s["spares"] == true; });
+    }
+    gate_.release();
+    return spares;
+  }
+
   FrameGate gate_{folder.file("gate")};
 };
+
+TEST_F(LoadTest, the_pens_shadow_is_left_out_while_frames_take_long_and_drawn_when_it_rests) {
+  const auto program = start({scan}, gate_.environment());
+  User user(display, *program, "shadow");
+  (void)opened(*program);
+  constexpr Part kInShadow{355, 430, 60, 35};  // of a pen at {330, 400}
+  (void)user.rest();
+  const Screen bare = user.look("no pen");
+  const auto shadow = [&](const Screen& screen) { return differing(bare, screen, kInShadow) > 200; };
+  (void)user.key("s");
+  user.at({330, 400});
+  (void)user.rest();
+  EXPECT_TRUE(shadow(user.look("quick frames")));
+  EXPECT_TRUE(moveSlowly(user));
+  user.at({330, 400});
+  EXPECT_EQ(user.rest()["spares"], true) << "else this shows nothing";
+  EXPECT_TRUE(shadow(user.look("at rest after slow frames")));
+  (void)quit(user);
+}
 
 TEST_F(LoadTest, the_view_is_drawn_with_fewer_pixels_while_frames_take_long_and_sharp_at_rest) {
   const auto program = start({scan}, gate_.environment());
