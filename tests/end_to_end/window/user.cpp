@@ -138,6 +138,11 @@ std::optional<User::Place> User::readable(const std::string& text) {
 std::optional<User::Place> User::scrolledTo(const std::string& text) {
   if (const auto place = readable(text)) return place;
   const State picture = program_.now()["picture"];
+  // Without panels nothing can be scrolled: it is still to come.
+  if (picture[0].get<int>() + picture[2].get<int>() >= program_.now()["frame"][0].get<int>()) {
+    (void)waitFor("words: " + text, [&](const State&) { return readable(text).has_value(); });
+    return readable(text);
+  }
   at({picture[0].get<int>() + picture[2].get<int>() + kLine,
       picture[1].get<int>() + picture[3].get<int>() / 2});
   for (const int notch : {-1, 1})  // to the panels' end, then back to their top
