@@ -20,8 +20,9 @@ namespace fettle::bench {
 namespace {
 
 constexpr double kBallSamples = 2.0;
-// Counting may have to be done in single steps of 5 to 20 us.
+// Counting may have to be done in single steps of 5 to 20 us: in a short run, of fewer ticks.
 constexpr std::size_t kCountedTicks = 24;
+constexpr std::size_t kTicksPerCounted = 250;
 constexpr std::size_t kCountedBallTicks = 2;
 constexpr int kTouchingBefore = 20;
 constexpr std::size_t kTicksPerCheck = 4096;
@@ -143,7 +144,8 @@ InstructionCount count(const EffectCase& what, const engine::Version& field,
   engine::LiveField live(field, engine::Growth::kAllowed);
   haptic::Tick tick(what.scene, live, field);
   const bool ball = what.scene.tip == haptic::TipShape::kSphere;
-  const std::size_t counted = ball ? kCountedBallTicks : kCountedTicks;
+  const std::size_t counted =
+      std::min(ball ? kCountedBallTicks : kCountedTicks, strokes.size() / kTicksPerCounted);
   std::vector<haptic::StrokeSample> samples(strokes.begin(), strokes.end());
   for (haptic::StrokeSample& sample : samples) sample.tip_mm.z += raiseFor(what.scene);
   const haptic::DenormalScope as_in_the_loop;

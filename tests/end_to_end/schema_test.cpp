@@ -134,7 +134,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"bench", "estimate", "--side", "256", "--kind", "box", "--threads", "1", "--repeats", "1"});
   run({"bench", "filters", "--side", "64", "--kind", "box", "--window", "3", "--ground", "plain", "--repeats",
        "1"});
-  run({"bench", "render", "--side", "64", "--frames", "10"});
+  run({"bench", "render", "--side", "64", "--frames", "10", "--loop", "0.5", "--scene", "moving"});
 
   run({"--version"});
 
