@@ -1,6 +1,8 @@
 #include "app/commands/bench.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -132,6 +134,7 @@ engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::Job
   const auto measured = haptic::benchLoop(options, job);
   if (!measured) return tl::unexpected(measured.error());
   const bool has_cyclictest = measured->no_cyclictest.empty();
+  const std::optional<haptic::RatioIntervals>& within = measured->within;
   Report reference = rowOf(measured->reference);
   if (has_cyclictest) reference["missed"] = nullptr;  // it does not count them
   return Report{{"machine", measured->machine},
@@ -140,7 +143,11 @@ engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::Job
                 {"load", measured->load == haptic::BenchLoad::kBusy ? "busy" : "idle"},
                 {"reference", measured->reference.name},
                 {"p99_ratio", measured->p99_ratio},
+                {"p99_ratio_low", within ? Report(within->p99.low) : Report()},
+                {"p99_ratio_high", within ? Report(within->p99.high) : Report()},
                 {"p999_ratio", measured->p999_ratio},
+                {"p999_ratio_low", within ? Report(within->p999.low) : Report()},
+                {"p999_ratio_high", within ? Report(within->p999.high) : Report()},
                 {"refused_edits", measured->refused_edits},
                 {"device", options.device.empty() ? Report() : Report(options.device)},
                 {"device_inputs", measured->device_inputs},
@@ -168,9 +175,15 @@ void printLoop(const Report& report) {
     fmt::print("{}: processor {} (/dev/cpu_dma_latency)\n", row["name"].get<std::string>(),
                row["latency_held"].get<bool>() ? "kept from deep sleep" : "free to sleep deeply");
   if (!report["no_cyclictest"].is_null()) fmt::print("{}\n", report["no_cyclictest"].get<std::string>());
-  fmt::print("\nhaptic loop over {}: p99 {:.2f}, p99.9 {:.2f}; target 1.20\n",
-             report["reference"].get<std::string>(), report["p99_ratio"].get<double>(),
-             report["p999_ratio"].get<double>());
+  const auto ratio = [&](const std::string& of) {
+    const std::string value = fmt::format("{:.2f}", report[of].get<double>());
+    if (report[of + "_low"].is_null()) return value;
+    return fmt::format("{} ({:.2f} to {:.2f})", value, report[of + "_low"].get<double>(),
+                       report[of + "_high"].get<double>());
+  };
+  fmt::print("\nhaptic loop over {}: p99 {}, p99.9 {}; target 1.20\n", report["reference"].get<std::string>(),
+             ratio("p99_ratio"), ratio("p999_ratio"));
+  if (!report["p99_ratio_low"].is_null()) fmt::print("in brackets: 95 % of what rounds drawn anew give\n");
 }
 
 engine::Result<Report> stability(const bench::StiffnessSweepOptions& options, engine::JobControl& job) {

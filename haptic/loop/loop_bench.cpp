@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -145,6 +146,7 @@ class Measurement {
     chooseReference(slice_s);
     for (int slice = 0; slice < slices; ++slice) {
       const bool even = slice % 2 == 0;
+      if (even) rounds_.emplace_back();
       const engine::Status done =
           together ? measure(even ? last : first, even ? first : last, Which::kBoth, slice_s)
                    : measure(first, first, even ? Which::kLoop : Which::kReference, slice_s);
@@ -162,6 +164,7 @@ class Measurement {
     fill(report_.reference, report_.no_cyclictest.empty() ? "cyclictest" : "plain thread", reference_timing_);
     report_.p99_ratio = ratio(report_.loop.lateness.p99_ns, report_.reference.lateness.p99_ns);
     report_.p999_ratio = ratio(report_.loop.lateness.p999_ns, report_.reference.lateness.p999_ns);
+    report_.within = ratioIntervals(rounds_);
     return report_;
   }
 
@@ -192,9 +195,12 @@ class Measurement {
       return which == Which::kReference ? wait(seconds, nullptr) : withLoop(loop_core, seconds);
     };
     if (!report_.no_cyclictest.empty()) {
-      PlainThread plain(options_.rate_hz, requestFor(reference_core), reference_timing_);
+      LoopTiming timing;
+      PlainThread plain(options_.rate_hz, requestFor(reference_core), timing);
       engine::Status done = alongside();
       const RealTimeReport granted = plain.stop();
+      reference_timing_.addMissed(static_cast<std::int64_t>(timing.missed.load(std::memory_order_relaxed)));
+      addReference(timing.lateness);
       report_.reference.missing = granted.missing;
       report_.reference.latency_held = granted.latency_held;
       return done;
@@ -202,7 +208,15 @@ class Measurement {
     auto cyclictest = Cyclictest::start({reference_core, options_.priority, options_.rate_hz, seconds});
     if (!cyclictest) return tl::unexpected(cyclictest.error());
     if (engine::Status done = alongside(); !done) return done;
-    return cyclictest->finish(reference_timing_.lateness);
+    TimingHistogram lateness;
+    engine::Status done = cyclictest->finish(lateness);
+    if (done) addReference(lateness);
+    return done;
+  }
+
+  void addReference(const TimingHistogram& lateness) {
+    reference_timing_.lateness.add(lateness);
+    rounds_.back().other.add(lateness);
   }
 
   engine::Status withLoop(int core, double seconds) {
@@ -233,6 +247,7 @@ class Measurement {
     report_.loop.latency_held = loop.realTime().latency_held;
     report_.refused_edits += loop.state().refused_edits;
     loop_timing_.lateness.add(loop.timing().lateness);
+    rounds_.back().mine.add(loop.timing().lateness);
     loop_timing_.compute.add(loop.timing().compute);
     loop_timing_.addMissed(static_cast<std::int64_t>(loop.timing().missed.load(std::memory_order_relaxed)));
     return done;
@@ -271,7 +286,8 @@ class Measurement {
   engine::JobControl& job_;
   LoopBenchReport report_;
   LoopTiming loop_timing_, reference_timing_;
-  bool was_connected_ = false;  // the device, in a slice
+  std::deque<TimingRound> rounds_;  // of two slices, in which both change cores
+  bool was_connected_ = false;      // the device, in a slice
 };
 
 }  // namespace

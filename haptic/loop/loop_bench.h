@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "haptic/loop/ratio_interval.h"
 #include "haptic/loop/timing.h"
 
 namespace fettle::haptic {
@@ -47,6 +49,8 @@ struct LoopBenchReport {
   std::string no_cyclictest;  ///< why not; empty when it is the reference
   double p99_ratio = 0.0;     ///< loop over reference; 0 when that is 0
   double p999_ratio = 0.0;    ///< likewise. Target: at most 1.2
+  /// Of both ratios, from the differences between rounds of two slices; nothing for less than a minute.
+  std::optional<RatioIntervals> within;
   std::uint64_t refused_edits = 0;
   std::uint64_t events = 0;         ///< publications that the main side took
   std::uint64_t device_inputs = 0;  ///< of options.device: reports that arrived
