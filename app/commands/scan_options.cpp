@@ -67,10 +67,12 @@ void addScanOptions(Command command, ScanOptions& options) {
            .words = {"median", "mean", "highest"}},
           {.name = "--depth-camera",
            .to = &options.depth_camera,
-           .text = "PNG, TIFF: distances from a camera with these numbers in pixels, kept in its perspective",
-           .shown = "FX,FY,CX,CY",
-           .values = 4,
-           .between = ','},
+           .text = "PNG, TIFF: distances from a camera of this focal length in pixels, kept in its "
+                   "perspective; its axis "
+                   "goes through the middle of the picture, unless that is given",
+           .shown = "FX[,FY[,CX,CY]]",
+           .between = ',',
+           .one_word = true},
           {.name = "--from",
            .to = &options.from,
            .text = "Format of standard input (-), as extension, where its content is ambiguous",

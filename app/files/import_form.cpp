@@ -1,5 +1,7 @@
 #include "app/files/import_form.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -60,13 +62,19 @@ engine::Status addSpacing(const ImportForm& form, ScanOptions& options) {
 
 engine::Status addCamera(const ImportForm& form, ScanOptions& options) {
   constexpr const char* kField = "depth camera";
+  std::array<std::optional<double>, 4> camera;
   for (std::size_t i = 0; i < form.camera.size(); ++i) {
     const auto value = read(form.camera[i], kField, i < 2 ? Takes::kPositive : Takes::kAny);
     if (!value) return tl::unexpected(value.error());
-    if (*value) options.depth_camera.push_back(**value);
+    camera[i] = *value;
   }
-  if (!options.depth_camera.empty() && options.depth_camera.size() != form.camera.size())
-    return engine::inputError("a number is missing", kField, "give all four, or none");
+  const auto [fx, fy, cx, cy] = camera;
+  if (!fx && (fy || cx || cy)) return engine::inputError("its focal length fx is missing", kField, "give it");
+  if (cx.has_value() != cy.has_value())
+    return engine::inputError("of its axis cx, cy one is missing", kField, "give both, or none");
+  if (fx) options.depth_camera.push_back(*fx);
+  if (fx && (fy || cx)) options.depth_camera.push_back(fy.value_or(*fx));
+  if (fx && cx) options.depth_camera.insert(options.depth_camera.end(), {*cx, *cy});
   if (!options.depth_camera.empty() && !options.spacing.empty())
     return engine::inputError("it gives the spacing itself", kField, "leave the spacing empty");
   return {};
@@ -87,9 +95,8 @@ ImportForm ImportForm::of(const ScanOptions& options) {
   form.no_data = text(options.no_data);
   form.cell_size = text(options.cell_size);
   form.cell_rule = options.cell_rule;
-  if (options.depth_camera.size() == form.camera.size())
-    for (std::size_t i = 0; i < form.camera.size(); ++i)
-      form.camera[i] = fmt::format("{}", options.depth_camera[i]);
+  for (std::size_t i = 0; i < std::min(form.camera.size(), options.depth_camera.size()); ++i)
+    form.camera[i] = fmt::format("{}", options.depth_camera[i]);
   return form;
 }
 

@@ -36,10 +36,10 @@ constexpr std::array kFields{
         "--cell-rule", "cell height", false,
         "The height of a cell with several points: the median leaves out strays, the highest is what a "
         "laser from above sees first."},
-    ReadingField{
-        "--depth-camera", "depth camera", false,
-        "The numbers are distances from a camera: its focal lengths fx, fy and its middle cx, cy, in "
-        "pixels. All four, or none."},
+    ReadingField{"--depth-camera", "depth camera", false,
+                 "The numbers are distances from a camera: its focal length fx in pixels. fy is the same, "
+                 "and its axis cx, cy "
+                 "goes through the middle of the picture, unless they are given."},
 };
 
 // Formats whose points lie as they like, and pictures whose counts may be distances: FormatInfo::name.

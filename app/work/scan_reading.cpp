@@ -14,8 +14,11 @@ ScanOptions scanOptionsOf(const engine::ImportOptions& import) {
   options.cell_size = import.cell_size;
   if (import.cell_rule == engine::CellRule::kMean) options.cell_rule = "mean";
   if (import.cell_rule == engine::CellRule::kHighest) options.cell_rule = "highest";
-  if (const auto& camera = import.depth_camera)
-    options.depth_camera = {camera->fx, camera->fy, camera->cx, camera->cy};
+  if (const auto& camera = import.depth_camera) {
+    options.depth_camera = {camera->fx, camera->fy};
+    if (camera->cx && camera->cy)
+      options.depth_camera.insert(options.depth_camera.end(), {*camera->cx, *camera->cy});
+  }
   return options;
 }
 
@@ -41,8 +44,16 @@ engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) 
   if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
   import.z_scale = options.z_scale;
   import.cell_size = options.cell_size;
-  if (const auto& camera = options.depth_camera; camera.size() == 4)
-    import.depth_camera = engine::DepthCamera{camera[0], camera[1], camera[2], camera[3]};
+  if (const auto& camera = options.depth_camera; !camera.empty()) {
+    if (camera.size() != 1 && camera.size() != 2 && camera.size() != 4)
+      return engine::inputError(fmt::format("{} numbers are no camera", camera.size()), "--depth-camera",
+                                "give FX[,FY[,CX,CY]]");
+    import.depth_camera = engine::DepthCamera{camera[0], camera.size() > 1 ? camera[1] : camera[0]};
+    if (camera.size() == 4) {
+      import.depth_camera->cx = camera[2];
+      import.depth_camera->cy = camera[3];
+    }
+  }
   if (options.cell_rule == "mean") import.cell_rule = engine::CellRule::kMean;
   if (options.cell_rule == "highest") import.cell_rule = engine::CellRule::kHighest;
   if (!options.unit.empty()) {

@@ -17,7 +17,7 @@ struct ScanOptions {
   std::string unit;
   std::optional<double> cell_size;
   std::string cell_rule;
-  std::vector<double> depth_camera;  ///< fx, fy, cx, cy [pixels]; empty = none
+  std::vector<double> depth_camera;  ///< fx; fx, fy; or fx, fy, cx, cy [pixels]; empty = none
   std::string from;                  ///< format of standard input as extension; empty = by its content
 };
 

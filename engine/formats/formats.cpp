@@ -44,9 +44,9 @@ Status checkOptions(const ImportOptions& options) {
     return inputError(fmt::format("a unit of {} mm is not valid", options.unit->mm), "--unit");
   if (options.depth_camera) {
     const DepthCamera& camera = *options.depth_camera;
-    if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx) ||
-        !std::isfinite(camera.cy))
-      return inputError("the camera is not valid", "--depth-camera", "give fx,fy,cx,cy in pixels");
+    if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx.value_or(0.0)) ||
+        !std::isfinite(camera.cy.value_or(0.0)))
+      return inputError("the camera is not valid", "--depth-camera", "give fx[,fy[,cx,cy]] in pixels");
     if (options.spacing)
       return inputError("a depth camera has no spacing of its own", "--spacing",
                         "give either --spacing or --depth-camera");

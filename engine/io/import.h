@@ -23,9 +23,11 @@ enum class CellRule {
 };
 
 /// A pinhole camera: pixel (column u, row v from the top) at distance Z along its axis is the point (u - cx)
-/// * Z / fx to the right of the axis and (cy - v) * Z / fy above it. All in pixels; fx, fy > 0.
+/// * Z / fx to the right of the axis and (cy - v) * Z / fy above it. All in pixels; fx, fy > 0. Without cx and cy the axis goes
+/// through the middle of the picture, as that of most cameras does within a few pixels.
 struct DepthCamera {
-  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
+  double fx = 0.0, fy = 0.0;
+  std::optional<double> cx = {}, cy = {};
 };
 
 /// What the user states about a file. It has priority over the file, with a warning where the two differ.

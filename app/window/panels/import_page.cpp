@@ -103,7 +103,7 @@ void cameraFields(ImportForm& form) {
   explainOption("--depth-camera");
   if (!open) return;
   const float quarter = 0.25F * (ImGui::GetContentRegionAvail().x - 3.0F * ImGui::GetStyle().ItemSpacing.x);
-  static constexpr std::array kNames{"fx", "fy", "cx", "cy"};
+  static constexpr std::array kNames{"fx", "fy: fx", "cx: middle", "cy: middle"};
   for (std::size_t i = 0; i < form.camera.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     ImGui::SetNextItemWidth(quarter);

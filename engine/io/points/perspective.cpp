@@ -68,8 +68,8 @@ void placeInPerspective(Imported& image, const DepthCamera& camera) {
   const double in_lateral = distance * grid.height_unit.mm / grid.lateral_unit.mm;
   grid.spacing_x = in_lateral / camera.fx;
   grid.spacing_y = in_lateral / camera.fy;
-  grid.origin_x = -camera.cx * grid.spacing_x;
-  grid.origin_y = (camera.cy - (grid.height - 1)) * grid.spacing_y;
+  grid.origin_x = -camera.cx.value_or(0.5 * (grid.width - 1)) * grid.spacing_x;
+  grid.origin_y = (camera.cy.value_or(0.5 * (grid.height - 1)) - (grid.height - 1)) * grid.spacing_y;
   image.field = image.field.withGrid(grid);
   image.warnings.push_back(fmt::format(
       "the scan keeps its camera's perspective: heights are distances from the camera, the spacing "
@@ -111,12 +111,12 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
   if (imported) {
-    const DepthCamera fitted{std::abs(fit.column_by_slope.scale), std::abs(fit.row_by_slope.scale),
-                             fit.column_by_slope.offset, fit.row_by_slope.offset};
-    imported->warnings.push_back(fmt::format(
-        "the points are those of a camera: fx {:.6g}, fy {:.6g}, cx {:.6g}, cy {:.6g} fitted to "
-        "{:.2g} pixels; --cell-size grids them from above instead",
-        fitted.fx, fitted.fy, fitted.cx, fitted.cy, std::max(fit.column_by_slope.rms, fit.row_by_slope.rms)));
+    const double cx = fit.column_by_slope.offset, cy = fit.row_by_slope.offset;
+    const DepthCamera fitted{std::abs(fit.column_by_slope.scale), std::abs(fit.row_by_slope.scale), cx, cy};
+    imported->warnings.push_back(
+        fmt::format("the points are those of a camera: fx {:.6g}, fy {:.6g}, cx {:.6g}, cy {:.6g} fitted to "
+                    "{:.2g} pixels; --cell-size grids them from above instead",
+                    fitted.fx, fitted.fy, cx, cy, std::max(fit.column_by_slope.rms, fit.row_by_slope.rms)));
     placeInPerspective(*imported, fitted);
   }
   return imported;

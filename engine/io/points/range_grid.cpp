@@ -103,8 +103,8 @@ Status writePlaces(const PointCloud& cloud, const RangeGrid& grid, const RangeFi
 DepthCamera cameraOf(const RangeFit& fit, const Grid& grid) {
   DepthCamera camera{std::abs(fit.column_by_slope.scale), std::abs(fit.row_by_slope.scale),
                      fit.column_by_slope.offset, fit.row_by_slope.offset};
-  if (fit.column.scale < 0.0) camera.cx = grid.width - 1 - camera.cx;
-  if (fit.row.scale > 0.0) camera.cy = grid.height - 1 - camera.cy;
+  if (fit.column.scale < 0.0) camera.cx = grid.width - 1 - fit.column_by_slope.offset;
+  if (fit.row.scale > 0.0) camera.cy = grid.height - 1 - fit.row_by_slope.offset;
   return camera;
 }
 

@@ -41,6 +41,16 @@ TEST(ImportForm, keeps_other_row_distances_and_a_camera) {
   EXPECT_EQ(scanOptionsText(*form.read()), " --depth-camera 500,501,320,-1");
   const auto import = importOptions(*form.read());
   EXPECT_EQ(scanOptionsText(scanOptionsOf(*import)), " --depth-camera 500,501,320,-1");
+  // One number is what a maker states.
+  form.camera = {"500", "", "", ""};
+  EXPECT_EQ(scanOptionsText(*form.read()), " --depth-camera 500");
+  EXPECT_EQ(scanOptionsText(scanOptionsOf(*importOptions(*form.read()))), " --depth-camera 500,500");
+  EXPECT_EQ(ImportForm::of(*form.read()).camera[0], "500");
+  form.camera = {"500", "", "1", "2"};
+  EXPECT_EQ(scanOptionsText(*form.read()), " --depth-camera 500,500,1,2");
+  ScanOptions three;
+  three.depth_camera = {1.0, 2.0, 3.0};
+  EXPECT_EQ(importOptions(three).error().where, "--depth-camera");
 }
 
 TEST(ImportForm, names_the_field_that_cannot_be_read_and_what_it_takes) {
@@ -61,6 +71,7 @@ TEST(ImportForm, names_the_field_that_cannot_be_read_and_what_it_takes) {
   wrong([](ImportForm& form) { form.cell_size = "-2"; }, "cell size");
   wrong([](ImportForm& form) { form.camera = {"1", "1", "1", ""}; }, "depth camera");
   wrong([](ImportForm& form) { form.camera = {"0", "1", "1", "1"}; }, "depth camera");
+  wrong([](ImportForm& form) { form.camera = {"", "1", "", ""}; }, "depth camera");
   wrong(
       [](ImportForm& form) {
         form.camera = {"1", "1", "1", "1"};

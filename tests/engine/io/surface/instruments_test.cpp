@@ -265,12 +265,13 @@ TEST(Pcd, EveryEncodingAndOrderOfFieldsGivesTheSameField) {
 }
 
 TEST(Pcd, RowsOfACameraStayItsPixels) {
-  const DepthCamera camera{500.0, 510.0, 15.5, 9.0};
+  constexpr double cx = 15.5, cy = 9.0;
+  const DepthCamera camera{500.0, 510.0, cx, cy};
   std::vector<std::array<double, 3>> points;
   for (int v = 0; v < 20; ++v)
     for (int u = 0; u < 30; ++u) {
       const double z = u == 3 ? double{kNan} : 1.0 + 0.01 * ((u * 7 + v * 3) % 11);
-      points.push_back({(u - camera.cx) * z / camera.fx, (v - camera.cy) * z / camera.fy, z});
+      points.push_back({(u - cx) * z / camera.fx, (v - cy) * z / camera.fy, z});
     }
   FETTLE_LOAD_BYTES(scan, "a.pcd", pcd("binary_compressed", points, 30));
   ASSERT_EQ(scan.field.grid().width, 30);
@@ -339,6 +340,13 @@ TEST(DepthCamera, APictureKeepsItsDistancesAndGetsThePitchOfItsPixels) {
     EXPECT_DOUBLE_EQ(scan.field.grid().origin_y, (10.0 - 29.0) * 1001.0 / 250.0);
     EXPECT_EQ(contentHash(scan.field), contentHash(makeField(grid, counts)));
     EXPECT_TRUE(warned(scan.warnings, "perspective"));
+    // Most cameras look along the middle of their picture.
+    options.depth_camera = DepthCamera{500.0, 250.0};
+    const auto centred = load(folder.file(name), options);
+    ASSERT_TRUE(centred) << centred.error().line();
+    const Grid& middle = centred->field.grid();
+    EXPECT_DOUBLE_EQ(middle.origin_x, -0.5 * (middle.width - 1) * middle.spacing_x);
+    EXPECT_DOUBLE_EQ(middle.origin_y, -0.5 * (middle.height - 1) * middle.spacing_y);
     options.spacing = std::pair{1.0, 1.0};
     const auto both = load(folder.file(name), options);
     ASSERT_FALSE(both);
