@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -367,16 +368,25 @@ void sectionEnd(Parts& p) {
   p.settings.panels["Section"] = true;
   p.picture.requestRedraw();
 }
+// What a preview is made with, and what it found, stands in its panel.
+inline void enterPanel(Parts& p, const char* name) {
+  p.settings.panels[name] = true;
+  p.enter_panel = name;
+}
 template <auto options>
 bool heightsArePreviewed(const Parts& p) {
   return p.heights.previews(p.heights.*options);
 }
 template <auto options>
 void previewHeights(Parts& p) {
-  if (heightsArePreviewed<options>(p))
+  constexpr bool removes = std::is_same_v<decltype(options), engine::RemoveOptions HeightTool::*>;
+  const char* const panel = removes ? "Remove samples" : "Holes and lines";
+  if (heightsArePreviewed<options>(p)) {
     p.heights.dropPreview();
-  else
+  } else {
+    if (!p.settings.panels[panel]) enterPanel(p, panel);
     p.heights.preview(p.heights.*options, p.picture.seenPart(clientOf(p).field().grid(), p.view));
+  }
   p.picture.requestRedraw();
 }
 template <void (HeightTool::*make)()>
@@ -393,8 +403,7 @@ inline void removeMarked(Parts& p) {
 }
 inline void openRemoval(Parts& p) {
   p.settings.side_panel = true;
-  p.settings.panels["Remove samples"] = true;
-  p.enter_removal = true;
+  enterPanel(p, "Remove samples");
   p.picture.requestRedraw();
 }
 template <void (SectionTool::*act)()>

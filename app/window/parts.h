@@ -99,8 +99,8 @@ struct Parts {
   std::int64_t steps_seen = 0;               ///< of showMarksMade()
   bool shows_before = false;                 ///< the scan as it was, while a key is held
   bool full_screen = false;                  ///< the picture and the status line alone, on all of the screen
-  bool enter_removal = false;  ///< the panel of removed samples comes into view with the next frame
-  bool enter_panels = false;   ///< the panels get the keyboard focus with the next frame
+  std::string enter_panel;    ///< the panel of this name comes into view with the next frame; none: empty
+  bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
   /// How a file is to be read: as the command line says, else as was said of this file before.

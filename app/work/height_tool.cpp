@@ -29,11 +29,11 @@ struct MakerName {
     constexpr const char* kOf[] = {"all samples", "marked samples", "samples not marked"};
     const bool low = std::isfinite(remove.low), high = std::isfinite(remove.high);
     const bool between = remove.heights == engine::RemoveOptions::Heights::kBetween;
+    // Of a field that is seen upside down below is above.
     const char* by = !low && !high ? ""
                      : between     ? ": between two heights"
                      : low && high ? ": outside two heights"
-                     : low         ? ": below a height"
-                                   : ": above a height";
+                                   : ": beyond a height";
     return fmt::format("Remove {}{}", kOf[static_cast<std::size_t>(remove.region)], by);
   }
 };

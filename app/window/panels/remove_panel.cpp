@@ -124,7 +124,9 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   count.want(heights.remove);
   writeWrapped(countText(count));
   heightButtons(context, heights, heights.remove, {Action::kRemovePreview, Action::kRemoveSamples, "Remove"});
+  ImGui::PushID("removed");  // the place of the panel of holes has the same name
   heightOutcome(heights, heights.wasLast(heights.remove));
+  ImGui::PopID();
 }
 
 }  // namespace fettle::app

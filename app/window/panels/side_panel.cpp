@@ -8,8 +8,13 @@ namespace fettle::app {
 namespace {
 
 // A section of the panels that can be collapsed; its state is stored in the settings.
-bool section(Settings& settings, const char* name, bool open_at_first) {
+bool section(Parts& parts, const char* name, bool open_at_first) {
+  Settings& settings = parts.settings;
   const auto known = settings.panels.find(name);
+  if (parts.enter_panel == name) {
+    ImGui::SetScrollHereY(0.0F);
+    parts.enter_panel.clear();
+  }
   // In each frame: an action opens a panel by its setting, too.
   ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first);
   const bool open = ImGui::CollapsingHeader(name);
@@ -31,32 +36,30 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     ImGui::SetKeyboardFocusHere();
   }
   const PanelContext context{*parts.document.client(), parts.feedback.notices, act, parts.units};
-  if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
-  if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);
-  if (section(settings, "Edge lines", false)) {
+  if (section(parts, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
+  if (section(parts, "Edges", false)) edgePanel(context, parts.marking.edges);
+  if (section(parts, "Edge lines", false)) {
     placePanel(context, parts.marking.places);
     linePanel(context, parts.marking.lines, settings.draw_lines);
   }
-  if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
-  if (std::exchange(parts.enter_removal, false)) ImGui::SetScrollHereY(0.0F);
-  if (section(settings, "Remove samples", false))
+  if (section(parts, "Filters", true)) filterPanel(context, parts.filters, settings.display);
+  if (section(parts, "Remove samples", false))
     removePanel(context, parts.heights, parts.removal, parts.picture);
-  if (section(settings, "Holes and lines", false)) heightsPanel(context, parts.heights);
-  if (section(settings, "Form", false)) formPanel(context, parts.form);
-  if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
-  if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
-  if (section(settings, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
-  if (section(settings, "Section", false)) sectionPanel(context, parts.section);
-  if (section(settings, "Transform", false) && transformPanel(context, parts.transform))
+  if (section(parts, "Holes and lines", false)) heightsPanel(context, parts.heights);
+  if (section(parts, "Form", false)) formPanel(context, parts.form);
+  if (section(parts, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
+  if (section(parts, "Change since the scan", true)) changePanel(context, parts.change);
+  if (section(parts, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
+  if (section(parts, "Section", false)) sectionPanel(context, parts.section);
+  if (section(parts, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
-  if (section(settings, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
+  if (section(parts, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
   parts.colours.handles.reset();
-  if (section(settings, "Colours", false))
-    colourPanel(context, settings.display, parts.colours, parts.picture);
-  if (section(settings, "Display", false))
+  if (section(parts, "Colours", false)) colourPanel(context, settings.display, parts.colours, parts.picture);
+  if (section(parts, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
-  if (section(settings, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
-  if (section(settings, "Haptics", false))
+  if (section(parts, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
+  if (section(parts, "Haptics", false))
     rate_hz = hapticsPanel(context, parts.stylus_overlay, settings.loudness, parts.costs);
   ImGui::End();
   return rate_hz;

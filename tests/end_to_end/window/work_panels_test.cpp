@@ -1,4 +1,5 @@
 // Panels that work on the whole scan: sections kept with the session, holes and lines as steps, another scan to compare with, transforms.
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <string>
@@ -164,6 +165,23 @@ TEST_F(WindowTest, filled_holes_and_levelled_lines_are_previewed_beside_the_scan
   const State levelled = user.key("Return");
   EXPECT_EQ(levelled["steps"], 1);
   EXPECT_TRUE(levelled["heights_preview"].is_null());
+  // By a key the panel of removed samples comes, too; what holes gave stands with the holes.
+  const auto hasPanel = [](const State& s, const char* name) {
+    return std::ranges::find(s["panels"], name) != s["panels"].end();
+  };
+  EXPECT_FALSE(hasPanel(program->now(), "Remove samples"));
+  EXPECT_TRUE(hasPanel(user.key("ctrl+x"), "Remove samples"));
+  (void)user.key("ctrl+x");
+  (void)user.key("ctrl+h");
+  const State texts = program->now()["texts"];
+  const auto topOf = [&](const std::string& words) {
+    for (const State& t : texts)
+      if (t["text"].get<std::string>().find(words) != std::string::npos) return t["at"][1].get<int>();
+    ADD_FAILURE() << words << " is not there: " << texts.dump();
+    return 0;
+  };
+  EXPECT_GT(topOf("holes filled"), topOf("only holes up to"));
+  EXPECT_TRUE(user.key("Escape")["heights_preview"].is_null());
   saveAs(user, saved);
   (void)quit(user);
   EXPECT_EQ(compare(levelledRows(load(scan)), load(saved)).changed, 0);
@@ -187,7 +205,8 @@ TEST_F(WindowTest, samples_are_removed_by_height_and_by_mark) {
   EXPECT_TRUE(user.reads("would go"));
   EXPECT_EQ(program->now()["steps"], 0);
   const State shown = user.click("Preview");
-  EXPECT_EQ(shown["heights_preview"], "Remove samples not marked: below a height") << shown["notices"].dump();
+  EXPECT_EQ(shown["heights_preview"], "Remove samples not marked: beyond a height")
+      << shown["notices"].dump();
   user.at({20, 790});
   const Screen holes = user.changed("without them, beside the scan", alone);
   // The preview follows.
