@@ -64,7 +64,9 @@ void spacingFields(Files& files) {
   ImportForm& form = files.form;
   std::string across = "as in the file", up = across;
   if (files.found_grid) {
-    const char* const whence = isAssumed(files.found_warnings, "--spacing") ? "guessed" : "in the file";
+    const char* const whence = !files.form.camera[0].empty()                  ? "by the camera"
+                               : isAssumed(files.found_warnings, "--spacing") ? "guessed"
+                                                                              : "in the file";
     across = fmt::format("{:.6g} {}", files.found_grid->spacing_x, whence);
     up = fmt::format("{:.6g} {}", files.found_grid->spacing_y, whence);
   }

@@ -117,6 +117,32 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   quit(later);
 }
 
+TEST_F(WindowTest, a_depth_camera_is_said_by_one_number) {
+  const std::string depth = folder.file("depth.png");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "convert", scan, depth});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({});
+  User user(display, *program, "camera");
+  program->until("an empty window", [](const State& s) { return says(s, "Drop a scan here"); });
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(depth);
+  (void)user.rest();
+  (void)user.click("Read as ...");
+  program->until("the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
+  (void)user.click("distances from a depth camera");
+  user.writeOver("fx", "525");
+  const State said = program->until("the spacing", [](const State& s) { return says(s, "by the camera"); });
+  EXPECT_TRUE(says(said, "cx: middle")) << said["texts"].dump();
+  (void)user.rest();
+  (void)user.look("one number");
+  (void)user.key("Return");
+  const State read =
+      program->until("the scan", [&](const State& s) { return s["path"] == depth && s["settled"] == true; });
+  EXPECT_NE(read["notices"].dump().find("perspective"), std::string::npos) << read["notices"].dump();
+  quit(user);
+}
+
 TEST_F(WindowTest, what_had_to_be_guessed_is_asked_before_a_scan_is_opened_and_once) {
   const auto asked = [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; };
   const std::string counts = writeCounts(folder.file("counts.asc"));
