@@ -14,12 +14,12 @@ namespace {
 
 using tests::TempFolder;
 
-// Any float but infinities: every exponent, denormals, both zeros, holes.
+// Any float but infinities: every exponent, denormals, both zeros, holes; what files often declare as no data.
 std::vector<float> anyFloats(std::size_t count, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::vector<float> values;
   for (const float v : {0.0F, -0.0F, FLT_MIN, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MAX, -FLT_MAX, kNan, 1e6F,
-                        -9999.0F, 0.1F, 16777217.0F})
+                        -9999.0F, -1.0F, 999.0F, 0.1F, 16777217.0F})
     values.push_back(v);
   while (values.size() < count) {
     const float v = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
