@@ -25,7 +25,7 @@ Dataset openTiff(const std::string& path) {
 }
 
 // Rows per call.
-bool readBand(const std::string& path, bool whole, std::vector<char>& buffer) {
+bool readBand(const std::string& path, bool whole, char* buffer) {
   const Dataset dataset = openTiff(path);
   if (!dataset || engine::gdal().GDALGetRasterCount(dataset.get()) < 1) return false;
   GDALRasterBandH band = engine::gdal().GDALGetRasterBand(dataset.get(), 1);
@@ -39,11 +39,22 @@ bool readBand(const std::string& path, bool whole, std::vector<char>& buffer) {
   for (int row = 0; row < height; row += rows) {
     const int now = std::min(rows, height - row);
     if (engine::gdal().GDALRasterIO(band, GF_Read, 0, row, width, now,
-                                    buffer.data() + row_bytes * static_cast<std::size_t>(row), width, now,
-                                    type, 0, 0) != CE_None)
+                                    buffer + row_bytes * static_cast<std::size_t>(row), width, now, type, 0,
+                                    0) != CE_None)
       return false;
   }
   return true;
+}
+
+// Of the first band; nothing for a file that GDAL does not open as a TIFF.
+std::optional<std::size_t> bytesOfBand(const std::string& path) {
+  const Dataset dataset = openTiff(path);
+  if (!dataset || engine::gdal().GDALGetRasterCount(dataset.get()) < 1) return std::nullopt;
+  const GDALDataType type =
+      engine::gdal().GDALGetRasterDataType(engine::gdal().GDALGetRasterBand(dataset.get(), 1));
+  return static_cast<std::size_t>(engine::gdal().GDALGetRasterXSize(dataset.get())) *
+         static_cast<std::size_t>(engine::gdal().GDALGetRasterYSize(dataset.get())) *
+         static_cast<std::size_t>(engine::gdal().GDALGetDataTypeSizeBytes(type));
 }
 
 }  // namespace
@@ -83,24 +94,26 @@ engine::Status writeTiffAs(TiffLayout layout, const engine::Version& field, cons
 }
 
 engine::Result<std::optional<double>> secondsOfGdal(const std::string& path, std::vector<char>& buffer) {
-  {
-    const Dataset dataset = openTiff(path);
-    if (!dataset || engine::gdal().GDALGetRasterCount(dataset.get()) < 1) return std::nullopt;
-    const GDALDataType type =
-        engine::gdal().GDALGetRasterDataType(engine::gdal().GDALGetRasterBand(dataset.get(), 1));
-    const std::size_t bytes = static_cast<std::size_t>(engine::gdal().GDALGetRasterXSize(dataset.get())) *
-                              static_cast<std::size_t>(engine::gdal().GDALGetRasterYSize(dataset.get())) *
-                              static_cast<std::size_t>(engine::gdal().GDALGetDataTypeSizeBytes(type));
-    if (buffer.size() < bytes) buffer.resize(bytes);
-  }
+  const auto bytes = bytesOfBand(path);
+  if (!bytes) return std::nullopt;
+  if (buffer.size() < *bytes) buffer.resize(*bytes);
   double best = 0.0;
   for (const bool whole : {true, false}) {
     const engine::Stopwatch watch;
-    if (!readBand(path, whole, buffer)) return engine::inputError("the file cannot be read", path);
+    if (!readBand(path, whole, buffer.data())) return engine::inputError("the file cannot be read", path);
     const double took = watch.seconds();
     best = whole ? took : std::min(best, took);
   }
   return best;
+}
+
+engine::Result<std::optional<double>> secondsOfGdalIntoNewMemory(const std::string& path) {
+  const auto bytes = bytesOfBand(path);
+  if (!bytes) return std::nullopt;
+  const engine::Stopwatch watch;
+  const auto buffer = std::make_unique_for_overwrite<char[]>(*bytes);
+  if (!readBand(path, true, buffer.get())) return engine::inputError("the file cannot be read", path);
+  return watch.seconds();
 }
 
 }  // namespace fettle::bench

@@ -15,6 +15,7 @@
 #include "bench/repeats.h"
 #include "bench/temporary_folder.h"
 #include "engine/base/stopwatch.h"
+#include "engine/field/node_pool.h"
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
@@ -210,6 +211,15 @@ engine::Result<double> readPlainly(const std::string& path) {
   return watch.seconds();
 }
 
+// Wall time to provide the memory of so many tiles, as an import does.
+engine::Result<double> provideMemory(std::int64_t tiles) {
+  const engine::Stopwatch watch;
+  engine::FieldMemory memory;
+  if (!memory.tiles.reserve(static_cast<std::size_t>(tiles)))
+    return engine::failure("there is not enough memory", "bench import");
+  return watch.seconds();
+}
+
 }  // namespace
 
 engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options, engine::JobControl& job) {
@@ -231,7 +241,8 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
   ImportBenchReport report;
   report.machine = machine();
   report.rows.resize(cases.size());
-  std::vector<std::vector<double>> imports(cases.size()), plain(cases.size()), gdal(cases.size());
+  std::vector<std::vector<double>> imports(cases.size()), plain(cases.size()), gdal(cases.size()),
+      gdal_new(cases.size()), memory(cases.size());
   std::vector<char> buffer;
   for (int i = 0; i < options.repeats; ++i)
     for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -239,6 +250,8 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
       if (!read) return tl::unexpected(read.error());
       const auto alone = secondsOfGdal(cases[k].path, buffer);
       if (!alone) return tl::unexpected(alone.error());
+      const auto alone_new = secondsOfGdalIntoNewMemory(cases[k].path);
+      if (!alone_new) return tl::unexpected(alone_new.error());
       const engine::Stopwatch watch;
       const auto imported = engine::importField(cases[k].path, {}, job);
       const double seconds = watch.seconds();
@@ -252,9 +265,14 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
       row.bytes = static_cast<std::int64_t>(fs::file_size(cases[k].path));
       row.samples = imported->field.grid().samples();
       row.hash = hash;
+      const engine::FieldReader reader = imported->field.reader();
+      const auto provided = provideMemory(std::int64_t{reader.tileColumns()} * reader.tileRows());
+      if (!provided) return tl::unexpected(provided.error());
+      memory[k].push_back(static_cast<double>(row.bytes) / *provided);
       imports[k].push_back(static_cast<double>(row.bytes) / seconds);
       plain[k].push_back(static_cast<double>(row.bytes) / *read);
       if (*alone) gdal[k].push_back(static_cast<double>(row.bytes) / **alone);
+      if (*alone_new) gdal_new[k].push_back(static_cast<double>(row.bytes) / **alone_new);
     }
   for (std::size_t k = 0; k < cases.size(); ++k) {
     ImportBenchRow& row = report.rows[k];
@@ -262,7 +280,9 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
     row.slowest = *std::min_element(imports[k].begin(), imports[k].end());
     row.fastest = *std::max_element(imports[k].begin(), imports[k].end());
     row.plain = median(plain[k]);
+    row.memory = median(memory[k]);
     if (!gdal[k].empty()) row.gdal = median(gdal[k]);
+    if (!gdal_new[k].empty()) row.gdal_new = median(gdal_new[k]);
   }
   return report;
 }

@@ -28,6 +28,10 @@ struct ImportBenchRow {
   double plain = 0.0;  ///< median rate of reading the same file into a buffer, in the same run
   /// Median rate of GDAL alone (bench/gdal_yardstick.h) in the same run; 0 for files that it does not read.
   double gdal = 0.0;
+  double gdal_new = 0.0;  ///< the same into memory that was never used
+  /// Median rate at which the memory of the field's tiles is provided, alone: its pages are cleared. No import into new tiles
+  /// is faster than this or than plain reading, whichever is slower.
+  double memory = 0.0;
   std::uint64_t hash = 0;  ///< of the field; the same in every repeat
 };
 
@@ -37,7 +41,7 @@ struct ImportBenchReport {
 };
 
 /// Imports each file `repeats` times, alternating between them, each time after plain reading (1 MB at a
-/// time) and, for a TIFF, reading by GDAL alone, so that the file is in the page cache for all and a change
+/// time), providing the memory alone and, for a TIFF, reading by GDAL alone, so that the file is in the page cache for all and a change
 /// of the machine's speed affects all. Files made here lie in a new folder in the system's temporary folder
 /// and are removed.
 /// Errors: kInput for options out of range and files that cannot be read or made, kFailed when two repeats

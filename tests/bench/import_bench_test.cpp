@@ -33,6 +33,8 @@ TEST(ImportBench, HasARowForEveryFormatThatIsRead) {
     EXPECT_LE(row.median, row.fastest) << row.name;
     EXPECT_GT(row.plain, 0.0) << row.name;
     EXPECT_EQ(row.gdal > 0.0, row.format == "GTiff") << row.name;
+    EXPECT_EQ(row.gdal_new > 0.0, row.format == "GTiff") << row.name;
+    EXPECT_GT(row.memory, 0.0) << row.name;
     const bool in_counts = row.format == "PNG" || row.format == "LAS" || row.format == "SUR";
     EXPECT_EQ(row.hash == written, !in_counts) << row.name;
   }
