@@ -48,6 +48,15 @@ class HandDevice : public Device {
   DeviceProfile profile_;
 };
 
+/// One on a desk, whose workspace is placed in the field; no button is pressed.
+class DeskDevice : public HandDevice {
+ public:
+  DeskDevice() {
+    profile_.space = DeviceSpace::kDesk;
+    input.buttons = 0;
+  }
+};
+
 /// A LoopTick with its channels, device and a clock that the test turns.
 class LoopBench {
  public:

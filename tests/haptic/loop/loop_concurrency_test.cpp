@@ -19,6 +19,7 @@
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/pacer.h"
 #include "tests/haptic/loop/hand_device.h"
+#include "tests/haptic/loop/touched_fields.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::haptic {
@@ -26,14 +27,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
+using tests::bumpy;
+using tests::kSide;
 
-constexpr int kSide = 300;
 constexpr std::size_t kMostTicks = 100'000;
-
-engine::Version bumpy() {
-  return fettle::tests::fieldOf(kSide, kSide,
-                                [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
-}
 
 // A hand that stays below the surface and never lets go; keeps what it said, for the replay.
 class RestlessHand : public tests::HandDevice {

@@ -3,44 +3,28 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "engine/field/difference.h"
-#include "haptic/loop/adopt_filtered.h"
+#include "engine/field/live_field.h"
 #include "haptic/tick/replay.h"
 #include "tests/haptic/loop/hand_device.h"
+#include "tests/haptic/loop/touched_fields.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::haptic {
 namespace {
 
+using tests::bumpy;
+using tests::DeskDevice;
+using tests::kSide;
 using tests::LoopBench;
 using tests::Mirror;
+using tests::reserve;
+using tests::sceneWithBrush;
 using tests::sweep;
 using tests::testOptions;
-
-constexpr int kSide = 300;
-
-engine::Version bumpy() {
-  return fettle::tests::fieldOf(kSide, kSide,
-                                [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
-}
-
-Scene sceneWithBrush(double radius) {
-  Scene scene = defaultScene();
-  scene.brush_radius_samples = radius;
-  scene.mark_radius_samples = radius;
-  return scene;
-}
-
-void reserve(const engine::Version& version) {
-  ASSERT_TRUE(version.memory()->tiles.reserve(3000));
-  ASSERT_TRUE(version.memory()->nodes.reserve(300));
-}
 
 TEST(LoopTick, LiveSessionEqualsTheReplayOfItsStrokes) {
   const engine::Version start = bumpy();
@@ -169,115 +153,6 @@ TEST(LoopTick, UnplugMidStrokeKeepsTheStrokeAndGivesNoForce) {
   for (int i = 0; i < 100; ++i) bench.tick();
   EXPECT_EQ(bench.loop.guard().state(), SafetyState::kArmed);
   EXPECT_EQ(glm::length(bench.device.force), 0.0);
-}
-
-// A "filter" whose result is known: every sample raised by one.
-engine::Version raised(const engine::Version& base) {
-  engine::LiveField field(base, engine::Growth::kAllowed);
-  std::vector<float> row(kSide);
-  for (int r = 0; r < kSide; ++r) {
-    base.reader().readHeights(0, r, kSide, 1, row.data(), kSide);
-    for (float& z : row) z += 1.0F;
-    EXPECT_TRUE(field.writeHeights(0, r, kSide, 1, row.data(), kSide));
-  }
-  return field.snapshot();
-}
-
-TEST(LoopTick, AdoptionKeepsWhatTheHandDidMeanwhileAndReportsWhere) {
-  const engine::Version start = bumpy();
-  reserve(start);
-  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
-  // The filter began here ...
-  const engine::Version result = raised(start);
-  // ... the hand continued in tile (0, 0) ...
-  for (int i = 0; i < 60; ++i) bench.tickAt({3.0 + 0.5 * i, 30.0, -0.8});
-  ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [](LoopCommand& c) { c.id = 9; }));
-  for (int i = 0; i < 3; ++i) bench.tickAt({33.0, 30.0, 2.0});
-  const engine::Version snapshot = bench.newest(EventKind::kSnapshot).version;
-  const auto merged = mergeResult(snapshot, start, result);
-  ASSERT_TRUE(merged);
-  ASSERT_EQ(merged->conflicts.size(), 1U);
-  // ... and while the worker merged, in tile (2, 2).
-  for (int i = 0; i < 30; ++i) bench.tickAt({150.0 + 0.5 * i, 150.0, -0.8});
-  const engine::Version before = bench.field();
-  ASSERT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
-    c.id = 9;
-    c.version = merged->version;
-  }));
-  bench.tickAt({200.0, 200.0, 9.0});
-  const LoopEvent event = bench.newest(EventKind::kAdopted);
-  EXPECT_TRUE(event.retired == before);
-  const auto carried = engine::changedTiles(merged->version, event.version);
-  ASSERT_EQ(carried.size(), 1U);
-  EXPECT_EQ(carried[0].tile_column, 2);
-  EXPECT_EQ(carried[0].tile_row, 2);
-  const engine::FieldReader now = event.version.reader();
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) {
-      const bool mine = (c < 64 && r < 64) || (c / 64 == 2 && r / 64 == 2);
-      const float want = mine ? before.reader().heightAt(c, r) : result.reader().heightAt(c, r);
-      ASSERT_EQ(now.heightAt(c, r), want) << c << " " << r;
-    }
-  EXPECT_EQ(bench.loop.state().adopted, 1U);
-  EXPECT_EQ(bench.loop.state().carried, 1U);
-}
-
-TEST(LoopTick, AdoptionIsRefusedUnchangedWhenItsBaseIsOldTheHandWentTooFarOrThePoolIsDry) {
-  const engine::Version start =
-      fettle::tests::fieldOf(1200, 300, [](int c, int r) { return 0.3 * std::sin(1.0 * c * r); });
-  reserve(start);
-  LoopBench bench(start, start, sceneWithBrush(30.0), testOptions(Tool::kSmooth));
-  const auto refused = [&](std::uint64_t id) {
-    const engine::Version before = bench.field();
-    EXPECT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
-      c.id = id;
-      c.version = start;
-    }));
-    bench.tickAt({-5.0, 0.0, 0.0});
-    const LoopEvent event = bench.newest(EventKind::kAdoptRefused);
-    EXPECT_EQ(event.id, id);
-    EXPECT_TRUE(event.retired == start);  // comes back to be freed
-    EXPECT_TRUE(bench.field() == before);
-    EXPECT_EQ(bench.loop.state().adopted, 0U);
-  };
-  const auto snapshot = [&](std::uint64_t id) {
-    EXPECT_TRUE(bench.send(CommandKind::kSnapshot, [&](LoopCommand& c) { c.id = id; }));
-    bench.tickAt({-5.0, 0.0, 0.0});
-    return bench.newest(EventKind::kSnapshot);
-  };
-  refused(1);  // no snapshot at all
-  static_cast<void>(snapshot(2));
-  static_cast<void>(snapshot(3));
-  refused(2);  // not the newest
-  static_cast<void>(snapshot(4));
-  for (int i = 0; i < 400; ++i) bench.tickAt({3.0 * i, 150.0 + 100.0 * std::sin(0.05 * i), -1.0});
-  refused(4);  // over 64 tiles
-  static_cast<void>(snapshot(5));
-  for (int i = 0; i < 10; ++i) bench.tickAt({100.0 + i, 150.0, -1.0});
-  static_cast<void>(bench.poll());
-  std::vector<engine::Node*> nodes;
-  while (engine::Node* node = start.memory()->nodes.tryAcquire()) nodes.push_back(node);
-  refused(5);  // no node for the carried tiles
-  for (engine::Node* node : nodes)
-    if (engine::InnerPool::dropLast(node)) engine::InnerPool::recycle(node);
-}
-
-TEST(LoopTick, AdoptionWithoutAnEditSinceTheSnapshotIsDoneAndCarriesNothing) {
-  const engine::Version start = bumpy();
-  reserve(start);
-  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
-  const engine::Version result = raised(start);
-  ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [](LoopCommand& c) { c.id = 3; }));
-  bench.tickAt({200.0, 200.0, 9.0});
-  ASSERT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
-    c.id = 3;
-    c.version = result;
-  }));
-  bench.tickAt({200.0, 200.0, 9.0});
-  EXPECT_TRUE(bench.newest(EventKind::kAdopted).version == result);
-  EXPECT_TRUE(bench.field() == result);
-  EXPECT_EQ(bench.loop.state().adopted, 1U);
-  EXPECT_EQ(bench.loop.state().carried, 0U);
 }
 
 // Who follows the events reads and draws what they name: no more than the brush reached, and nothing beside the field.
@@ -458,14 +333,6 @@ TEST(LoopTick, WhatWasMarkedJustBeforeTheEndIsReportedByTheStop) {
   EXPECT_GT(engine::summarize(event.version).marked, 0);
 }
 
-class DeskDevice : public tests::HandDevice {
- public:
-  DeskDevice() {
-    profile_.space = DeviceSpace::kDesk;
-    input.buttons = 0;
-  }
-};
-
 TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
   const engine::Version start = bumpy();
   reserve(start);
@@ -516,188 +383,6 @@ TEST(LoopTick, TheStylusIsTurnedWithTheWorkspace) {
   device.input.link = LinkState::kDisconnected;
   tick();
   EXPECT_FALSE(loop.state().stylus_axis);
-}
-
-// A hand in the surface that marks with the first button.
-class ButtonHand {
- public:
-  ButtonHand() : start_(bumpy()) {
-    reserve(start_);
-    options_.tool_switch = ToolSwitch::kButton;
-    options_.workspace = Workspace(1.0, {100.0, 100.0, 0.0});
-    channels_ = std::make_unique<LoopChannels>(options_);
-    loop_ = std::make_unique<LoopTick>(std::make_unique<PreparedScene>(sceneWithBrush(0.0), start_), start_,
-                                       device_, *channels_, options_);
-  }
-  // So many milliseconds with these buttons, moving on.
-  void hold(std::uint32_t buttons, int ms) {
-    for (int i = 0; i < ms; ++i) {
-      device_.input.position_mm = {0.1 * moved_++, 0.0, -1.0};
-      device_.input.buttons = buttons;
-      device_.now_ns += 1'000'000;
-      loop_->run(device_.now_ns, 1'000'000);
-    }
-  }
-  void setLink(LinkState link) { device_.input.link = link; }
-  void choose(Tool tool) {
-    LoopCommand command;
-    command.kind = CommandKind::kTool;
-    command.tool = tool;
-    ASSERT_TRUE(channels_->commands.push(std::move(command)));
-  }
-  [[nodiscard]] const LoopState& state() const { return loop_->state(); }
-  // Since the last call: strokes begun when each ended.
-  [[nodiscard]] std::vector<std::uint64_t> endedStrokes() {
-    std::vector<std::uint64_t> ended;
-    for (LoopEvent event; channels_->events.pop(event);)
-      if (event.kind == EventKind::kStrokeEnded) {
-        ended.push_back(event.stroke);
-        tool_of_ended_ = event.tool;
-      }
-    return ended;
-  }
-  // Of the last of them.
-  [[nodiscard]] std::optional<Tool> toolOfEnded() const { return tool_of_ended_; }
-
- private:
-  engine::Version start_;
-  DeskDevice device_;
-  LoopOptions options_ = testOptions(Tool::kMark);
-  std::unique_ptr<LoopChannels> channels_;
-  std::unique_ptr<LoopTick> loop_;
-  std::optional<Tool> tool_of_ended_;
-  int moved_ = 0;
-};
-constexpr std::uint32_t kClutched = kSecondaryButton | kPrimaryButton;
-
-TEST(LoopTick, TheFirstButtonUnderTheClutchChoosesToolsAndIsNoStrokeUntilItWasReleased) {
-  ButtonHand hand;
-  hand.hold(0, 5);
-  hand.hold(kSecondaryButton, 400);
-  for (std::uint64_t presses = 1; presses <= 3; ++presses) {
-    hand.hold(kClutched, 50);
-    EXPECT_EQ(hand.state().tool_choices, presses);
-    hand.hold(kSecondaryButton, 50);
-  }
-  hand.hold(kClutched, 50);
-  // The clutch is released first.
-  hand.hold(kPrimaryButton, 50);
-  EXPECT_EQ(hand.state().tool, Tool::kFeel);
-  EXPECT_EQ(hand.state().stroke, 0U);
-  hand.hold(0, 5);
-  hand.hold(kPrimaryButton, 50);
-  EXPECT_EQ(hand.state().tool, Tool::kMark);
-  EXPECT_EQ(hand.state().stroke, 1U);
-  EXPECT_EQ(hand.state().tool_choices, 4U);
-  EXPECT_EQ(hand.state().tip_choices, 0U);
-}
-
-TEST(LoopTick, ThirdAndFourthButtonChooseOncePerPressAndNotDuringAStroke) {
-  ButtonHand hand;
-  hand.hold(0, 5);
-  hand.hold(kThirdButton, 300);
-  hand.hold(kThirdButton | kFourthButton, 300);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  EXPECT_EQ(hand.state().tip_choices, 1U);
-  hand.hold(0, 5);
-  hand.hold(kPrimaryButton, 20);
-  hand.hold(kPrimaryButton | kThirdButton | kFourthButton, 20);
-  hand.hold(kPrimaryButton, 20);
-  EXPECT_EQ(hand.state().tool, Tool::kMark);
-  EXPECT_EQ(hand.state().stroke, 1U);
-  hand.hold(0, 5);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  EXPECT_EQ(hand.state().tip_choices, 1U);
-  hand.hold(kThirdButton, 5);
-  EXPECT_EQ(hand.state().tool_choices, 2U);
-}
-
-TEST(LoopTick, TheClutchPressedTwiceShortlyChoosesATip) {
-  ButtonHand hand;
-  const auto press = [&](int held_ms, int then_ms) {
-    hand.hold(kSecondaryButton, held_ms);
-    hand.hold(0, then_ms);
-  };
-  hand.hold(0, 5);
-  press(100, 200);
-  press(2000, 10);  // the second one may stay
-  EXPECT_EQ(hand.state().tip_choices, 1U);
-  press(100, 400);
-  EXPECT_EQ(hand.state().tip_choices, 1U);  // the third one is the first of another pair, which came too late
-  press(400, 100);
-  press(400, 400);  // a hand that is moved on and on
-  EXPECT_EQ(hand.state().tip_choices, 1U);
-  press(100, 100);
-  press(100, 100);
-  press(100, 100);
-  EXPECT_EQ(hand.state().tip_choices, 2U);  // three presses are one pair
-  hand.hold(0, 400);
-  // A tool that is chosen under it makes a press no first one.
-  hand.hold(kSecondaryButton, 20);
-  hand.hold(kClutched, 20);
-  hand.hold(0, 20);
-  press(20, 400);
-  EXPECT_EQ(hand.state().tip_choices, 2U);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  // During a stroke, neither.
-  hand.hold(kPrimaryButton, 20);
-  for (int i = 0; i < 2; ++i) {
-    hand.hold(kClutched, 50);
-    hand.hold(kPrimaryButton, 50);
-  }
-  EXPECT_EQ(hand.state().tip_choices, 2U);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  EXPECT_EQ(hand.state().tool, Tool::kMark);
-}
-
-TEST(LoopTick, AButtonThatIsHeldWhenTheDeviceConnectsWasNotPressed) {
-  ButtonHand hand;
-  hand.hold(kThirdButton, 5);
-  EXPECT_EQ(hand.state().tool_choices, 0U);
-  hand.hold(0, 5);
-  hand.hold(kThirdButton, 5);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  hand.setLink(LinkState::kDisconnected);
-  hand.hold(0, 5);
-  hand.setLink(LinkState::kConnected);
-  hand.hold(kThirdButton | kFourthButton, 5);
-  EXPECT_EQ(hand.state().tool_choices, 1U);
-  EXPECT_EQ(hand.state().tip_choices, 0U);
-}
-
-TEST(LoopTick, AToolThatComesAfterTheButtonActsAtOnceWhereNothingWasChanged) {
-  ButtonHand hand;
-  hand.choose(Tool::kFeel);
-  hand.hold(0, 5);
-  hand.hold(kPrimaryButton, 20);
-  EXPECT_EQ(hand.state().stroke, 0U);
-  hand.choose(Tool::kMark);
-  hand.hold(kPrimaryButton, 1);
-  EXPECT_EQ(hand.state().tool, Tool::kMark);
-  EXPECT_EQ(hand.state().stroke, 1U);
-}
-
-TEST(LoopTick, AToolThatComesDuringAStrokeEndsItAndBeginsAnother) {
-  ButtonHand hand;
-  hand.hold(0, 5);
-  hand.hold(kPrimaryButton, 20);
-  const std::vector<std::uint64_t> before = hand.endedStrokes();
-  hand.choose(Tool::kUnmark);
-  hand.hold(kPrimaryButton, 20);
-  EXPECT_EQ(before, std::vector<std::uint64_t>{});
-  EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{1U});  // before the other tool touched anything
-  EXPECT_EQ(hand.toolOfEnded(), Tool::kMark);
-  EXPECT_EQ(hand.state().tool, Tool::kUnmark);
-  EXPECT_EQ(hand.state().stroke, 2U);
-  // The tool that is in effect already begins no other stroke.
-  hand.choose(Tool::kUnmark);
-  hand.hold(kPrimaryButton, 20);
-  EXPECT_EQ(hand.state().stroke, 2U);
-  // One that is chosen while a stroke ends does not change whose it was.
-  hand.choose(Tool::kMark);
-  hand.hold(0, 5);
-  EXPECT_EQ(hand.endedStrokes(), std::vector<std::uint64_t>{2U});
-  EXPECT_EQ(hand.toolOfEnded(), Tool::kUnmark);
 }
 
 }  // namespace
