@@ -135,31 +135,41 @@ TEST(SyntheticSample, HasTheCountsOfTheScan) {
   EXPECT_NEAR(found.step, counts.step, 1e-6 * counts.step);
 }
 
-// A groove 60 samples from a rib of one sample, a step of a fifth of the rib, and a hill without edges.
-TEST(SampleEdges, AreThoseOfRibsAndStepsAndNotOfCurves) {
-  constexpr int kSide = 256;
-  constexpr double kNoise = 0.02;
+constexpr double kEdgeNoise = 0.02;
+
+double noEdges(int, int) {
+  return 0.0;
+}
+
+// The edges of a sample of 256 x 256: of the heights of its surface, of what a scan with noise shows of them, and of what one
+// with a quarter of that shows.
+template <class Surface, class Scan, class Faint>
+Result<Version> sampleEdgesOf(Surface&& surface, Scan&& scan, Faint&& faint, std::uint64_t seed) {
   Grid grid;
-  grid.width = grid.height = kSide;
-  std::vector<float> surface, scan, faint;
-  const auto noise = [] {
-    NoiseParts parts;
-    parts.uncorrelated = 1.0;
-    return NoiseSource(parts).make(kSide, kSide, 21);
-  }();
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) {
-      double z = c >= 200 ? 0.1 : 0.0;
-      if (c == 40) z = 0.5;
-      if (r >= 100 && r <= 150) z += 2e-4 * (r - 100) * (150 - r);  // creases where it ends
-      const double n = kNoise * noise[surface.size()];
-      surface.push_back(static_cast<float>(z));
-      scan.push_back(static_cast<float>(z + n));
-      faint.push_back(static_cast<float>(z + 0.25 * n));
+  grid.width = grid.height = 256;
+  NoiseParts parts;
+  parts.uncorrelated = 1.0;
+  const auto noise = NoiseSource(parts).make(grid.width, grid.height, seed);
+  std::vector<float> surface_z, scan_z, faint_z;
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const double n = kEdgeNoise * noise[surface_z.size()];
+      surface_z.push_back(static_cast<float>(surface(c, r)));
+      scan_z.push_back(static_cast<float>(scan(c, r) + n));
+      faint_z.push_back(static_cast<float>(faint(c, r) + 0.25 * n));
     }
   JobControl job;
-  const auto edges =
-      markSampleEdges(makeField(grid, scan), makeField(grid, surface), makeField(grid, faint), kNoise, job);
+  return markSampleEdges(makeField(grid, scan_z), makeField(grid, surface_z), makeField(grid, faint_z),
+                         kEdgeNoise, job);
+}
+
+// A groove 60 samples from a rib of one sample, a step of a fifth of the rib, and a hill without edges.
+TEST(SampleEdges, AreThoseOfRibsAndStepsAndNotOfCurves) {
+  const auto heights = [](int c, int r) {
+    const double z = c == 40 ? 0.5 : c >= 200 ? 0.1 : 0.0;
+    return r >= 100 && r <= 150 ? z + 2e-4 * (r - 100) * (150 - r) : z;  // creases where it ends
+  };
+  const auto edges = sampleEdgesOf(heights, heights, heights, 21);
   ASSERT_TRUE(edges);
   const FieldReader reader = edges->reader();
   const auto marked = [&reader](int column, int row) {
@@ -184,26 +194,11 @@ TEST(SampleEdges, AreThoseOfRibsAndStepsAndNotOfCurves) {
 
 // What generalised variation makes of noise is as high as the lower of these.
 TEST(SampleEdges, OfTheSurfaceAreStepsOfTwoAndAHalfNoisesAtLeast) {
-  constexpr int kSide = 256;
-  constexpr double kNoise = 0.02;
-  Grid grid;
-  grid.width = grid.height = kSide;
-  NoiseParts parts;
-  parts.uncorrelated = 1.0;
-  const auto noise = NoiseSource(parts).make(kSide, kSide, 22);
-  std::vector<float> surface, scan, faint;
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) {
-      const double z = (c >= 80 ? 2.3 * kNoise : 0.0) + (c >= 180 ? 2.7 * kNoise : 0.0);
-      const double n = kNoise * noise[surface.size()];
-      surface.push_back(static_cast<float>(z));
-      // In the scan neither is seen: the search there is not what is tested.
-      scan.push_back(static_cast<float>(n));
-      faint.push_back(static_cast<float>(z + 0.25 * n));
-    }
-  JobControl job;
-  const auto edges =
-      markSampleEdges(makeField(grid, scan), makeField(grid, surface), makeField(grid, faint), kNoise, job);
+  const auto heights = [](int c, int) {
+    return (c >= 80 ? 2.3 * kEdgeNoise : 0.0) + (c >= 180 ? 2.7 * kEdgeNoise : 0.0);
+  };
+  // In the scan neither is seen: the search there is not what is tested.
+  const auto edges = sampleEdgesOf(heights, noEdges, heights, 22);
   ASSERT_TRUE(edges);
   int low = 0, high = 0;
   for (int r = 20; r < 236; ++r)
@@ -217,24 +212,9 @@ TEST(SampleEdges, OfTheSurfaceAreStepsOfTwoAndAHalfNoisesAtLeast) {
 
 // Across rows, where the scan shows none: a rib of one row jumps up to it and down from it, a ramp nowhere, however steep.
 TEST(SampleEdges, OfTheSurfaceLieBetweenTheTwoRowsOfAJump) {
-  constexpr int kSide = 256;
-  constexpr double kNoise = 0.02, kRise = 15.0 * kNoise;
-  Grid grid;
-  grid.width = grid.height = kSide;
-  NoiseParts parts;
-  parts.uncorrelated = 1.0;
-  const auto noise = NoiseSource(parts).make(kSide, kSide, 23);
-  std::vector<float> surface, scan, faint;
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) {
-      const double n = kNoise * noise[surface.size()];
-      surface.push_back(static_cast<float>((r == 40 ? 0.5 : 0.0) + kRise * std::clamp(r - 150, 0, 10)));
-      scan.push_back(static_cast<float>(n));
-      faint.push_back(static_cast<float>(0.25 * n));
-    }
-  JobControl job;
-  const auto edges =
-      markSampleEdges(makeField(grid, scan), makeField(grid, surface), makeField(grid, faint), kNoise, job);
+  constexpr double kRise = 15.0 * kEdgeNoise;
+  const auto heights = [](int, int r) { return (r == 40 ? 0.5 : 0.0) + kRise * std::clamp(r - 150, 0, 10); };
+  const auto edges = sampleEdgesOf(heights, noEdges, noEdges, 23);
   ASSERT_TRUE(edges);
   const auto marked = [&](int row) {
     int count = 0;
