@@ -10,6 +10,7 @@
 #include "render/detail/patch_tree_cache.h"
 #include "tests/render/support/drawn_surface.h"
 #include "tests/render/support/fields.h"
+#include "tests/render/support/patch_query.h"
 
 namespace fettle::render {
 namespace {
@@ -260,14 +261,8 @@ TEST(PatchTree, PartsOfItsLeavesCoverTheSurfaceOnce) {
   const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
   DetailMeasure measure;
   measure.measure(field.reader());
-  PatchQuery q;
-  q.measure = &measure;
-  q.reader = field.reader();
-  q.placing = placingOf(field.grid());
-  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 20.0;
-  const glm::dvec2 half = 0.5 * q.placing.extent();
-  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
-  q.camera = Camera::fit(View{}, box, box, {0, 0, 900, 600});
+  PatchQuery q = queryOver(field, measure);
+  q.error_px = 20.0;
   const PatchTree tree(q);
   std::vector<int> covered(399 * 299, 0);  // cells
   for (const PatchLeaf& part : tree.parts(6)) {
@@ -298,14 +293,7 @@ TEST(PatchTreeCache, AreWhatChoosingAgainGivesAfterEveryChange) {
   engine::LiveField live(field, engine::Growth::kAllowed);
   DetailMeasure measure;
   measure.begin(field.reader());
-  PatchQuery q;
-  q.measure = &measure;
-  q.placing = placingOf(field.grid());
-  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
-  const glm::dvec2 half = 0.5 * q.placing.extent();
-  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
-  View view;
-  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  PatchQuery q = queryOver(field, measure);
   PatchTreeCache cached;
   engine::Version shown = field;
   std::vector<int> last;
@@ -338,8 +326,9 @@ TEST(PatchTreeCache, AreWhatChoosingAgainGivesAfterEveryChange) {
   expectChosen("fewer vertices");
   q.error_px = 4.0;
   expectChosen("a larger error");
-  view.zoom = 3.0;
-  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  View closer;
+  closer.zoom = 3.0;
+  q.camera = cameraOver(field, closer);
   expectChosen("another view");
   q.mm_per_unit = 5.0;
   expectChosen("exaggerated");

@@ -10,6 +10,7 @@
 #include "render/detail/damage.h"
 #include "render/detail/patches.h"
 #include "tests/render/support/fields.h"
+#include "tests/render/support/patch_query.h"
 
 namespace fettle::render {
 namespace {
@@ -86,21 +87,13 @@ TEST(Within, TheWholePlotKeepsEveryPatchSeamAndWallAndBesideItNone) {
   });
   DetailMeasure measure;
   measure.measure(field.reader());
-  PatchQuery q;
-  q.measure = &measure;
-  q.reader = field.reader();
-  q.placing = placingOf(field.grid());
-  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
-  const glm::dvec2 half = 0.5 * q.placing.extent();
-  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
-  const Rectangle plot{0, 0, 900, 600};
   View view;
   view.elevation_deg = 40.0;
-  q.camera = Camera::fit(view, box, box, plot);
+  const PatchQuery q = queryOver(field, measure, view);
   const PatchChoice choice = choosePatches(q);
   ASSERT_FALSE(choice.seams.empty());
   ASSERT_FALSE(choice.walls.empty());
-  const PatchChoice all = within(choice, q, plot);
+  const PatchChoice all = within(choice, q, kQueryPlot);
   EXPECT_EQ(all.patches.size(), choice.patches.size());
   EXPECT_EQ(all.seams.size(), choice.seams.size());
   EXPECT_EQ(all.walls.size(), choice.walls.size());
@@ -126,16 +119,9 @@ TEST(Damage, OfManyTilesIsTheWholePictureAndOfFewerWhatTheyCover) {
       fieldOf(gridOf(kTiles * 64, 4, 0.1, 0.1), [](int c, int) { return c % 2 * 0.01; });
   DetailMeasure measure;
   measure.measure(before.reader());
-  PatchQuery q;
-  q.measure = &measure;
-  q.placing = placingOf(before.grid());
-  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
-  const glm::dvec2 half = 0.5 * q.placing.extent();
-  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
-  const Rectangle plot{0, 0, 900, 600};
   View view;
   view.elevation_deg = 90.0;
-  q.camera = Camera::fit(view, box, box, plot);
+  PatchQuery q = queryOver(before, measure, view);
   for (const int changed : {kTiles, kTiles - 1}) {
     engine::LiveField live(before, engine::Growth::kAllowed);
     for (int tile = 0; tile < changed; ++tile) ASSERT_TRUE(live.setHeight(tile * 64 + 20, 2, 0.5F));
@@ -144,8 +130,8 @@ TEST(Damage, OfManyTilesIsTheWholePictureAndOfFewerWhatTheyCover) {
     ASSERT_EQ(tiles.size(), static_cast<std::size_t>(changed));
     q.reader = after.reader();
     const PatchChoice choice = choosePatches(q);
-    const Rectangle damage = damageOf({q, before.reader(), tiles, &choice, &choice, plot});
-    EXPECT_EQ(damage.width == plot.width && damage.height == plot.height, changed == kTiles)
+    const Rectangle damage = damageOf({q, before.reader(), tiles, &choice, &choice, kQueryPlot});
+    EXPECT_EQ(damage.width == kQueryPlot.width && damage.height == kQueryPlot.height, changed == kTiles)
         << damage.width << " x " << damage.height;
     EXPECT_FALSE(empty(damage));
   }
