@@ -169,7 +169,7 @@ void chooseTip(Parts& p) {
 
 template <BrushAdjustment::Of of>
 void adjustBrush(Parts& p) {
-  p.brush.begin(of, clientOf(p), p.cursor.x);
+  p.brush.begin(of, clientOf(p), p.units.height, p.cursor.x);
 }
 template <int by>
 void resizeBrush(Parts& p) {

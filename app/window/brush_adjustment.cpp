@@ -1,9 +1,9 @@
 #include "app/window/brush_adjustment.h"
 
 #include <cmath>
-#include <cstdlib>
 
 #include "app/window/scene_edits.h"
+#include "app/work/typed_number.h"
 
 namespace fettle::app {
 namespace {
@@ -16,13 +16,14 @@ constexpr double kDepth_px = 20.0;  // ... for a tenth of the largest depth
 
 }  // namespace
 
-void BrushAdjustment::begin(Of of, LoopClient& client, double cursor_x) {
+void BrushAdjustment::begin(Of of, LoopClient& client, const render::ShownUnit& height, double cursor_x) {
   const haptic::MouseStylus* const mouse = client.mouse();
   if (of == Of::kDepth && mouse == nullptr) return;
   of_ = of;
   press_mm_ = mouse != nullptr ? mouse->pressMm() : 0.0;
   from_ = of == Of::kRadius ? brushRadius(client) : press_mm_;
   from_x_ = cursor_x;
+  depth_ = ofMillimetres(height, client.field().grid().height_unit.mm);
   typed_.clear();
 }
 
@@ -40,8 +41,19 @@ void BrushAdjustment::leave(LoopClient& client, std::vector<Notice>& notices) {
   end();
 }
 
-// Whether the key belongs to a number.
-bool BrushAdjustment::typeKey(Key key) {
+std::optional<double> BrushAdjustment::valueTyped() const {
+  if (of_ == Of::kDepth) {
+    const auto shown = readTypedLength(typed_, depth_.name);
+    return shown ? std::optional(*shown / depth_.per_unit) : std::nullopt;
+  }
+  const auto typed = readTypedNumber(typed_);
+  return typed && typed->unit.empty() ? std::optional(typed->number) : std::nullopt;
+}
+
+// Whether the key belongs to a number, or to a unit behind it.
+bool BrushAdjustment::typeKey(const render::InputEvent& event) {
+  if (event.modifiers.control || event.modifiers.alt) return false;
+  const Key key = event.key;
   const int code = static_cast<int>(key), keypad0 = static_cast<int>(Key::kKeypad0);
   if (code >= '0' && code <= '9')
     typed_ += static_cast<char>(code);
@@ -49,6 +61,10 @@ bool BrushAdjustment::typeKey(Key key) {
     typed_ += static_cast<char>('0' + code - keypad0);
   else if (key == Key::kPeriod || key == Key::kKeypadPeriod)
     typed_ += '.';
+  else if (key == Key::kComma)
+    typed_ += ',';
+  else if (of_ == Of::kDepth && !typed_.empty() && code >= 'A' && code <= 'Z')
+    typed_ += static_cast<char>(code - 'A' + 'a');
   else if (key == Key::kBackspace && !typed_.empty())
     typed_.pop_back();
   else
@@ -72,12 +88,12 @@ bool BrushAdjustment::handle(const render::InputEvent& event, LoopClient& client
       end();
       return true;
     case InputKind::kKeyDown:
-      if (typeKey(event.key)) {
-        if (!typed_.empty()) set(client, std::strtod(typed_.c_str(), nullptr), notices);
+      if (typeKey(event)) {
+        if (const auto value = valueTyped()) set(client, *value, notices);
         return true;
       }
       if (event.key == Key::kEnter || event.key == Key::kKeypadEnter) {
-        end();
+        if (understood()) end();
         return true;
       }
       leave(client, notices);

@@ -58,6 +58,10 @@ ShownUnit deviationUnit(const engine::LengthUnit& unit, const ShownUnit& change,
   return shownUnit(unit, size, 0.05, 5e4);
 }
 
+ShownUnit ofMillimetres(const ShownUnit& shown, double mm) {
+  return {shown.name, shown.per_unit / mm};
+}
+
 int decimalsFor(double step) {
   return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 12);
 }

@@ -22,6 +22,9 @@ struct ShownUnit {
 [[nodiscard]] ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest,
                                   double largest);
 
+/// A unit for lengths in millimetres that reads like `shown`, a unit for lengths in units of `mm` millimetres.
+[[nodiscard]] ShownUnit ofMillimetres(const ShownUnit& shown, double mm);
+
 /// The units in which quantities of one field are shown: each quantity in one unit, on panels and legends alike.
 struct FieldUnits {
   ShownUnit height;  ///< of heights

@@ -25,16 +25,17 @@ const char* endOfRadius(double samples) {
   return samples >= haptic::kMaxBrushRadius ? " (the largest)" : samples < 1.0 ? " (one sample)" : "";
 }
 
-std::string brushText(const BrushAdjustment& brush, LoopClient& client, const render::FieldUnits& units) {
-  const double height_mm = client.field().grid().height_unit.mm;
+std::string brushText(const BrushAdjustment& brush, LoopClient& client) {
   const std::string now =
       brush.of() == BrushAdjustment::Of::kRadius
           ? fmt::format("brush radius {:.3g} samples{}", brushRadius(client),
                         endOfRadius(brushRadius(client)))
-          : fmt::format("press depth {}",
-                        lengthText(client.mouse()->pressMm(), ofMillimetres(units.height, height_mm)));
-  return fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
-                     brush.typed().empty() ? "" : "[" + brush.typed() + "]");
+          : fmt::format("press depth {}", lengthText(client.mouse()->pressMm(), brush.depthUnit()));
+  const std::string typed = brush.typed().empty() ? ""
+                            : brush.understood()  ? " [" + brush.typed() + "]"
+                                                  : " [not understood: " + brush.typed() + "]";
+  return fmt::format("{}{}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
+                     typed);
 }
 
 // Of the surface under the cursor, whatever the mouse holds: a tenth of a sample across, and four digits of the span
@@ -68,7 +69,7 @@ void content(Parts& parts) {
   const Lasso& lasso = parts.marking.lasso();
   const engine::EdgeSuggestion* const edges = parts.marking.edges.suggestion();
   if (parts.brush.active()) {
-    text(brushText(parts.brush, *parts.document.client(), parts.units));
+    text(brushText(parts.brush, *parts.document.client()));
   } else if (lasso.active()) {
     text(lasso.shape() == Lasso::Shape::kBox
              ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"

@@ -236,10 +236,6 @@ std::string lengthText(double value, const render::ShownUnit& unit, int digits) 
   return fmt::format("{:.0f} {}", std::round(shown / step) * step, unit.name);
 }
 
-render::ShownUnit ofMillimetres(const render::ShownUnit& shown, double mm) {
-  return {shown.name, shown.per_unit / mm};
-}
-
 std::string bytesText(double bytes) {
   if (bytes < 1e4) return fmt::format("{:.0f} B", bytes);
   if (bytes < 1e7) return fmt::format("{:.1f} kB", bytes * 1e-3);

@@ -98,9 +98,6 @@ bool field(const char* name, std::string_view says, const auto& edit) {
 /// "12.3 \u00b5m", of a length in the unit that it is kept in; `digits` significant ones.
 [[nodiscard]] std::string lengthText(double value, const render::ShownUnit& unit, int digits = 4);
 
-/// A unit for lengths in millimetres that reads like `shown`, a unit for lengths in units of `mm` millimetres.
-[[nodiscard]] render::ShownUnit ofMillimetres(const render::ShownUnit& shown, double mm);
-
 /// "17.2 kB".
 [[nodiscard]] std::string bytesText(double bytes);
 
