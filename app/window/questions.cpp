@@ -161,6 +161,15 @@ void Feedback::dropPassed(std::chrono::steady_clock::time_point now) {
   std::erase_if(notices, [&](const Notice& notice) { return notice.seen && now - *notice.seen >= kPassing; });
 }
 
+void Feedback::take(Notice notice) {
+  const auto same = [&](const Notice& other) {
+    return other.what == notice.what && other.remedy == notice.remedy;
+  };
+  if (std::ranges::any_of(notices, same) || std::ranges::any_of(said_once_, same)) return;
+  if (notice.once) said_once_.push_back(notice);
+  notices.push_back(std::move(notice));
+}
+
 void Feedback::dropOfField() {
   questions.dropOfField();
   std::erase_if(notices, [](const Notice& notice) { return !notice.what.starts_with(kDeviceLost); });

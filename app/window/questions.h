@@ -136,11 +136,16 @@ struct Feedback {
   void dropPassed(std::chrono::steady_clock::time_point now);
   /// What is said of a field goes with it: questions, and notices but for those of the graphics device.
   void dropOfField();
+  /// A notice, unless it stands there, or was said and is to be said once.
+  void take(Notice notice);
   void note(const engine::Error& error) { notices.push_back({error.what, error.remedy}); }
   /// Shows a message dialog.
   void message(std::string what, std::string remedy) {
     questions.ask({.kind = Question::Kind::kMessage, .said = {std::move(what), std::move(remedy)}});
   }
+
+ private:
+  std::vector<Notice> said_once_;
 };
 
 }  // namespace fettle::app

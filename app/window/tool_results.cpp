@@ -70,7 +70,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
                           p.marking.places.found()->places[*place]));
     changed = true;
   }
-  for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
+  for (Notice& notice : client.takeNotices()) p.feedback.take(std::move(notice));
   while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
   const bool stroke = p.stylus.held() || p.marking.held();
   changed |= p.change.poll(client, stroke);

@@ -210,7 +210,7 @@ void Workstation::showFrame() {
   const std::optional<std::int64_t> edit_ns =
       parts_.document.isOpen() ? parts_.document.client()->latency().takeUnshownEdit() : std::nullopt;
   const engine::Stopwatch watch;
-  if (parts_.settings.side_panel) parts_.feedback.dropPassed(std::chrono::steady_clock::now());
+  parts_.feedback.dropPassed(std::chrono::steady_clock::now());
   window_->setPanelTheme(parts_.settings.panels_theme);
   window_->beginFrame();
   carryOut(layOutPanels(parts_));

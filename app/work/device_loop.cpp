@@ -284,6 +284,12 @@ void DeviceLoop::watch(const LoopState& state, std::vector<Notice>& notices) {
       notices.push_back({fmt::format("fault, {}", haptic::name(state.cause)), "press A to arm again"});
     if (state.safety_counters.arms_refused > seen_.safety_counters.arms_refused)
       notices.push_back({"not armed", "the device must be connected, calibrated and sending input"});
+    // Of one that is armed the fault says it.
+    const bool armed =
+        seen_.safety == haptic::SafetyState::kActive || seen_.safety == haptic::SafetyState::kRamping;
+    if (seen_.tick > 0 && state.link != seen_.link && state.link == haptic::LinkState::kDisconnected &&
+        !armed)
+      notices.push_back({"the device was unplugged", "plug it in again"});
     if (seen_.tick > 0 && state.link != seen_.link && state.link == haptic::LinkState::kUncalibrated)
       notices.push_back({"the device is not calibrated", "hold the stylus in its home pose and calibrate"});
   }

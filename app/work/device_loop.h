@@ -31,6 +31,7 @@ struct Notice {
   int times = 1;
   bool of_reading = false;  ///< about how the scan was read: shown with a button for the page of that
   bool passes = false;      ///< nothing is to be done about it: it goes by itself
+  bool once = false;        ///< it is as it is: said in one start of the program only once
   std::optional<std::chrono::steady_clock::time_point> seen = {};  ///< since when it is on the screen
 };
 

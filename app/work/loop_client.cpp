@@ -55,7 +55,8 @@ engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History hi
   if (auto status = client->loop_.openDevice(client->scene_); !status) return tl::unexpected(status.error());
   if (auto status = client->startLoop(options.rate_hz); !status) return tl::unexpected(status.error());
   for (const std::string& missing : client->realTime().missing)
-    client->notices_.push_back({"the system did not grant the loop everything", missing});
+    client->notices_.push_back(
+        {.what = "the system did not grant the loop everything", .remedy = missing, .once = true});
   return client;
 }
 

@@ -36,6 +36,16 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
   return size.x - side;
 }
 
+// Over the picture, where no panels are: in full screen, with the panels hidden, before a scan is open.
+void noticesAlone(Parts& parts, const Act& act, float bar) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float width = std::min(kSide * static_cast<float>(parts.window.scale()), screen.x);
+  const float height = noticesHeight(parts.feedback.notices, width);
+  if (height <= 0.0F) return;
+  noticePanel(parts.feedback.notices, act, ImVec2(screen.x - width, screen.y - bar - height),
+              ImVec2(width, height));
+}
+
 }  // namespace
 
 PanelRequests layOutPanels(Parts& parts) {
@@ -48,7 +58,9 @@ PanelRequests layOutPanels(Parts& parts) {
   if (!alone) requests.open = menuBar(parts, act);
   const float bar = ImGui::GetFrameHeight();
   const float top = alone ? 0.0F : bar;
-  const float width = alone ? ImGui::GetIO().DisplaySize.x : sideOf(parts, act, bar, requests.rate_hz);
+  const float screen = ImGui::GetIO().DisplaySize.x;
+  const float width = alone ? screen : sideOf(parts, act, bar, requests.rate_hz);
+  if (width >= screen) noticesAlone(parts, act, bar);
   statusBar(parts);
   parts.window.setPictureArea({0, static_cast<int>(top), static_cast<int>(width),
                                static_cast<int>(ImGui::GetIO().DisplaySize.y - bar - top)});

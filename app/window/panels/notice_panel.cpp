@@ -1,4 +1,4 @@
-// Notices, under the panels: what comes and goes there moves no row of theirs.
+// Notices, under the panels, where what comes and goes moves no row of theirs, or over the picture where there are none.
 #include <algorithm>
 #include <cmath>
 

@@ -100,6 +100,23 @@ void content(Parts& parts) {
   }
 }
 
+// What a device that gives force lacks, at the end of the line: its panel is folded mostly.
+void deviceWord(const Parts& parts) {
+  if (!parts.document.isOpen()) return;
+  LoopClient& client = *parts.document.client();
+  const haptic::LoopState state = client.state();
+  const haptic::LinkState link = state.link;
+  if (state.tick == 0 || !client.device().profile().gives_force || link == haptic::LinkState::kConnected) return;
+  const std::string word =
+      fmt::format("{}: {}", client.device().profile().name,
+                  link == haptic::LinkState::kUncalibrated ? "not calibrated" : "not plugged in");
+  const float place =
+      ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x - ImGui::CalcTextSize(word.c_str()).x;
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), place));
+  textIn(render::PanelColour::kProblem, word);
+}
+
 }  // namespace
 
 void statusBar(Parts& parts) {
@@ -112,6 +129,7 @@ void statusBar(Parts& parts) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   content(parts);
+  deviceWord(parts);
   ImGui::End();
   ImGui::PopStyleVar(2);
 }

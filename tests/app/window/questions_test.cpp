@@ -219,5 +219,22 @@ TEST(FeedbackTest, a_notice_that_asks_for_nothing_goes_by_itself_once_it_was_see
   EXPECT_EQ(feedback.notices.front().what, "the unit is guessed") << "until it is understood";
 }
 
+TEST(FeedbackTest, what_stands_there_is_not_said_again_and_what_stays_as_it_is_once) {
+  Feedback feedback;
+  const Notice fault{"fault", "arm again"}, rights{.what = "not granted", .remedy = "memory", .once = true};
+  for (int i = 0; i < 3; ++i) {
+    feedback.take(fault);
+    feedback.take(rights);
+  }
+  EXPECT_EQ(feedback.notices.size(), 2U);
+  feedback.notices.clear();
+  feedback.take(fault);
+  feedback.take(rights);
+  feedback.take({.what = "not granted", .remedy = "priority", .once = true});
+  ASSERT_EQ(feedback.notices.size(), 2U);
+  EXPECT_EQ(feedback.notices[0].what, "fault") << "it happened again";
+  EXPECT_EQ(feedback.notices[1].remedy, "priority");
+}
+
 }  // namespace
 }  // namespace fettle::app

@@ -157,6 +157,54 @@ TEST_F(DevicePage, the_stylus_in_the_picture_is_held_as_the_hand_holds_it) {
   endWithoutABrokenRule(*program);
 }
 
+// Its panel is folded: what is said of it is said where one looks, whatever of the window is seen.
+TEST_F(DevicePage, an_unplugged_device_is_said_with_and_without_panels) {
+  const auto program = startOmega();
+  (void)opened(*program);
+  User user(display, *program, "unplugged");
+  const auto says = [](const State& s, const std::string& what) {
+    return s["texts"].dump().find(what) != std::string::npos;
+  };
+  const auto plug = [&](bool in) {
+    page_->plugged = in;
+    program->until("the plug", [&](const State& s) { return s["connected"] == in; });
+  };
+  ASSERT_FALSE(says(program->now(), "plugged"));
+  (void)user.press("F11");
+  program->until("full screen",
+                 [](const State& s) { return s["full_screen"] == true && s["settled"] == true; });
+  plug(false);
+  program->until("words without panels", [&](const State& s) {
+    return says(s, "the device was unplugged") && says(s, ": not plugged in");
+  });
+  (void)user.look("full screen");
+  plug(true);
+  program->until("no word any more", [&](const State& s) { return !says(s, ": not plugged in"); });
+  // Again, while that is said: nothing more.
+  plug(false);
+  plug(true);
+  EXPECT_EQ(user.rest()["notices"].size(), 1U);
+  user.tap("Understood");
+  program->until("taken away",
+                 [&](const State& s) { return s["notices"].empty() && !says(s, "Understood"); });
+  (void)user.press("F11");
+  program->until("panels", [](const State& s) { return s["full_screen"] == false && s["settled"] == true; });
+  (void)user.press("Tab");
+  program->until("no panels", [](const State& s) { return s["picture"][2] == s["frame"][0]; });
+  // Armed, it is a fault.
+  (void)user.press("a");
+  program->until("an armed device",
+                 [](const State& s) { return s["safety"] == "active" || s["safety"] == "ramping"; });
+  plug(false);
+  const State fault = program->until("the fault", [&](const State& s) { return says(s, "fault, "); });
+  EXPECT_EQ(fault["notices"].size(), 1U) << fault["notices"];
+  (void)user.look("no panels");
+  (void)user.press("Tab");
+  program->until("the same under the panels",
+                 [&](const State& s) { return s["picture"][2] < s["frame"][0] && says(s, "fault, "); });
+  endWithoutABrokenRule(*program);
+}
+
 TEST_F(DevicePage, a_mouse_has_nothing_to_measure) {
   const auto program = start({scan});
   (void)opened(*program);

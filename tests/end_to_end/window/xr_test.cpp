@@ -91,6 +91,20 @@ TEST_F(XrTest, a_lost_headset_is_said_once_and_the_window_goes_on) {
   stage.expectSilence();
 }
 
+TEST_F(XrTest, a_headset_lost_before_a_scan_is_open_is_said_beside_the_start_page) {
+  const XrStage stage(std::string(kHead) + "40 lose\n");
+  const auto program = start({"--xr"}, stage.environment());
+  User user(display, *program, "xr lost at the start");
+  program->until("that it is lost", [](const State& s) {
+    return s["texts"].dump().find("the headset was unplugged") != std::string::npos;
+  });
+  EXPECT_TRUE(user.reads("A sample part"));
+  (void)user.look("start page");
+  (void)user.click("Understood");
+  EXPECT_FALSE(user.reads("the headset was unplugged"));
+  (void)quit(user);
+}
+
 TEST_F(XrTest, without_a_runtime_it_says_so_in_one_line_and_ends) {
   const std::string none = folder.file("none.json");
   const auto program = start({scan, "--xr"}, {{"XR_RUNTIME_JSON", none}});
