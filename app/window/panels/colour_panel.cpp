@@ -145,9 +145,8 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
                                          chart.corner.y + 0.5 * chart.size.y};
   if (ImGui::IsItemHovered() && !colours.drag) {
     const double value = chart.valueAt(x);
-    ImGui::SetTooltip("%s", fmt::format("{}: {:.3g} % lie below, drag the ends of the colours",
-                                        lengthText(value, unit), 100.0 * values.within(-HUGE_VAL, value))
-                                .c_str());
+    valueTip(fmt::format("{}: {:.3g} % lie below, drag the ends of the colours", lengthText(value, unit),
+                         100.0 * values.within(-HUGE_VAL, value)));
   }
 }
 
@@ -162,13 +161,11 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
     if (rule.kind == RuleKind::kAutomatic) picture.refreshRanges();
     picture.requestRedraw();
   }
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("%s",
-                      quantity == Quantity::kDeviation
-                          ? "usual: six times the median of what changed, or all but half a percent "
-                            "of it\na share: so many of the changed samples\nall: up to the largest change"
-                          : "usual: all but single spikes\na share: the middle of the values\nall: "
-                            "from the lowest to the highest");
+  explain(quantity == Quantity::kDeviation
+              ? "usual: six times the median of what changed, or all but half a percent "
+                "of it\na share: so many of the changed samples\nall: up to the largest change"
+              : "usual: all but single spikes\na share: the middle of the values\nall: "
+                "from the lowest to the highest");
   if (rule.kind == RuleKind::kShare) {
     double percent = 100.0 * rule.share;
     if (field("share", [&] { return typeNumber("##share", percent, 1.0, 100.0, "%.4g %%"); })) {
@@ -241,8 +238,7 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
   if (change && field("as zero up to",
                       [&] { return typeLength("##tolerance", colours.typed.tolerance, 0.0, 1e30, unit); }))
     picture.requestRedraw();
-  if (change && ImGui::IsItemHovered())
-    ImGui::SetTooltip("A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.");
+  if (change) explain("A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.");
   constexpr const char* kMaps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
   int map = static_cast<int>(display.map);
   if (field("colours", [&] { return ImGui::Combo("##colours", &map, kMaps, std::size(kMaps)); })) {
@@ -261,7 +257,7 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
     every = shown;
     picture.requestRedraw();
   }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("0: at the steps of the colour bar");
+  explain("0: at the steps of the colour bar");
   endFields();
   ImGui::EndDisabled();
 }

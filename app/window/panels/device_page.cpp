@@ -169,10 +169,8 @@ void motionPart(Parts& parts) {
   ImGui::Text("held by: %s", kOffers[offerOf(setup.clutch_buttons)].name);
   if (dialogButton("Tools around the tip (U)", questions, letter('U')))
     setup.giveMenu(after(setup.menu_buttons));
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "While the button is held, a movement of the stylus points at a tool or a tip; letting go chooses "
-        "it.");
+  explain(
+      "While the button is held, a movement of the stylus points at a tool or a tip; letting go chooses it.");
   ImGui::SameLine();
   ImGui::Text("opened by: %s", kOffers[offerOf(setup.menu_buttons)].name);
 }

@@ -10,10 +10,6 @@ namespace fettle::app {
 
 namespace {
 
-void hoverTip(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
 // A share of 0 to 1; 0 reads "off".
 void shareSlider(const char* label, const char* id, double& share, const char* tip) {
   auto value = static_cast<float>(share);
@@ -22,7 +18,7 @@ void shareSlider(const char* label, const char* id, double& share, const char* t
                                   ImGuiSliderFlags_AlwaysClamp);
       }))
     share = static_cast<double>(value);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+  explain(tip);
 }
 
 void materialFields(render::FormShading& form) {
@@ -36,11 +32,9 @@ void materialFields(render::FormShading& form) {
     }
     ImGui::EndCombo();
   }
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "What the surface looks like to be made of. A material is lit from beside you, however the view is "
-        "turned, "
-        "and shows form better than colours do.");
+  explain(
+      "What the surface looks like to be made of. A material is lit from beside you, however the view is "
+      "turned, and shows form better than colours do.");
   ImGui::BeginDisabled(form.material == render::Material::kNone);
   shareSlider(
       "colours on it", "##material_colours", form.value_colours,
@@ -51,7 +45,7 @@ void materialFields(render::FormShading& form) {
 void stylusTicks(StylusLook& look) {
   const auto tick = [](const char* label, bool& on, const char* tip) {
     ImGui::Checkbox(label, &on);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+    explain(tip);
   };
   tick("stylus as a pen", look.pen, "A pen whose point is where the tip is. Without it the tip is a disc.");
   sameLineIfFits("its shadow", ItemKind::kTick);
@@ -75,54 +69,46 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
              context.act);
   actionTick("axes", display.axes, Action::kAxes, context.act);
   ImGui::Checkbox("move to views", &display.flights);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "The picture moves to another view, so that the eye can follow. Without it the other view is there "
-        "at "
-        "once.");
+  explain(
+      "The picture moves to another view, so that the eye can follow. Without it the other view is there at "
+      "once.");
   ImGui::Checkbox("half resolution while it moves", &display.half_in_motion);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
+  explain("While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
   ImGui::Checkbox("smooth edges at rest", &display.smooth_at_rest);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "While nothing changes, the surface is drawn with four rays per pixel, band by band, so that no "
-        "frame takes long.");
+  explain(
+      "While nothing changes, the surface is drawn with four rays per pixel, band by band, so that no frame "
+      "takes long.");
   ImGui::Checkbox("light at the size of a pixel", &display.form.filtered_normals);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and "
-        "not "
-        "on the noise of single samples.");
+  explain(
+      "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and not "
+      "on the noise of single samples.");
   stylusTicks(display.stylus);
   ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "With unsaved work. Without the question it is stored as well, and offered when the scan is "
-        "opened again.");
+  explain(
+      "With unsaved work. Without the question it is stored as well, and offered when the scan is opened "
+      "again.");
   beginFields();
   detailChooser(context, display, picture, view, costs);
   const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
   int mode = static_cast<int>(display.stereo);
   if (field("eyes", [&] { return ImGui::Combo("##eyes", &mode, eyes, 3); }))
     display.stereo = static_cast<render::StereoMode>(mode);
-  hoverTip("A picture for each eye: in two halves of the window, or in one for glasses of two colours.");
+  explain("A picture for each eye: in two halves of the window, or in one for glasses of two colours.");
   constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
   (void)field("marks", [&] {
     return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, "opacity %.2f", kClamp);
   });
-  hoverTip("How strongly marked samples are tinted; 0 leaves the colours of the values.");
+  explain("How strongly marked samples are tinted; 0 leaves the colours of the values.");
   (void)field("light from", [&] {
     return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, "%.0f deg", kClamp);
   });
-  hoverTip(
+  explain(
       "Where the light comes from, counted from the picture's right over its top. A material has light of "
       "its own.");
   (void)field("light above", [&] {
     return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F, "%.0f deg", kClamp);
   });
-  hoverTip("How high the light stands: low light shows faint slopes. A material has light of its own.");
+  explain("How high the light stands: low light shows faint slopes. A material has light of its own.");
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
   shareSlider("hollows", "##cavity", display.form.cavity,
@@ -134,12 +120,12 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
                               kClamp);
   });
   ImGui::EndDisabled();
-  hoverTip("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
+  explain("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
   (void)field("heights", [&] {
     return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
                       view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");
   });
-  hoverTip(
+  explain(
       "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "
       "readable.");
   endFields();

@@ -118,7 +118,7 @@ void placesList(Question& question, Files& files, float scale) {
       if (ImGui::Selectable(name.c_str(), place.folder == files.browser.folder(),
                             ImGuiSelectableFlags_DontClosePopups))
         enter(place.folder, question, files);
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", place.folder.c_str());
+      if (ImGui::IsItemHovered()) valueTip(place.folder);
       ImGui::PopID();
     }
   ImGui::EndChild();
@@ -221,7 +221,7 @@ void preview(const Question& question, Parts& parts, float scale) {
       if (shown.picture != nullptr) {
         const float side = ImGui::GetContentRegionAvail().x;
         const auto cursor = scanPicture(*shown.picture, ImVec2(side, 0.7F * side));
-        if (cursor) ImGui::SetTooltip("%s", cursorText(*shown.picture, *cursor).c_str());
+        if (cursor) valueTip(cursorText(*shown.picture, *cursor));
         if (shown.picture->empty()) ImGui::TextDisabled("too large for a quick look");
         for (const std::string& text :
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})

@@ -41,9 +41,8 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
   }
   const int pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
   if (ImGui::IsItemHovered() && pointed >= 0 && pointed < kOctaves)
-    ImGui::SetTooltip("%s", fmt::format("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
-                                        counts[static_cast<std::size_t>(pointed)])
-                                .c_str());
+    valueTip(fmt::format("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
+                         counts[static_cast<std::size_t>(pointed)]));
   const float left = ImGui::GetStyle().WindowPadding.x;
   const auto mark = [&](int octave, const char* text) {
     if (octave > 0) ImGui::SameLine(left + bar * static_cast<float>(octave));
@@ -165,10 +164,10 @@ void soundControls(LoopClient& client, Loudness& loudness) {
   fieldName("volume");
   if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
     loudness.volume = 0.01F * static_cast<float>(percent);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("How loud the surface is; kept for the next start.");
+  explain("How loud the surface is; kept for the next start.");
   endFields();
   ImGui::Checkbox("mute", &loudness.muted);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Silent without changing the scene or the volume.");
+  explain("Silent without changing the scene or the volume.");
   if (loudness != before) client.setLoudness(loudness);
 }
 

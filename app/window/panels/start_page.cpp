@@ -34,7 +34,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
     ImGui::GetWindowDrawList()->AddRect(corner, ImVec2(corner.x + size.x, corner.y + size.y),
                                         colourOf(render::PanelColour::kTick), 0.0F, 0, 2.0F * scale);
     const std::string facts = shown.picture != nullptr ? sizeText(*shown.picture) : std::string();
-    ImGui::SetTooltip("%s\n%s", path.c_str(), facts.c_str());
+    valueTip(fmt::format("{}\n{}", path, facts));
   }
   ImGui::PopID();
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + size.x);

@@ -73,9 +73,7 @@ void falloffField(const PanelContext& context) {
     const float arrow = ImGui::GetFrameHeight();
     drawFalloff(scene.brush_falloff,
                 ImVec2(high.x - arrow - curve.x - 6.0F, low.y + 0.5F * (high.y - low.y - curve.y)), curve);
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("How smoothing falls from the middle of the brush to its rim: %s.",
-                        std::string(now.hint).c_str());
+    explain(fmt::format("How smoothing falls from the middle of the brush to its rim: {}.", now.hint));
     return;
   }
   for (const haptic::FalloffRow& row : haptic::kFalloffRows) {
@@ -86,7 +84,7 @@ void falloffField(const PanelContext& context) {
       applyScene(context.client, scene, context.notices);
     }
     drawFalloff(row.falloff, ImVec2(corner.x + room - curve.x, corner.y), curve);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.hint).c_str());
+    explain(row.hint);
   }
   ImGui::EndCombo();
 }
@@ -98,11 +96,9 @@ void spacingField(const PanelContext& context) {
     return ImGui::SliderFloat("##spacing", &spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
                               spacing > 0.0F ? "%.2f radii" : "all the time", ImGuiSliderFlags_AlwaysClamp);
   });
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
-        "moved by "
-        "so many radii of the brush.");
+  explain(
+      "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
+      "moved by so many radii of the brush.");
   if (!changed) return;
   scene.brush_spacing = std::round(100.0 * static_cast<double>(spacing)) / 100.0;
   applyScene(context.client, scene, context.notices);
@@ -153,9 +149,7 @@ void brushFields(const PanelContext& context) {
                                     ImGuiSliderFlags_AlwaysClamp);
         }))
       setPressDepth(client, static_cast<double>(depth) * cell);
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip(
-          "How far below the surface the mouse presses the tip; the wheel changes it while it presses.");
+    explain("How far below the surface the mouse presses the tip; the wheel changes it while it presses.");
   }
   haptic::Scene scene = client.scene();
   (void)field("keep within", [&] {

@@ -84,17 +84,35 @@ void endPlace() {
   ImGui::EndChild();
 }
 
+namespace {
+
+// A tip has its size before its first frame: no frame follows one in which nothing moves, and a tip next to another would keep
+// the size of that one. `wrap`: 0: lines as they are.
+void writeTip(std::string_view says, float wrap) {
+  const char *const begin = says.data(), *const end = begin + says.size();
+  const ImVec2 text = ImGui::CalcTextSize(begin, end, false, wrap > 0.0F ? wrap : -1.0F),
+               around = ImGui::GetStyle().WindowPadding;
+  ImGui::SetNextWindowSize(ImVec2(std::ceil(text.x) + 2.0F * around.x, std::ceil(text.y) + 2.0F * around.y));
+  ImGui::BeginTooltip();
+  if (wrap > 0.0F) ImGui::PushTextWrapPos(around.x + wrap);
+  ImGui::TextUnformatted(begin, end);
+  if (wrap > 0.0F) ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+}  // namespace
+
 void explain(std::string_view says) {
   if (says.empty() || !ImGui::IsItemHovered()) return;
   // Beside a panel: over it the tip would hide what the field below says.
   const float beside = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x;
   if (beside > (kTip + 2.0F) * ImGui::GetFontSize())
     ImGui::SetNextWindowPos(ImVec2(beside, ImGui::GetItemRectMin().y), ImGuiCond_Always, ImVec2(1.0F, 0.0F));
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(kTip * ImGui::GetFontSize());
-  ImGui::TextUnformatted(says.data(), says.data() + says.size());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  writeTip(says, kTip * ImGui::GetFontSize());
+}
+
+void valueTip(std::string_view says) {
+  writeTip(says, 0.0F);
 }
 
 void tip(Action action) {
@@ -154,6 +172,18 @@ void fieldName(const char* name, std::string_view says) {
   explain(says);
   const float room = kNames * width - ImGui::GetStyle().ItemInnerSpacing.x;
   if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
+}
+
+void restOfLine() {
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1.0F);
+}
+
+void noField(const char* says) {
+  ImGui::BeginDisabled();
+  std::string text(says);
+  ImGui::InputText(fmt::format("##no field, {}", says).c_str(), &text, ImGuiInputTextFlags_ReadOnly);
+  ImGui::EndDisabled();
 }
 
 namespace {

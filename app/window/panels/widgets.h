@@ -45,6 +45,8 @@ using Act = std::function<void(Action)>;
 
 /// A tip of the last item: to the left of its panel where there is room, else below it.
 void explain(std::string_view says);
+/// A value at the cursor, beside it.
+void valueTip(std::string_view says);
 /// Shows what an action does and its keys as a tip of the last item.
 void tip(Action action);
 /// Text as wide as there is room.
@@ -80,6 +82,11 @@ bool field(const char* name, std::string_view says, const auto& edit) {
   explain(says);
   return changed;
 }
+
+/// The next field takes the rest of the line of the last item.
+void restOfLine();
+/// In the place of a field whose number does not count now: dimmed, what holds instead. What is below stays where it is.
+void noField(const char* says);
 
 /// A typed number with its unit: returns what was typed when the field is left by Enter, Tab or a click elsewhere, any finite
 /// value; nothing while it is unchanged or after Escape. What is not understood is said under the field, over the row there. For fields whose range is checked elsewhere and refused with a message.
