@@ -280,6 +280,15 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
   return lines;
 }
 
+std::vector<ArealLine> arealNames() {
+  std::vector<ArealLine> lines;
+  for (const ArealGroup& group : kArealGroups)
+    for (const ArealRow& row : kArealRows)
+      if (std::string_view(row.group) == group.word)
+        lines.push_back({group.heading, row.name, {}, row.text, {}, {}});
+  return lines;
+}
+
 std::string arealRows(const std::string& scan, const Report& report) {
   const ReadAs height{report["unit"], 1.0}, length{report["lateral_unit"], 1.0};
   std::string text;

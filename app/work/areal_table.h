@@ -51,6 +51,9 @@ struct ArealLine {
 /// The parameters that the reports of addAreal have, in the units in which those of the first read at ease.
 [[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports);
 
+/// The same lines without values and units: of parameters that are still to be measured.
+[[nodiscard]] std::vector<ArealLine> arealNames();
+
 /// Rows "scan,group,parameter,value,unit,remark,without_noise,error" of a report of addAreal, in the scan's units, ratios in per cent;
 /// without the heading kArealHeading.
 [[nodiscard]] std::string arealRows(const std::string& scan, const Report& report);

@@ -89,6 +89,7 @@ engine::Result<Report> measuredState(const engine::Version& field, const Measure
 }  // namespace
 
 void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen) {
+  asked_ = options;
   working_.replace([field = client.newest(), scan = client.original(), seen,
                     what = options](engine::JobControl& job) -> engine::Result<Work> {
     Work work{field, {}};
@@ -149,6 +150,7 @@ bool MeasureTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
 
 void MeasureTool::clear() {
   working_.cancel();
+  asked_.reset();
   figures_.reset();
   measured_ = {};
   outdated_ = false;

@@ -44,6 +44,8 @@ class MeasureTool {
   [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
   /// The last figures; empty before, and of another document.
   [[nodiscard]] const std::optional<Figures>& figures() const noexcept { return figures_; }
+  /// What was asked for last, measured or not; null before, and of another document.
+  [[nodiscard]] const Options* asked() const noexcept { return asked_ ? &*asked_ : nullptr; }
   /// Whether the field has changed since.
   [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   /// Forgets the figures, of a document that is closed.
@@ -54,6 +56,7 @@ class MeasureTool {
     engine::Version field;
     Figures figures;
   };
+  std::optional<Options> asked_;
   std::optional<Figures> figures_;
   engine::Version measured_;  // that figures_ are of
   bool outdated_ = false;

@@ -12,8 +12,9 @@ namespace {
 using render::PanelColour;
 
 // Frequency of each change; bars grow with the logarithm of the count, so that one sample in a million is
-// visible.
-void drawHistogram(const engine::ChangeHistogram& histogram, const render::ShownUnit& unit) {
+// visible. `when_empty`: below it where nothing differs.
+void drawHistogram(const engine::ChangeHistogram& histogram, const render::ShownUnit& unit,
+                   const char* when_empty) {
   constexpr int kClasses = engine::ChangeHistogram::kClasses;
   const float height = 5.0F * ImGui::GetTextLineHeight();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 64.0F);
@@ -41,14 +42,12 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
   const float middle = corner.x + 0.5F * width;
   list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height), colourOf(PanelColour::kMuted));
   if (hovered && pointed >= 0 && pointed < kClasses && histogram.reach > 0.0)
-    ImGui::SetTooltip("%s",
-                      fmt::format("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
-                                  lengthText(histogram.lowEnd(pointed + 1), unit, 3),
-                                  histogram.counts[static_cast<std::size_t>(pointed)])
-                          .c_str());
+    valueTip(fmt::format("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
+                         lengthText(histogram.lowEnd(pointed + 1), unit, 3),
+                         histogram.counts[static_cast<std::size_t>(pointed)]));
   // The axis: its ends and zero.
   if (!(histogram.reach > 0.0)) {
-    ImGui::TextDisabled("nothing has changed");
+    ImGui::TextDisabled("%s", when_empty);
     return;
   }
   const std::string low = fmt::format("-{}", render::shortNumber(histogram.reach * unit.per_unit)),
@@ -64,28 +63,27 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
 
 void changePanel(const PanelContext& context, const ChangeFigures& change) {
   const render::ShownUnit& unit = context.units.change;
+  // All rows from the first frame on: figures come into them, and what is below stays where it is.
+  constexpr const char* kYet = "...";
   const auto& live = change.live();
-  if (!live) {
-    ImGui::TextDisabled("measuring ...");
-    return;
-  }
-  const engine::ChangeHistogram& h = live->histogram;
-  figure("largest", lengthText(live->max_abs, unit));
-  figure("rms", lengthText(live->rms, unit));
+  figure("largest", live ? lengthText(live->max_abs, unit) : kYet);
+  figure("rms", live ? lengthText(live->rms, unit) : kYet);
   // Exact figures of the whole field follow after the stroke.
-  const engine::Deviation* const exact = change.exact(context.client.upright());
-  figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : std::string("..."));
+  const engine::Deviation* const exact = live ? change.exact(context.client.upright()) : nullptr;
+  figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : kYet);
   const auto pair = [&unit](double before, double now) {
     return fmt::format("{:.4g}, {}", before * unit.per_unit, lengthText(now, unit));
   };
-  figure("Sq before, now", pair(live->sq_original, live->sq));
-  figure("Sa before, now",
-         exact != nullptr ? pair(exact->sa_a, exact->sa_b) : pair(live->sa_original, live->sa));
-  const double share = live->samples > 0
-                           ? 100.0 * static_cast<double>(h.unchanged) / static_cast<double>(live->samples)
-                           : 100.0;
-  figure("unchanged", fmt::format("{:.4g} %", share));
-  drawHistogram(h, unit);
+  figure("Sq before, now", live ? pair(live->sq_original, live->sq) : kYet);
+  figure("Sa before, now", exact != nullptr ? pair(exact->sa_a, exact->sa_b)
+                           : live           ? pair(live->sa_original, live->sa)
+                                            : kYet);
+  const engine::ChangeHistogram histogram = live ? live->histogram : engine::ChangeHistogram{};
+  const double share = live && live->samples > 0 ? 100.0 * static_cast<double>(histogram.unchanged) /
+                                                       static_cast<double>(live->samples)
+                                                 : 100.0;
+  figure("unchanged", live ? fmt::format("{:.4g} %", share) : kYet);
+  drawHistogram(histogram, unit, live ? "nothing has changed" : "measuring ...");
 }
 
 }  // namespace fettle::app

@@ -9,11 +9,8 @@
 namespace fettle::app {
 namespace {
 
-void writeLine(const std::string& text) {
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-}
+// Lines of the outcome from when a scan is compared, and before.
+constexpr int kComparedLines = 13, kUncomparedLines = 3;
 
 }  // namespace
 
@@ -57,13 +54,18 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   }
   ImGui::EndDisabled();
   ImGui::EndDisabled();
-  if (workRow(compare.busy() ? std::optional(compare.progress()) : std::nullopt, "aligning",
-              "Cancel##compare"))
-    compare.cancel();
-  if (!compared) return;
-  writeLine(std::filesystem::path(compared->path).filename().string());
-  for (const std::string& line : compare.lines()) writeLine(line);
-  if (compare.outdated()) writeLine("the field has changed since: Again");
+  beginPlace("##compare outcome", compare.busy() || compared ? kComparedLines : kUncomparedLines);
+  if (compare.busy()) {
+    if (cancelledBar(compare.progress(), "aligning", "Cancel##compare")) compare.cancel();
+  } else if (compared) {
+    if (compare.outdated()) writeWrapped("the field has changed since: Again");
+    writeWrapped(std::filesystem::path(compared->path).filename().string());
+    for (const std::string& line : compare.lines()) writeWrapped(line);
+  } else {
+    writeIn(render::PanelColour::kMuted,
+            "A scan of the same part is moved onto this one. Here stands how, and how far they differ.");
+  }
+  endPlace();
 }
 
 }  // namespace fettle::app

@@ -14,13 +14,14 @@ namespace {
 // A limit in millimetres that may be infinite: ticked where it counts.
 void extentField(engine::FillOptions& fill, const render::ShownUnit& length, double first_mm) {
   bool limited = std::isfinite(fill.most_extent_mm);
-  if (ImGui::Checkbox("only holes up to a size", &limited))
+  if (ImGui::Checkbox("only holes up to", &limited))
     fill.most_extent_mm = limited ? first_mm : std::numeric_limits<double>::infinity();
-  if (!limited) return;
-  beginFields();
-  (void)field("longest side",
-              [&] { return typeLength("##most extent", fill.most_extent_mm, 1e-12, 1e12, length); });
-  endFields();
+  explain("Holes whose longest side is longer stay holes.");
+  restOfLine();
+  if (limited)
+    (void)typeLength("##most extent", fill.most_extent_mm, 1e-12, 1e12, length);
+  else
+    noField("any size");
 }
 
 void linesFields(engine::LineOptions& lines) {

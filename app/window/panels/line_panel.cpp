@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -11,14 +10,14 @@ namespace fettle::app {
 
 namespace {
 
-constexpr float kRows = 8.0F;  // of the list, without scrolling
+// Of the list with its heading. The same with no line as with many: strokes, undo and redo change how many there are while
+// the hand is at other rows.
+constexpr int kLineRows = 7;
 
 void lineList(const PanelContext& context, LineTool& lines, const std::vector<LineFigures>& figures) {
-  const float row = ImGui::GetTextLineHeightWithSpacing();
-  const float height = row * (std::min(static_cast<float>(figures.size()), kRows) + 1.5F);
   if (!ImGui::BeginTable("##lines", 5,
                          ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp,
-                         ImVec2(0.0F, height)))
+                         ImGui::GetContentRegionAvail()))
     return;
   ImGui::TableSetupScrollFreeze(0, 1);
   const render::ShownUnit &length = context.units.length, &upward = context.units.height;
@@ -90,10 +89,15 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   sameLineIfFits("Remove all");
   actionButton("Remove all", Action::kClearLines, context.act);
   ImGui::EndDisabled();
+  beginPlace("##lines place", kLineRows);
   if (figures.empty())
-    writeIn(render::PanelColour::kMuted, "draw along an edge with the mark tool");
+    writeIn(
+        render::PanelColour::kMuted,
+        "Draw along an edge with the mark tool. Each line is listed here: how long it is, on how much of it "
+        "there is an edge, how surely it lies there, and how high it is.");
   else
     lineList(context, lines, figures);
+  endPlace();
 }
 
 }  // namespace fettle::app

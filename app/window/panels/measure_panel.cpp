@@ -24,6 +24,7 @@ void measureFields(MeasureTool::Options& options) {
   endFields();
   ImGui::Checkbox("its form without steps and spikes", &options.robust);
   ImGui::Checkbox("without noise, with errors", &options.noise);
+  explain("Below each figure a paler one: without the noise of the scan, +- its standard error.");
 }
 
 void cell(const std::string& text) {
@@ -31,40 +32,60 @@ void cell(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-// A column for each value, and one for the figure without noise of the last.
-void arealTable(const MeasureTool::Figures& figures) {
-  const int columns = (figures.before ? 4 : 3);
-  if (!ImGui::BeginTable("parameters", columns, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+constexpr int kCaptionLines = 2;
+
+// A column for each value; with `noise` a second row for each parameter, with its figures without noise. The table has its
+// rows from when it is asked for: what is below moves by that click, and not when the figures come.
+void arealTable(const MeasureTool& measure, bool noise) {
+  const auto& figures = measure.figures();
+  const bool before = figures && figures->before;
+  if (!ImGui::BeginTable("parameters", before ? 4 : 3,
+                         ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
     return;
   cell("");
-  if (figures.before) cell("scan");
-  cell(figures.before ? "now" : "value");
+  if (before) cell("scan");
+  cell(before ? "now" : "value");
   cell("");
-  for (const ArealLine& line : figures.lines) {
+  for (const ArealLine& line : figures ? figures->lines : arealNames()) {
     ImGui::TableNextRow();
     cell(line.name);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", line.text.c_str());
+    if (ImGui::IsItemHovered()) valueTip(line.text);
+    if (!figures) cell(measure.busy() ? "..." : "-");
     for (std::size_t i = 0; i < line.values.size(); ++i) {
       // A reason is longer than a figure: it is the tip of a dash.
       const bool stated = line.values[i].find(' ') == std::string::npos;
       cell(stated ? line.values[i] : "-");
       if (ImGui::IsItemHovered()) {
         if (!stated)
-          ImGui::SetTooltip("%s", line.values[i].c_str());
+          valueTip(line.values[i]);
         else if (!line.without[i].empty())
-          ImGui::SetTooltip("without noise %s", line.without[i].c_str());
+          valueTip("without noise " + line.without[i]);
       }
     }
     cell(line.unit);
-    if (!figures.options.noise) continue;
+    if (!noise) continue;
     ImGui::TableNextRow();
-    ImGui::TableNextColumn();
+    cell("");
     for (const std::string& without : line.without) {
       ImGui::TableNextColumn();
       ImGui::TextDisabled("%s", without.c_str());
     }
   }
   ImGui::EndTable();
+}
+
+// How far the work is, or what the table below has.
+void caption(MeasureTool& measure) {
+  beginPlace("##measured", kCaptionLines);
+  if (measure.busy()) {
+    if (cancelledBar(measure.progress(), "measuring", "Cancel##measure")) measure.cancel();
+  } else if (const auto& figures = measure.figures()) {
+    writeWrapped(fmt::format("ISO 25178-2, {} samples{}", figures->samples,
+                             measure.outdated() ? "; the field has changed since" : ""));
+  } else {
+    writeIn(render::PanelColour::kMuted, "surface texture by ISO 25178-2");
+  }
+  endPlace();
 }
 
 }  // namespace
@@ -75,18 +96,10 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   if (ImGui::Button("Measure now"))
     measure.measure(context.client, picture.seenRect(context.client.field().grid()));
   ImGui::EndDisabled();
-  if (workRow(measure.busy() ? std::optional(measure.progress()) : std::nullopt, "measuring",
-              "Cancel##measure"))
-    measure.cancel();
+  caption(measure);
+  if (measure.asked() == nullptr) return;
   const auto& figures = measure.figures();
-  if (!figures) return;
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(fmt::format("ISO 25178-2, {} samples{}{}", figures->samples,
-                                     figures->options.noise ? "; grey: without noise, +- its error" : "",
-                                     measure.outdated() ? "; the field has changed since" : "")
-                             .c_str());
-  ImGui::PopTextWrapPos();
-  arealTable(*figures);
+  arealTable(measure, measure.busy() || !figures ? measure.asked()->noise : figures->options.noise);
 }
 
 }  // namespace fettle::app

@@ -50,6 +50,10 @@ void placePanel(const PanelContext& context, PlaceTool& places) {
     writePlaces(*found, places, context.units.change);
   else if (places.busy() && cancelledBar(places.progress(), "looking", "Cancel"))
     context.act(Action::kHidePlaces);
+  else if (!places.busy())
+    writeIn(render::PanelColour::kMuted,
+            "Finds stretches of edges where a line drawn by hand probably gains most beyond the filter tgv, "
+            "the best first.");
   endPlace();
 }
 

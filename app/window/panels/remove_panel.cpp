@@ -87,6 +87,8 @@ void whichSamples(RemoveOptions& remove) {
               });
 }
 
+constexpr int kCountLines = 2;
+
 std::string countText(const RemovalCount& count) {
   const auto& counts = count.counts();
   if (!counts) return "counting ...";
@@ -122,8 +124,11 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   }
   heights.remove = turned ? engine::upsideDown(remove) : remove;
   count.want(heights.remove);
-  writeWrapped(countText(count));
   heightButtons(context, heights, heights.remove, {Action::kRemovePreview, Action::kRemoveSamples, "Remove"});
+  // Below the buttons: it takes one line or two.
+  beginPlace("##remove count", kCountLines);
+  writeWrapped(countText(count));
+  endPlace();
   ImGui::PushID("removed");  // the place of the panel of holes has the same name
   heightOutcome(heights, heights.wasLast(heights.remove));
   ImGui::PopID();

@@ -64,15 +64,10 @@ void addSpan(const engine::Section& section, double& low, double& high) {
     }
 }
 
-// `length`, `height`: in which its ranges are written, below it.
-void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const render::ShownUnit& length,
-                 const render::ShownUnit& height) {
-  const float font = ImGui::GetFontSize();
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 size(std::max(40.0F, ImGui::GetContentRegionAvail().x),
-                    kPlotLines * ImGui::GetTextLineHeightWithSpacing());
-  ImGui::InvisibleButton("##profile", size);
-  PlotFrame frame{{corner.x, corner.y + size.y - 2.0F}, {size.x, size.y - 4.0F}, profiles.now.lengthMm()};
+// What a plot shows: lengths and heights, in millimetres.
+PlotFrame frameOf(const SectionTool::Profiles& profiles) {
+  PlotFrame frame;
+  frame.length_mm = profiles.now.lengthMm();
   double low = std::numeric_limits<double>::infinity(), high = -low;
   addSpan(profiles.now, low, high);
   addSpan(profiles.before, low, high);
@@ -80,6 +75,30 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
   if (!(high > low)) high = low + std::max(1e-9, 1e-6 * std::abs(low));
   frame.low_mm = low;
   frame.high_mm = high;
+  return frame;
+}
+
+// The profiles in a plot; before there are any, why.
+void profilePlot(SectionTool& tool) {
+  const float font = ImGui::GetFontSize();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 size(std::max(40.0F, ImGui::GetContentRegionAvail().x),
+                    kPlotLines * ImGui::GetTextLineHeightWithSpacing());
+  ImGui::InvisibleButton("##profile", size);
+  if (!tool.profiles()) {
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y),
+                                              colourOf(PanelColour::kField));
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos(ImVec2(corner.x + 0.5F * font, corner.y + 0.5F * font));
+    ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
+    ImGui::SetCursorScreenPos(below);
+    return;
+  }
+  const SectionTool::Profiles& profiles = *tool.profiles();
+  PlotFrame frame = frameOf(profiles);
+  frame.low = {corner.x, corner.y + size.y - 2.0F};
+  frame.size = {size.x, size.y - 4.0F};
+  const double low = frame.low_mm;
   if (ImGui::IsItemActive())
     tool.moveCursor((ImGui::GetIO().MousePos.x - corner.x) / size.x * profiles.now.lengthMm());
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -106,24 +125,34 @@ void profilePlot(SectionTool& tool, const SectionTool::Profiles& profiles, const
     drawStretch(tool.section()->others, colourOf(PanelColour::kOtherCursors));
   }
   list.PopClipRect();
-  figure("shown", fmt::format("{}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
-                              frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
 }
 
-// Figures one below the other: of the field, and in a lighter shade those of the scan.
-void figureLines(const SectionTool::Figures& figures) {
+// Lines that figures take at a usual width, by what is ticked: their place is as high before they come, and while cursors
+// move. More of them scrolls.
+int figureLinesOf(const KeptSection& section) {
+  constexpr int kShown = 2, kCursorLines = 3, kTitle = 1, kMost = 20;
+  const int once = kCursorLines + 3 * int{section.line} + 2 * int{section.step} + 3 * int{section.groove} +
+                   3 * int{section.arc} + 3 * int{section.angle} + 14 * int{section.roughness};
+  return std::min(kShown + 2 * once + kTitle, kMost);
+}
+
+// What the plot shows, and figures one below the other: of the field, then of the scan.
+void figureLines(const SectionTool& tool, const render::ShownUnit& length, const render::ShownUnit& height) {
   const auto write = [](const std::vector<SectionLine>& lines) {
-    for (const SectionLine& line : lines) {
-      ImGui::PushTextWrapPos(0.0F);
-      ImGui::TextUnformatted((line.name.empty() ? "  " + line.text : line.name + " " + line.text).c_str());
-      ImGui::PopTextWrapPos();
-    }
+    for (const SectionLine& line : lines)
+      writeWrapped(line.name.empty() ? "  " + line.text : line.name + " " + line.text);
   };
-  write(figures.now);
-  if (figures.before.empty()) return;
-  ImGui::Separator();
-  ImGui::TextUnformatted("the same of the scan");
-  write(figures.before);
+  beginPlace("##section figures", figureLinesOf(*tool.section()));
+  if (tool.profiles()) {
+    const PlotFrame frame = frameOf(*tool.profiles());
+    writeWrapped(fmt::format("shown {}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
+                             frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
+    write(tool.figures().now);
+    const bool differs = !tool.figures().before.empty();
+    writeIn(PanelColour::kMuted, differs ? "the same of the scan:" : "nothing differs from the scan here");
+    write(tool.figures().before);
+  }
+  endPlace();
 }
 
 // What is measured between the cursors.
@@ -133,22 +162,18 @@ void figureChoice(KeptSection& section, const render::ShownUnit& length) {
   for (const auto& [name, id, wanted] : {std::tuple("step", "step##section", &section.step),
                                          {"groove", "groove##section", &section.groove},
                                          {"arc", "arc##section", &section.arc},
-                                         {"angle", "angle##section", &section.angle},
-                                         {"roughness", "roughness##section", &section.roughness}}) {
+                                         {"angle", "angle##section", &section.angle}}) {
     sameLineIfFits(name, ItemKind::kTick);
     ImGui::Checkbox(id, wanted);
   }
-  if (section.angle) {
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(
-        "the angle is that from the line between them to the one of the second stretch, with violet ends");
-    ImGui::PopTextWrapPos();
-  }
-  if (!section.roughness) return;
-  beginFields();
-  (void)field("cut-off",
-              [&] { return typeLength("##section cutoff", section.cutoff_mm, 1e-9, 1e9, length); });
-  endFields();
+  explain("From the line between the cursors to the one of a second stretch, with violet ends in the plot.");
+  ImGui::Checkbox("roughness##section", &section.roughness);
+  explain("Ra, Rq, Rz and others between the cursors, of waves shorter than the cut-off beside it.");
+  restOfLine();
+  if (section.roughness)
+    (void)typeLength("##section cutoff", section.cutoff_mm, 1e-9, 1e9, length);
+  else
+    noField("cut-off");
 }
 
 // Which of several, and another one.
@@ -198,15 +223,8 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   endFields();
   figureChoice(section, length);
   tool.set(section);
-  if (!tool.profiles()) {
-    // The place of the plot.
-    beginPlace("##no profile", kPlotLines);
-    ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
-    endPlace();
-    return;
-  }
-  profilePlot(tool, *tool.profiles(), length, height);
-  figureLines(tool.figures());
+  profilePlot(tool);
+  figureLines(tool, length, height);
 }
 
 }  // namespace fettle::app

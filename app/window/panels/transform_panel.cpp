@@ -7,6 +7,10 @@
 
 namespace fettle::app {
 
+namespace {
+constexpr int kOutcomeOfTransform = 2;  // lines
+}
+
 bool transformPanel(const PanelContext& context, TransformTool& transform) {
   ImGui::BeginDisabled(transform.busy());
   TransformTool::Options& options = transform.options;
@@ -25,28 +29,30 @@ bool transformPanel(const PanelContext& context, TransformTool& transform) {
   endFields();
   if (ImGui::Checkbox("other spacing", &options.resample) && !(options.spacing_mm > 0.0))
     options.spacing_mm = std::fmax(grid.spacingXMm(), grid.spacingYMm());
-  if (options.resample || options.angle_deg != 0.0) {
-    beginFields();
-    if (options.resample)
-      (void)field("spacing",
-                  [&] { return typeLength("##spacing", options.spacing_mm, 1e-12, 1e12, length); });
-    (void)field("between samples", [&] {
-      constexpr const char* kMethods[] = {"means of areas", "linear", "cubic"};
-      int method = static_cast<int>(options.method);
-      const bool changed = ImGui::Combo("##resampling", &method, kMethods, std::size(kMethods));
-      if (changed) options.method = static_cast<engine::Resampling>(method);
-      return changed;
-    });
-    endFields();
-  }
+  restOfLine();
+  if (options.resample)
+    (void)typeLength("##spacing", options.spacing_mm, 1e-12, 1e12, length);
+  else
+    noField("as the scan's");
+  beginFields();
+  ImGui::BeginDisabled(!options.resample && options.angle_deg == 0.0);
+  (void)field("resampling", "How a height between samples is found.", [&] {
+    constexpr const char* kMethods[] = {"means of areas", "linear", "cubic"};
+    int method = static_cast<int>(options.method);
+    const bool changed = ImGui::Combo("##resampling", &method, kMethods, std::size(kMethods));
+    if (changed) options.method = static_cast<engine::Resampling>(method);
+    return changed;
+  });
+  ImGui::EndDisabled();
+  endFields();
   const bool asked = ImGui::Button("Make a session of it") && !options.none();
   ImGui::EndDisabled();
-  if (workRow(transform.busy() ? std::optional(transform.progress()) : std::nullopt, "transforming",
-              "Cancel##transform"))
+  beginPlace("##transform outcome", kOutcomeOfTransform);
+  if (!transform.busy())
+    writeWrapped("beside the scan, and opened; the work here stays as it is");
+  else if (cancelledBar(transform.progress(), "transforming", "Cancel##transform"))
     transform.cancel();
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted("beside the scan, and opened; the work here stays as it is");
-  ImGui::PopTextWrapPos();
+  endPlace();
   return asked;
 }
 

@@ -167,6 +167,7 @@ TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
   (void)user.wheel(-8);
   EXPECT_TRUE(user.reads("angle turn"));
   (void)user.look("angle between two stretches");
+  (void)user.wheel(8);
   // Behind the border there is no height, and nothing to show.
   (void)user.enter("from y", "5000");
   (void)user.enter("to y", "5000");

@@ -16,6 +16,17 @@ using State = User::State;
 class SteadyRows : public WindowTest {
  protected:
   SteadyRows() : WindowTest(1300, 1300) {}
+
+  [[nodiscard]] std::string settingsFile() const {
+    return (folder.path() / "fettle" / "window.json").string();
+  }
+  // These panels open, and those closed that are open at first.
+  void writePanels(const std::set<std::string>& open) const {
+    State panels;
+    for (const char* each : {"Tool", "Filters", "Steps", "Change since the scan"}) panels[each] = false;
+    for (const std::string& each : open) panels[each] = true;
+    std::ofstream(settingsFile()) << State{{"panels", panels}};
+  }
 };
 
 // Where these texts are. The first of a name that occurs several times.
@@ -83,7 +94,7 @@ TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
   for (const char* header : {"Holes and lines", "Form", "Edges", "Measure"}) (void)user.click(header);
   user.at({20, 1290});
   const std::set<std::string> rows{"Fill holes", "Level lines",   "form",  "Fit",         "Take out",
-                                   "Put back",   "Suggest edges", "scale", "Measure now", "Haptics"};
+                                   "Put back",   "Suggest edges", "scale", "Measure now", "Section"};
   const auto before = placesOf(user.rest(), rows);
   EXPECT_EQ(before.size(), rows.size());
   EXPECT_EQ(placesOf(user.key("ctrl+shift+l"), rows), before);
@@ -98,6 +109,144 @@ TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
   EXPECT_GT(suggested["suggested"], 0);
   EXPECT_EQ(placesOf(suggested, rows), before);
   EXPECT_EQ(placesOf(user.key("Escape"), rows), before);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// By a click on the button the table takes its place; nothing moves when the figures come, grow old or are measured again.
+TEST_F(SteadyRows, no_row_moves_while_parameters_are_measured) {
+  const std::string large = folder.file("large.tif");
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", large, "--size", "2400x2400", "--seed", "5"}).status, 0);
+  writePanels({"Measure"});
+  const auto program = start({large});
+  User user(display, *program, "steady measure");
+  (void)opened(*program);
+  const std::set<std::string> rows{"Measure now", "Sq", "Spc", "Section", "Transform", "Haptics"};
+  user.tap("Measure now");
+  const State computed = program->until("being measured", [](const State& s) {
+    return s["measuring"] == true && s["texts"].dump().find("\"Cancel\"") != std::string::npos &&
+           s["texts"].dump().find("\"Spc\"") != std::string::npos;
+  });
+  const auto before = placesOf(computed, rows);
+  EXPECT_EQ(before.size(), rows.size());
+  user.at({20, 1290});
+  const State measured = user.rest("measured");
+  EXPECT_EQ(measured["measuring"], false);
+  EXPECT_FALSE(measured["parameters"].empty());
+  EXPECT_EQ(placesOf(measured, rows), before);
+  (void)user.look("measured");
+  (void)user.key("alt+r");
+  const State old = program->until(
+      "old", [](const State& s) { return s["parameters_outdated"] == true && s["settled"] == true; });
+  EXPECT_EQ(placesOf(old, rows), before);
+  (void)user.click("Measure now");
+  user.at({20, 1290});
+  const State both = user.rest();
+  EXPECT_EQ(both["parameters"]["Sq"].size(), 2U);
+  EXPECT_EQ(placesOf(both, rows), before);
+  (void)user.look("before and after");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+TEST_F(SteadyRows, no_row_moves_while_a_section_is_taken_changes_and_is_measured) {
+  writePanels({"Section"});
+  const auto program = start({scan});
+  User user(display, *program, "steady section");
+  (void)opened(*program);
+  user.tap("Along the middle row");
+  const std::set<std::string> rows{"between the cursors:", "roughness", "Transform", "Compare", "Haptics"};
+  const State first = program->until("a section", [](const State& s) {
+    return s["sections"] == 1 && s["texts"].dump().find("\"roughness\"") != std::string::npos;
+  });
+  const auto before = placesOf(first, rows);
+  EXPECT_EQ(before.size(), rows.size());
+  user.at({20, 1290});
+  const auto taken = [&](bool differs) {
+    return program->until("taken", [&](const State& s) {
+      return s["section_mm"].is_number() && s["section_before"] == differs && s["taking_section"] == false &&
+             s["settled"] == true;
+    });
+  };
+  EXPECT_EQ(placesOf(taken(false), rows), before);
+  (void)user.look("a section");
+  // With the scan's beside it, and alone again.
+  (void)user.press("alt+r");
+  EXPECT_EQ(placesOf(taken(true), rows), before);
+  (void)user.look("with the scan's");
+  (void)user.press("ctrl+z");
+  EXPECT_EQ(placesOf(taken(false), rows), before);
+  // A cut-off has its place beside the tick.
+  const std::set<std::string> ticks{"from x", "mean across", "between the cursors:", "angle", "roughness"};
+  const auto unticked = placesOf(user.rest(), ticks);
+  EXPECT_EQ(unticked.size(), ticks.size());
+  (void)user.click("roughness");
+  (void)user.click("angle");
+  user.at({20, 1290});
+  const State all = program->until("figures", [](const State& s) {
+    return s["section_figures"].contains("angle") && s["settled"] == true;
+  });
+  EXPECT_EQ(placesOf(all, ticks), unticked);
+  (void)user.look("all");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// Strokes draw edge lines, and undo takes them back, while the hand is at the buttons of the steps.
+TEST_F(SteadyRows, no_row_moves_when_edge_lines_come_and_go) {
+  std::ofstream(settingsFile()) << State{{"edge_lines", true}, {"panels", {{"Edge lines", true}}}};
+  const auto program = start({scan});
+  User user(display, *program, "steady lines");
+  (void)opened(*program);
+  (void)user.key("7");
+  user.at({20, 1290});
+  const std::set<std::string> rows{"Remove all", "filter", "Preview", "Undo", "Redo"};
+  const auto before = placesOf(user.rest(), rows);
+  EXPECT_EQ(before.size(), rows.size());
+  const auto lines = [&](int number) {
+    return program->until("lines", [&](const State& s) {
+      return s["lines"] == number && s["marking"] == false && s["settled"] == true;
+    });
+  };
+  (void)user.key("m");
+  const State at = program->now()["picture"];
+  const int left = at[0].get<int>() + at[2].get<int>() / 5, high = at[1].get<int>() + at[3].get<int>() / 3;
+  (void)user.stroke({left, high}, {left + 1, high + 300}, 30);
+  user.at({20, 1290});
+  (void)lines(1);
+  (void)user.key("Escape");
+  EXPECT_EQ(placesOf(user.rest(), rows), before);
+  (void)user.look("a line");
+  EXPECT_EQ(placesOf((user.tap("Undo"), lines(0)), rows), before);
+  EXPECT_EQ(placesOf((user.tap("Redo"), lines(1)), rows), before);
+  (void)user.press("ctrl+z");
+  EXPECT_EQ(placesOf(lines(0), rows), before);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// Figures of the change come into rows that are there before them.
+TEST_F(SteadyRows, no_row_moves_when_the_change_is_first_measured) {
+  const std::string large = folder.file("large.tif");
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", large, "--size", "3000x3000", "--seed", "5"}).status, 0);
+  writePanels({"Change since the scan"});
+  const auto program = start({large});
+  User user(display, *program, "steady change");
+  const std::set<std::string> rows{"largest", "unchanged", "Measure", "Section"};
+  const State first = program->until("nothing measured yet", [](const State& s) {
+    return s.contains("texts") && s["texts"].dump().find("measuring ...") != std::string::npos;
+  });
+  const auto before = placesOf(first, rows);
+  EXPECT_EQ(before.size(), rows.size());
+  user.at({20, 1290});
+  const State known = program->until("measured", [](const State& s) {
+    return s["settled"] == true && s["texts"].dump().find("nothing has changed") != std::string::npos;
+  });
+  EXPECT_EQ(placesOf(known, rows), before);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
