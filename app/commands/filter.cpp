@@ -425,7 +425,9 @@ void addFilterRows(Command command, const std::shared_ptr<FilterArguments>& opti
        .kind = ValueKind::kOutput},
       {.name = "--max-change",
        .to = &options->max_change,
-       .text = "Largest change of a sample from the original: that of a session, else --original, else IN",
+       .text =
+           "Limit of change: no sample ends farther than this from the original, whatever steps came before. "
+           "The original is the scan that a session began with, else --original, else IN",
        .kind = ValueKind::kLength},
   });
   addOriginalOption(command, options->original);

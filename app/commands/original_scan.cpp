@@ -16,7 +16,7 @@ namespace fettle::app {
 void addOriginalOption(Command command, std::string& original) {
   command.add({{.name = "--original",
                 .to = &original,
-                .text = "The original scan: changes are limited relative to it",
+                .text = "The original scan, from which the limit of change counts",
                 .kind = ValueKind::kInput,
                 .otherwise = "what is read, or the original of a session"}});
 }

@@ -33,9 +33,8 @@ constexpr Tip kTips[] = {
     {Action::kFilterScope,
      "\"keep marks\": marked samples keep their heights. \"only marks\": nothing else changes."},
     {Action::kFilterMaxChange,
-     "No sample is farther than this from the scan afterwards. What earlier steps moved farther comes back "
-     "to "
-     "this limit."},
+     "No sample is farther than this from the scan as it was opened, however many steps lie between. What "
+     "earlier steps moved farther comes back to this limit."},
     {Action::kRemoveOpen,
      "Samples below, above, between or outside heights, or marked ones, become holes: no-data plateaus, the "
      "table "
@@ -53,7 +52,8 @@ constexpr Tip kTips[] = {
      "For scanners whose rows lie at different heights: stripes go. Slow forms from line to line go as well: "
      "look at a preview first."},
     {Action::kShowMarks, "They count whether they are shown or not."},
-    {Action::kKeepWithin, "Strokes move no sample farther than this from the scan."},
+    {Action::kKeepWithin,
+     "Strokes move no sample farther than this from the scan as it was opened, over all strokes together."},
 };
 
 }  // namespace

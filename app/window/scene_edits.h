@@ -22,7 +22,7 @@ void setBrushRadius(LoopClient& client, double samples, std::vector<Notice>& not
 /// Press depth of the mouse [mm]; no effect without a mouse.
 void setPressDepth(LoopClient& client, double depth_mm);
 
-/// Switches a largest change [height unit] on or off; `last` is its value when it is switched on again.
+/// Switches a limit of change [height unit] on or off; `last` is its value when it is switched on again.
 void toggleLimit(std::optional<double>& limit, double& last);
 
 }  // namespace fettle::app

@@ -103,18 +103,12 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
         });
 }
 
-void limitField(const PanelContext& context, engine::FilterSpec& spec) {
-  (void)field("max change", [&] {
-    actionTick("##maxchange", spec.max_change.has_value(), Action::kFilterMaxChange, context.act);
-    if (!spec.max_change) return false;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0F);
-    return typeLength("##most", *spec.max_change, 0.0, 1e9, context.units.change);
-  });
+bool isRunning(const FilterPreview& filters) {
+  return filters.applying() || (filters.computing() && !filters.followsSoon());
 }
 
 void runButtons(const PanelContext& context, FilterPreview& filters) {
-  const bool runs = filters.applying() || (filters.computing() && !filters.followsSoon());
+  const bool runs = isRunning(filters);
   ImGui::BeginDisabled(runs);
   previewButton(
       !runs && filters.isBehind() && !filters.awaitsRest() ? PreviewWord::kBehind : PreviewWord::kNone, "",
@@ -151,7 +145,7 @@ void previewList(bool anything_marked, FilterPreview& filters) {
     const ReadAs as = readOnScreenAs(v.result.report.max_change, unit.mm, unit.name);
     const std::string came = nothing_marked
                                  ? "nothing is marked: with \"only marks\" nothing changes"
-                                 : fmt::format("{} changed, max {:.3g} {}", v.result.report.changed,
+                                 : fmt::format("{} change, by up to {:.3g} {}", v.result.report.changed,
                                                v.result.report.max_change / as.size, as.name);
     ImGui::TextUnformatted(fmt::format("{}\n{}", filterName(v.spec), came).c_str());
     ImGui::PopTextWrapPos();
@@ -168,7 +162,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   kindField(spec, grid);
   sizeFields(spec, grid, context.units);
   sigmaFields(spec, context.units, filters.rangeOfNoise(context.client));
-  limitField(context, spec);
+  (void)limitField(context, spec.max_change, Action::kFilterMaxChange);
   endFields();
   int scope = static_cast<int>(spec.scope);
   ImGui::RadioButton("keep marks", &scope, 0);
@@ -183,6 +177,8 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   ImGui::EndDisabled();
   beginPlace("##previews", kPreviewLines);
   previewSoFar(filters);
+  if (filters.variants().empty() && !isRunning(filters))
+    writeIn(render::PanelColour::kMuted, "A preview says here what it changes.");
   previewList(context.client.field().reader().root().marked_children != 0, filters);
   endPlace();
 }

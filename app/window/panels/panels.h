@@ -22,6 +22,8 @@ struct PanelContext {
 
 void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,
                const Display& display);
+/// The limit of change of a brush or a filter, with its tick; true when another number was typed. `switches`: the action of the tick.
+bool limitField(const PanelContext& context, std::optional<double>& limit, Action switches);
 void edgePanel(const PanelContext& context, EdgeTool& edges);
 /// Of the places where a line is worth most.
 void placePanel(const PanelContext& context, PlaceTool& places);

@@ -152,15 +152,7 @@ void brushFields(const PanelContext& context) {
     explain("How far below the surface the mouse presses the tip; the wheel changes it while it presses.");
   }
   haptic::Scene scene = client.scene();
-  (void)field("keep within", [&] {
-    actionTick("##within", scene.max_change.has_value(), Action::kKeepWithin, context.act);
-    if (!scene.max_change) return false;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0F);
-    if (typeLength("##most", *scene.max_change, 0.0, 1e9, context.units.change))
-      applyScene(client, scene, context.notices);
-    return false;
-  });
+  if (limitField(context, scene.max_change, Action::kKeepWithin)) applyScene(client, scene, context.notices);
   endFields();
   if (client.mouse() == nullptr) return;
   beginPlace("##strength", kStrengthLines);

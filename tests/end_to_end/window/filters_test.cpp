@@ -70,12 +70,14 @@ TEST_F(WindowTest, a_largest_change_typed_in_is_kept_by_what_is_applied) {
   const auto program = start({scan});
   User user(display, *program, "limit");
   (void)opened(*program);
+  (void)user.click("Tool");  // strokes have a limit, too
   (void)user.key("n");
   (void)user.key("n");
   EXPECT_EQ(user.enter("window", "9")["filter"], "Median 9 x 9");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
   // In micrometres, as the part's changes are shown.
-  EXPECT_EQ(user.enter("max change", "15")["max_change"], kMost);
+  EXPECT_EQ(user.enter("keep within", "15")["max_change"], kMost);
+  EXPECT_TRUE(user.reads("of the scan")) << "from what it counts";
   (void)user.look("typed");
   EXPECT_EQ(user.click("Apply")["filters_applied"], 1);
   EXPECT_EQ(program->now()["steps"], 1);
@@ -233,23 +235,24 @@ TEST_F(WindowTest, a_number_is_taken_when_its_field_is_left_and_in_the_unit_that
   const auto program = start({scan});
   User user(display, *program, "typed numbers");
   (void)opened(*program);
+  (void)user.click("Tool");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
   const auto taken = [&](double mm) {
     return program->until(fmt::format("{} mm", mm), [&](const State& s) { return s["max_change"] == mm; });
   };
-  EXPECT_EQ(user.enter("max change", "15")["max_change"], 0.015);
-  EXPECT_EQ(user.enter("max change", "0.25 mm")["max_change"], 0.25);
-  EXPECT_EQ(user.enter("max change", "15 parsecs")["max_change"], 0.25) << "no unit that is known";
-  ASSERT_TRUE(user.typeIn("max change", "40"));
+  EXPECT_EQ(user.enter("keep within", "15")["max_change"], 0.015);
+  EXPECT_EQ(user.enter("keep within", "0.25 mm")["max_change"], 0.25);
+  EXPECT_EQ(user.enter("keep within", "15 parsecs")["max_change"], 0.25) << "no unit that is known";
+  ASSERT_TRUE(user.typeIn("keep within", "40"));
   (void)user.press("Tab");
   (void)taken(0.04);
   (void)user.press("Escape");
   (void)user.rest();
-  ASSERT_TRUE(user.typeIn("max change", "60"));
+  ASSERT_TRUE(user.typeIn("keep within", "60"));
   user.tap("window");
   (void)taken(0.06);
   (void)user.rest();
-  ASSERT_TRUE(user.typeIn("max change", "80"));
+  ASSERT_TRUE(user.typeIn("keep within", "80"));
   (void)user.press("Escape");
   EXPECT_EQ(user.rest()["max_change"], 0.06);
   (void)quit(user);

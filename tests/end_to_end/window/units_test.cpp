@@ -55,7 +55,7 @@ struct Scale {
   double cell_m, span_m, origin_m;
   const char* unit;    // that everything is to be read in
   const char* height;  // a text in the status bar that shows it, as a pattern
-  const char* typed;   // a largest change
+  const char* typed;   // a limit of change
   double most_m;       // it stands for
   const char* depth;   // of the brush, in the unit that is shown ...
   double depth_mm;
@@ -109,9 +109,10 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
   user.write("99km");
   program->until("that it is at its largest", [](const State& s) { return says(s, "(the largest) [99km]"); });
   EXPECT_EQ(user.key("Escape")["press_mm"], scale.other_mm);
+  (void)user.click("Tool");  // strokes have a limit, too
   (void)user.click("Filters");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
-  const double taken = user.enter("max change", scale.typed)["max_change"];
+  const double taken = user.enter("keep within", scale.typed)["max_change"];
   EXPECT_NEAR(taken, scale.most_m, 1e-12 * scale.most_m);
   (void)user.look("typed");
   program->signal(SIGTERM);
