@@ -107,6 +107,8 @@ void howToClean() {
         fmt::format("6. {} exports the part; {} keeps every step in a session.", keysOf(kExport),
                     keysOf(kSave))})
     ImGui::TextUnformatted(("  " + line).c_str());
+  ImGui::TextUnformatted(
+      "Screen readers cannot read this window; every function is on the command line, too.");
 }
 
 std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, float scale) {

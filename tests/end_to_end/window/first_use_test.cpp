@@ -146,6 +146,7 @@ TEST_F(FirstUseTest, the_list_of_keys_begins_with_how_to_clean_a_scan_and_is_sea
   const State all = program->until("the list", listed);
   EXPECT_TRUE(hasWords(all, "How to clean a scan"));
   EXPECT_TRUE(hasWords(all, "6. Ctrl+E exports the part"));
+  EXPECT_TRUE(hasWords(all, "Screen readers cannot read this window"));
   EXPECT_EQ(all["text_field"], true) << "the search has the keyboard";
   (void)user.look("the list");
   user.write("contour");
