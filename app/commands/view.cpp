@@ -85,7 +85,7 @@ void addView(Command root, Chosen& chosen) {
        .to = &options->view.window.scale,
        .text = "Factor on the size of text and panels",
        .range = Range{0.5, 4.0},
-       .otherwise = "the display's"},
+       .otherwise = "as chosen in the window, the display's at first"},
       {.name = "--theme",
        .to = &options->theme,
        .text = "Colours of panels and dialogs, from now on",

@@ -134,7 +134,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   addTitles(parts, previews, input);
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr || client.controllerLeads();
   // The shadow is three quarters of what a frame with a brush takes.
-  StylusLook look = parts.settings.display.stylus;
+  StylusLook look = parts.settings.display.stylusLook();
   const bool shown = stylus && state.link == haptic::LinkState::kConnected;
   const bool left_out = shown && look.pen && look.shadow && !parts.spared_shadow.shown(picture.spares(), now);
   if (left_out) look.shadow = false;

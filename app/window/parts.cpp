@@ -33,7 +33,7 @@ bool Parts::held() const {
 
 void Parts::flyTo(const render::View& to) {
   flight.stop();
-  const auto framing = settings.display.flights ? picture.framing() : std::nullopt;
+  const auto framing = settings.display.flies() ? picture.framing() : std::nullopt;
   render::View sized = to;
   sized.width = view.width;
   sized.height = view.height;

@@ -126,6 +126,7 @@ std::string Settings::text() const {
               {"decorations", d.decorations},
               {"axes", d.axes},
               {"flights", d.flights},
+              {"reduced_motion", d.reduced_motion},
               {"half_in_motion", d.half_in_motion},
               {"smooth_at_rest", d.smooth_at_rest},
               {"filtered_normals", d.form.filtered_normals},
@@ -140,6 +141,7 @@ std::string Settings::text() const {
               {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
               {"light_panels", panels_theme == render::Theme::kLight},
+              {"ui_scale", ui_scale},
               {"side_panel", side_panel},
               {"side_width", side_width},
               {"panels", panels},
@@ -175,6 +177,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "decorations", d.decorations);
   take(file, "axes", d.axes);
   take(file, "flights", d.flights);
+  take(file, "reduced_motion", d.reduced_motion);
   take(file, "half_in_motion", d.half_in_motion);
   take(file, "smooth_at_rest", d.smooth_at_rest);
   take(file, "filtered_normals", d.form.filtered_normals);
@@ -188,6 +191,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "stylus_trail", d.stylus.trail);
   take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
   take(file, "mouse", kHabits, settings.habits);
+  take(file, "ui_scale", 0.5, 4.0, settings.ui_scale);
   take(file, "side_panel", settings.side_panel);
   take(file, "side_width", 0.0F, 4096.0F, settings.side_width);
   if (const auto it = file.find("panels"); it != file.end() && it->is_object())

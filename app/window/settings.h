@@ -49,6 +49,7 @@ struct Display {
   bool decorations = true;
   bool axes = true;               ///< AxesGizmo
   bool flights = true;            ///< the view moves to another one (Flight) and does not jump there
+  bool reduced_motion = false;    ///< no flights and no trail, whatever is said of these
   std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
   render::FormShading form = render::kShownForm;
   bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
@@ -57,6 +58,13 @@ struct Display {
   // Not stored: the next user may have no glasses.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;
+
+  [[nodiscard]] bool flies() const noexcept { return flights && !reduced_motion; }
+  [[nodiscard]] StylusLook stylusLook() const noexcept {
+    StylusLook look = stylus;
+    look.trail = look.trail && !reduced_motion;
+    return look;
+  }
 };
 
 /// Settings of the user: a JSON file in the settings folder.
@@ -64,6 +72,7 @@ struct Settings {
   Display display;
   Habits habits = Habits::kBlender;
   render::Theme panels_theme = render::Theme::kDark;  ///< of panels and dialogs
+  double ui_scale = 0.0;  ///< factor on the size of text and panels, 0.5 .. 4; 0: the display's
   bool side_panel = true;
   float side_width = 0.0F;             ///< [pixels at scale 1]; 0: default
   std::map<std::string, bool> panels;  ///< which ones are open, by their names

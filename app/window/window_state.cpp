@@ -45,6 +45,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"field_text", p.window.fieldText()},
            {"message", dialog != nullptr ? dialog->said.what : ""},
            {"status", p.feedback.status},
+           {"reduced_motion", p.settings.display.reduced_motion},
            {"light_panels", p.settings.panels_theme == render::Theme::kLight},
            {"asks_before_quitting", p.settings.ask_before_quitting},
            {"device_losses", run.device_losses},

@@ -46,11 +46,13 @@ bool working(const Parts& p) {
 
 }  // namespace
 
-Workstation::Workstation(const ViewOptions& options, std::unique_ptr<render::Window> window)
+Workstation::Workstation(const ViewOptions& options, const Settings& settings,
+                         std::unique_ptr<render::Window> window)
     : options_(options),
       window_(std::move(window)),
-      parts_(*window_, Settings::load(settingsPath("/window.json"))),
-      saved_settings_(parts_.settings) {
+      parts_(*window_, settings),
+      saved_settings_(parts_.settings),
+      ui_scale_(settings.ui_scale) {
   parts_.usual_reading = options_.reading;
   if (options_.theme) parts_.settings.panels_theme = *options_.theme;
   window_->setWhileWaiting([this] { whileWaiting(); });
@@ -64,10 +66,12 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   if (options.xr) render::Headset::silenceLoader();
   render::WindowOptions window = options.window;
   window.layout_file = settingsPath("/layout.ini");
+  const Settings settings = Settings::load(settingsPath("/window.json"));
+  if (window.scale <= 0.0) window.scale = settings.ui_scale;
   putWorkersBehindTheWindow();
   auto opened = render::Window::create(window);
   if (!opened) return tl::unexpected(opened.error());
-  std::unique_ptr<Workstation> station(new Workstation(options, std::move(*opened)));
+  std::unique_ptr<Workstation> station(new Workstation(options, settings, std::move(*opened)));
   if (const auto made = station->parts_.picture.make(); !made) return tl::unexpected(made.error());
   if (!options.events.empty()) {
     auto events = EventLog::open(options.events);
@@ -212,6 +216,13 @@ void Workstation::showFrame() {
   const engine::Stopwatch watch;
   parts_.feedback.dropPassed(std::chrono::steady_clock::now());
   window_->setPanelTheme(parts_.settings.panels_theme);
+  if (std::exchange(ui_scale_, parts_.settings.ui_scale) != parts_.settings.ui_scale) {
+    if (const auto scaled = window_->setScale(ui_scale_); !scaled) {
+      losePicture(scaled.error());
+      return;
+    }
+    parts_.picture.requestRedraw();
+  }
   window_->beginFrame();
   carryOut(layOutPanels(parts_));
   releaseHandsWhenAsked();

@@ -53,7 +53,7 @@ class Workstation {
   [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);
 
  private:
-  Workstation(const ViewOptions& options, std::unique_ptr<render::Window> window);
+  Workstation(const ViewOptions& options, const Settings& settings, std::unique_ptr<render::Window> window);
 
   // A frame.
   void runFrame();
@@ -101,6 +101,7 @@ class Workstation {
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as in the file
+  double ui_scale_;          // of the settings, as the window has it
   std::chrono::steady_clock::time_point settings_looked_at_{};
   std::uint64_t frames_ = 0;
   std::int64_t shown_ns_ = 0;  // the last one

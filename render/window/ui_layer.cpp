@@ -117,16 +117,6 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   makeStyle(scale);
-  setTheme(theme_);
-  ImFontConfig font;
-  font.FontDataOwnedByAtlas = false;
-  // Latin, Greek, arrows, and the few signs that numbers need.
-  static constexpr std::array<ImWchar, 9> kLetters{0x20,   0x17F,  0x370,  0x3FF, 0x2010,
-                                                   0x2122, 0x2190, 0x22FF, 0};
-  const std::span<const std::uint8_t> regular = regularFont();
-  // ImGui takes a non-const pointer but does not write to data it does not own.
-  io.Fonts->AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
-                                 std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
   ImGui_ImplGlfw_InitForVulkan(window, true);
 }
 
@@ -176,14 +166,36 @@ void UiLayer::leave() noexcept {
   context_ = nullptr;
 }
 
-void UiLayer::makeStyle(double scale) const {
+void UiLayer::setScale(double scale) {
+  makeStyle(scale);
+  // The back end keeps the picture of the letters with everything else of a device.
+  if (Context* const context = context_) {
+    leave();
+    enter(*context);
+  }
+}
+
+void UiLayer::makeStyle(double scale) {
   ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
   style.WindowRounding = 0.0F;
   style.FrameRounding = 3.0F;
   style.GrabRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
   style.FrameBorderSize = 1.0F;  // an empty tick box is nothing but its edge
   style.ScaleAllSizes(static_cast<float>(scale));
+  setTheme(theme_);
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  // Latin, Greek, arrows, and the few signs that numbers need.
+  static constexpr std::array<ImWchar, 9> kLetters{0x20,   0x17F,  0x370,  0x3FF, 0x2010,
+                                                   0x2122, 0x2190, 0x22FF, 0};
+  const std::span<const std::uint8_t> regular = regularFont();
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  fonts.Clear();
+  // ImGui takes a non-const pointer but does not write to data it does not own.
+  fonts.AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
+                             std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
 }
 
 void UiLayer::setTheme(Theme theme) {

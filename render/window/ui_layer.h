@@ -40,6 +40,8 @@ class UiLayer {
   /// called.
   void leave() noexcept;
 
+  /// The size of texts and panels from the next frame on.
+  void setScale(double scale);
   /// The colours of what is drawn from the next frame on.
   void setTheme(Theme theme);
   void fit(vk::Extent2D extent);
@@ -100,7 +102,7 @@ class UiLayer {
     bool down;
     float x, y;
   };
-  void makeStyle(double scale) const;
+  void makeStyle(double scale);
   [[nodiscard]] std::vector<Rectangle> changedPlaces(const ImDrawData& panels, const Below& below);
   void drawPanels(const vk::raii::CommandBuffer& commands, ImDrawData& panels,
                   const std::vector<Rectangle>& places, const Rectangle& picture) const;

@@ -438,6 +438,17 @@ int Window::height() const {
 double Window::scale() const {
   return impl_->scale();
 }
+engine::Status Window::setScale(double scale) {
+  Impl& w = *impl_;
+  w.scale_asked = scale;
+  try {
+    w.ui->setScale(w.scale());
+  } catch (const std::exception& error) {
+    w.usable = false;
+    return tl::unexpected(lost(w.device_name, error.what()));
+  }
+  return {};
+}
 void Window::setPanelTheme(Theme theme) {
   impl_->ui->setTheme(theme);
 }

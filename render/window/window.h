@@ -138,6 +138,9 @@ class Window {
   [[nodiscard]] int height() const;
   /// Factor on sizes of text and panels: the display's, 1 on standard ones.
   [[nodiscard]] double scale() const;
+  /// The same from the next frame on, 0.5 .. 4; 0: the display's. Between frames. After a failure, as after one of present(),
+  /// the window shows nothing until renew().
+  [[nodiscard]] engine::Status setScale(double scale);
   /// The colours of the panels from the next frame on (panel_colours.h).
   void setPanelTheme(Theme theme);
   void setTitle(const std::string& title);

@@ -42,7 +42,7 @@ void materialFields(render::FormShading& form) {
   ImGui::EndDisabled();
 }
 
-void stylusTicks(StylusLook& look) {
+void stylusTicks(StylusLook& look, bool reduced_motion) {
   const auto tick = [](const char* label, bool& on, const char* tip) {
     ImGui::Checkbox(label, &on);
     explain(tip);
@@ -55,7 +55,24 @@ void stylusTicks(StylusLook& look) {
   ImGui::EndDisabled();
   tick("force arrow", look.force, "The force that the hand feels; the longest arrow is the force limit.");
   sameLineIfFits("trail", ItemKind::kTick);
+  ImGui::BeginDisabled(reduced_motion);
   tick("trail", look.trail, "Where the tip was during the last second.");
+  ImGui::EndDisabled();
+}
+
+std::string scaleText(double scale) {
+  return scale > 0.0 ? fmt::format("{:.0f} %", 100.0 * scale) : "as the display";
+}
+
+// Of text and panels.
+void uiScaleField(double& scale) {
+  static constexpr double kScales[] = {0.0, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
+  if (field("text size", [&] { return ImGui::BeginCombo("##ui scale", scaleText(scale).c_str()); })) {
+    for (const double each : kScales)
+      if (ImGui::Selectable(scaleText(each).c_str(), each == scale)) scale = each;
+    ImGui::EndCombo();
+  }
+  explain("Of all texts, panels and marks of the window; kept for the next start.");
 }
 
 }  // namespace
@@ -68,7 +85,11 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   actionTick("light panels", settings.panels_theme == render::Theme::kLight, Action::kPanelsTheme,
              context.act);
   actionTick("axes", display.axes, Action::kAxes, context.act);
+  ImGui::Checkbox("reduced motion", &display.reduced_motion);
+  explain("Nothing moves by itself: the view is at another place at once, and the stylus has no trail.");
+  ImGui::BeginDisabled(display.reduced_motion);
   ImGui::Checkbox("move to views", &display.flights);
+  ImGui::EndDisabled();
   explain(
       "The picture moves to another view, so that the eye can follow. Without it the other view is there at "
       "once.");
@@ -82,12 +103,13 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   explain(
       "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and not "
       "on the noise of single samples.");
-  stylusTicks(display.stylus);
+  stylusTicks(display.stylus, display.reduced_motion);
   ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
   explain(
       "With unsaved work. Without the question it is stored as well, and offered when the scan is opened "
       "again.");
   beginFields();
+  uiScaleField(settings.ui_scale);
   detailChooser(context, display, picture, view, costs);
   const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
   int mode = static_cast<int>(display.stereo);

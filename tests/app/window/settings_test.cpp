@@ -28,6 +28,8 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.vertices = 131072;
   settings.display.axes = false;
   settings.display.flights = false;
+  settings.display.reduced_motion = true;
+  settings.ui_scale = 1.75;
   settings.habits = Habits::kMeshLib;
   settings.panels_theme = render::Theme::kLight;
   settings.side_panel = false;
@@ -40,7 +42,22 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.save(path);
   EXPECT_EQ(Settings::load(path), settings);
   EXPECT_FALSE(Settings() == settings);
+  EXPECT_TRUE(Settings::load(path).display.reduced_motion);
+  EXPECT_EQ(Settings::load(path).ui_scale, 1.75);
   EXPECT_EQ(Settings::load(path).devices, settings.devices);
+}
+
+TEST(Settings, reduced_motion_stops_flights_and_the_trail_and_keeps_what_was_said_of_them) {
+  Display display;
+  display.stylus.trail = true;
+  EXPECT_TRUE(display.flies());
+  EXPECT_TRUE(display.stylusLook().trail);
+  display.reduced_motion = true;
+  EXPECT_FALSE(display.flies());
+  EXPECT_FALSE(display.stylusLook().trail);
+  EXPECT_TRUE(display.stylusLook().pen);
+  display.reduced_motion = false;
+  EXPECT_TRUE(display.flies() && display.stylusLook().trail);
 }
 
 TEST(Settings, marks_that_are_hidden_are_seen_again_in_the_next_start) {
@@ -70,7 +87,8 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
         "{\"split_at\": 7, \"light_elevation\": -3, \"vertices\": 12, \"mouse\": \"cat\"}",
         "{\"change_range\": \"typed\", \"change_share\": 0, \"panels\": {\"Tool\": 5}, \"side_width\": "
         "\"wide\", \"colours\": 4}",
-        "{\"volume\": 1.5, \"muted\": \"no\"}", "{\"material\": \"gold\", \"material_colours\": 2}"}) {
+        "{\"volume\": 1.5, \"muted\": \"no\"}", "{\"ui_scale\": 0.1, \"reduced_motion\": 1}",
+        "{\"ui_scale\": 40}", "{\"material\": \"gold\", \"material_colours\": 2}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }

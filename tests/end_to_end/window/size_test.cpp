@@ -3,6 +3,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -132,6 +133,52 @@ TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0);
     expectSilence(*program);
+  }
+}
+
+// The size that is chosen in the window is there at once, and in the next start; an option goes before it.
+TEST_F(SizeTest, the_size_of_texts_is_chosen_in_the_window_and_kept) {
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"panels",
+                                                                    {{"Tool", false},
+                                                                     {"Filters", false},
+                                                                     {"Steps", false},
+                                                                     {"Change since the scan", false},
+                                                                     {"Display", true}}}};
+  {
+    const auto program = start({scan});
+    User user(display, *program, "text size");
+    EXPECT_NEAR(opened(*program)["scale"].get<double>(), 1.0, 1e-9);
+    EXPECT_NEAR(titleHeight(user.look("usual"), program->now()["picture"]), 13.0, 1.5);
+    (void)user.click("as the display");
+    (void)user.click("150 %");
+    const State large = program->until(
+        "large texts", [](const State& s) { return s["scale"] == 1.5 && s["settled"] == true; });
+    EXPECT_NEAR(titleHeight(user.look("large"), large["picture"]), 1.5 * 13.0, 1.5);
+    for (const State& text : large["texts"]) EXPECT_EQ(text["cut"], false) << text.dump();
+    (void)user.click("reduced motion");
+    EXPECT_EQ(program->now()["reduced_motion"], true);
+    // The view is at another place at once: no picture between.
+    program->skipToNewest();
+    std::set<std::string> views{program->now()["view"].dump()};
+    const std::string before = *views.begin();
+    display.hands({"key", "--delay", "0", "1"});
+    program->until("another view", [&](const State& s) {
+      views.insert(s["view"].dump());
+      return s["settled"] == true && s["view"].dump() != before;
+    });
+    EXPECT_EQ(views.size(), 2U);
+    (void)quit(user);
+  }
+  for (const auto& [more, scale] :
+       {std::pair{std::vector<std::string>{}, 1.5}, {{"--ui-scale", "0.75"}, 0.75}}) {
+    std::vector<std::string> arguments{scan};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto program = start(arguments);
+    User user(display, *program, "text size again");
+    const State again = opened(*program);
+    EXPECT_EQ(again["scale"], scale);
+    EXPECT_EQ(again["reduced_motion"], true);
+    (void)quit(user);
   }
 }
 
