@@ -85,6 +85,16 @@ const std::vector<std::string>& keysOfActions() {
   return keys;
 }
 
+const std::vector<std::string>& namesOfPanels() {
+  static const std::vector<std::string> names{"Tool",    "Edges",          "Edge lines",
+                                              "Filters", "Remove samples", "Holes and lines",
+                                              "Form",    "Steps",          "Change since the scan",
+                                              "Measure", "Section",        "Transform",
+                                              "Compare", "Colours",        "Display",
+                                              "Status",  "Haptics"};
+  return names;
+}
+
 Monkey::Monkey(std::uint64_t seed, int width, int height) : random_(seed), width_(width), height_(height) {}
 
 int Monkey::actions() {
@@ -191,6 +201,9 @@ std::vector<std::string> Monkey::burst(int count, const State& state) {
 
 std::vector<std::string> Monkey::step(const std::string& step, const State& state) {
   if (step.starts_with("drop ")) return {};
+  if (step.starts_with("type ")) return {"type", "--delay", "0", step.substr(5)};
+  if (step.starts_with("hold ")) return {"keydown", step.substr(5)};
+  if (step.starts_with("release ")) return {"keyup", step.substr(8)};
   if (!step.starts_with("panel ")) return {"key", "--delay", "0", step};
   const std::string name = step.substr(6);
   for (const State& open : state.value("panels", State::array()))
@@ -200,17 +213,24 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
   if (left >= state.value("frame", State{width_, height_})[0].get<int>())
     return {"key", "--delay", "0", "Tab"};
   std::vector<std::string> words;
+  const auto placeOf = [](const std::string& panel) {
+    return std::ranges::find(namesOfPanels(), panel) - namesOfPanels().begin();
+  };
+  bool above = below(2) == 0;  // whether the header is above what is seen
   for (const State& t : state.value("texts", State::array())) {
     const State& box = t["at"];
-    if (t["text"] != name || box[0] < left) continue;
+    if (box[0] < left) continue;
+    if (const auto place = placeOf(t["text"]); place < std::ssize(namesOfPanels()))
+      above = placeOf(name) < place;
+    if (t["text"] != name) continue;
     moveTo(words, box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2);
     say(words, {"click", "--delay", "0", "1"});
     return words;
   }
-  // Scrolled away: some way up or down. With many panels open it is on the screen at neither end.
+  // Scrolled away: some way towards it.
   moveTo(words, left + 20, picture[1].get<int>() + picture[3].get<int>() / 2);
   const std::string notches = std::to_string(1 + below(40));
-  say(words, {"click", "--repeat", notches, "--delay", "0", below(2) == 0 ? "4" : "5"});
+  say(words, {"click", "--repeat", notches, "--delay", "0", above ? "4" : "5"});
   return words;
 }
 

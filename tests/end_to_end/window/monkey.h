@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <random>
 #include <string>
@@ -9,11 +10,12 @@
 
 namespace fettle::tests {
 
-/// One thing that must come up while the monkey plays: a tool, a dialog, a panel.
+/// One thing that must come up while the monkey plays: a tool, a dialog, a panel, a way of seeing.
 struct Reach {
-  std::string what;
-  std::vector<std::string>
-      way;        ///< steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME"
+  std::string kind, what;
+  std::function<bool(const ViewProgram::State&)> is;
+  /// Steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME", "type TEXT", "hold KEY", "release KEY".
+  std::vector<std::string> way;
   int times = 0;  ///< reported so far
 };
 
@@ -48,6 +50,9 @@ class Monkey {
   std::map<std::string, int> clicked_;  // texts without their digits
   std::string held_;                    // button of a stroke that continues in the next frames
 };
+
+/// The panels, from above.
+[[nodiscard]] const std::vector<std::string>& namesOfPanels();
 
 /// What xdotool calls the key of each action of the window, with its modifiers.
 [[nodiscard]] const std::vector<std::string>& keysOfActions();

@@ -35,7 +35,58 @@ std::int64_t number(const char* variable, std::int64_t otherwise) {
 bool calm(const State& s) {
   return s["dialog"] == "none" && s["settled"] == true && s["text_field"] == false &&
          s.value("tool", "view") == "view" && s.value("variants", State::array()).empty() &&
-         s.value("suggested", 0) == 0 && s.value("lasso", "") == "" && s.value("adjusting", "") == "";
+         s.value("suggested", 0) == 0 && s.value("lasso", "") == "" && s.value("adjusting", "") == "" &&
+         !s.value("radial", State()).is_string();
+}
+
+// Everything that must come up. `folder` has "second.tif", "left.tif", "there.tif" and "broken.tif".
+std::vector<Reach> reachesIn(const TempFolder& folder) {
+  std::vector<Reach> all;
+  const auto add = [&](const char* kind, const std::string& what, std::function<bool(const State&)> is,
+                       std::vector<std::string> way) {
+    way.insert(way.begin(), "Escape");
+    all.push_back({kind, what, std::move(is), std::move(way)});
+  };
+  using Ways = std::vector<std::pair<std::string, std::vector<std::string>>>;
+  for (const auto& [what, way] : Ways{{"view", {}},
+                                      {"feel", {"t"}},
+                                      {"smooth", {"s"}},
+                                      {"mark", {"m"}},
+                                      {"unmark", {"u"}},
+                                      {"free", {"l"}},
+                                      {"box", {"b"}}})
+    add(
+        "tool", what,
+        [is = what](const State& s) { return s.value("tool", "") == is || s.value("lasso", "") == is; }, way);
+  for (const auto& [what, way] :
+       Ways{{"open", {"ctrl+o"}},
+            {"import", {"ctrl+shift+o"}},
+            {"compare", {"alt+b"}},
+            {"save as", {"ctrl+shift+s"}},
+            {"export", {"ctrl+e"}},
+            {"unsaved", {"ctrl+i", "drop " + folder.file("second.tif")}},
+            {"replace", {"ctrl+e", "ctrl+a", "type " + folder.file("there.tif"), "Return"}},
+            {"recover", {"drop " + folder.file("left.tif"), "d"}},
+            {"device", {"ctrl+shift+d"}},
+            {"shortcuts", {"F1"}},
+            {"message", {"drop " + folder.file("broken.tif"), "d"}}})
+    add(
+        "dialog", what, [is = what](const State& s) { return s["dialog"] == is; }, way);
+  for (const std::string& panel : namesOfPanels())
+    add("panel", panel,
+        [panel](const State& s) {
+          const State open = s.value("panels", State::array());
+          return std::find(open.begin(), open.end(), panel) != open.end();
+        },
+        {"panel " + panel, "panel " + panel, "panel " + panel});
+  add("seen", "tools around the cursor",
+      [](const State& s) { return s.value("radial", State()).is_string(); }, {"s", "space"});
+  add("seen", "full screen", [](const State& s) { return s["full_screen"] == true; }, {"F11"});
+  add("seen", "the scan as it was", [](const State& s) { return s.value("shows_before", false); },
+      {"hold BackSpace", "release BackSpace"});
+  add("seen", "light panels", [](const State& s) { return s["light_panels"] == true; }, {"alt+g"});
+  add("seen", "dark panels", [](const State& s) { return s["light_panels"] == false; }, {"alt+g"});
+  return all;
 }
 
 class MonkeyTest : public WindowTest {
@@ -46,7 +97,8 @@ class MonkeyTest : public WindowTest {
     // What is typed without a folder goes here.
     before_ = fs::current_path();
     fs::current_path(folder.path());
-    for (const std::string& copy : {second_, left_, fresh_}) fs::copy_file(scan, copy);
+    for (const std::string& copy : {second_, left_, fresh_, folder.file("there.tif")})
+      fs::copy_file(scan, copy);
     std::ofstream(broken_) << "II*";
     // Work that was not saved, to be found again.
     const auto program = start({left_}, {}, AtRest::kSmooth);
@@ -80,27 +132,21 @@ class MonkeyTest : public WindowTest {
   }
   void count() {
     program_->each([&](const State& s) {
-      for (Reach& r : tools_) r.times += s.value("tool", "") == r.what || s.value("lasso", "") == r.what;
-      for (Reach& r : dialogs_) r.times += s["dialog"] == r.what;
-      const State panels = s.value("panels", State::array());
-      for (Reach& r : panels_) r.times += std::find(panels.begin(), panels.end(), r.what) != panels.end();
+      for (Reach& r : reaches_) r.times += r.is(s) ? 1 : 0;
       most_steps_ = std::max(most_steps_, s.value("last_step", std::int64_t{0}));
     });
   }
   [[nodiscard]] bool anywhereLeft() const {
-    for (const std::vector<Reach>* all : {&tools_, &dialogs_, &panels_})
-      if (std::any_of(all->begin(), all->end(), [](const Reach& r) { return r.times == 0; })) return true;
-    return false;
+    return std::ranges::any_of(reaches_, [](const Reach& r) { return r.times == 0; });
   }
   // May be none.
   [[nodiscard]] std::deque<std::string> wayToTheLeast(Monkey& monkey) {
     const Reach* least = nullptr;
     int ties = 0;
-    for (const std::vector<Reach>* all : {&tools_, &dialogs_, &panels_})
-      for (const Reach& r : *all) {
-        if (least == nullptr || r.times < least->times) ties = 0;
-        if ((least == nullptr || r.times <= least->times) && monkey.below(++ties) == 0) least = &r;
-      }
+    for (const Reach& r : reaches_) {
+      if (least == nullptr || r.times < least->times) ties = 0;
+      if ((least == nullptr || r.times <= least->times) && monkey.below(++ties) == 0) least = &r;
+    }
     // Once it has been everywhere it wanders: work that is left alone for a while makes a longer journal.
     if (least->times > 0 && monkey.below(6) > 0) return {};
     return {least->way.begin(), least->way.end()};
@@ -153,7 +199,7 @@ class MonkeyTest : public WindowTest {
         end();
         continue;
       }
-      if (errand.empty() && monkey.below(3) == 0) errand = wayToTheLeast(monkey);
+      if (errand.empty() && monkey.below(anywhereLeft() ? 2 : 3) == 0) errand = wayToTheLeast(monkey);
       int things = 1;
       std::string dropped;
       std::vector<std::string> words;
@@ -180,12 +226,18 @@ class MonkeyTest : public WindowTest {
       for (int rest = monkey.below(3); lives && rest > 0; --rest) lives = gate_.step();
       count();
       if (lives && frames_ % kProbe == kProbe - 1) {
-        if (words = monkey.letGo(); !words.empty()) display.hands(words);
+        letGo(monkey);
         lives = comesToRest() && gate_.hold();
       }
       if (!lives) end();
     }
-    if (const auto words = monkey.letGo(); !words.empty()) display.hands(words);
+    letGo(monkey);
+  }
+  // Of a button and of the key that an errand may hold.
+  void letGo(Monkey& monkey) {
+    std::vector<std::string> words = monkey.letGo();
+    words.insert(words.end(), {"keyup", "BackSpace"});
+    display.hands(words);
   }
   // One more step; how many there are then.
   std::int64_t invertMarks(User& user) const {
@@ -215,26 +267,7 @@ class MonkeyTest : public WindowTest {
   int lives_ = 0, most_ = 0;
   std::int64_t frames_ = 0, slow_ = 0;
   std::int64_t most_steps_ = 0;
-  std::vector<Reach> tools_{{"view", {"Escape"}},        {"feel", {"Escape", "t"}},
-                            {"smooth", {"Escape", "s"}}, {"mark", {"Escape", "m"}},
-                            {"unmark", {"Escape", "u"}}, {"free", {"Escape", "l"}},
-                            {"box", {"Escape", "b"}}};
-  std::vector<Reach> dialogs_{{"open", {"Escape", "ctrl+o"}},
-                              {"import", {"Escape", "ctrl+shift+o"}},
-                              {"compare", {"Escape", "alt+b"}},
-                              {"save as", {"Escape", "ctrl+shift+s"}},
-                              {"export", {"Escape", "ctrl+e"}},
-                              {"unsaved", {"Escape", "ctrl+i", "drop " + second_}},
-                              {"recover", {"Escape", "drop " + left_, "d"}},
-                              {"shortcuts", {"Escape", "F1"}},
-                              {"message", {"Escape", "drop " + broken_, "d"}}};
-  std::vector<Reach> panels_ = [] {
-    std::vector<Reach> panels;
-    for (const std::string panel : {"Tool", "Edges", "Filters", "Holes and lines", "Steps",
-                                    "Change since the scan", "Display", "Status", "Haptics"})
-      panels.push_back({panel, {"Escape", "panel " + panel, "panel " + panel, "panel " + panel}});
-    return panels;
-  }();
+  std::vector<Reach> reaches_ = reachesIn(folder);
 };
 
 TEST_F(MonkeyTest, hands_without_sense_leave_a_window_that_works_and_a_journal_that_plays_to_what_was_saved) {
@@ -289,11 +322,10 @@ TEST_F(MonkeyTest, hands_without_sense_leave_a_window_that_works_and_a_journal_t
   fmt::print(
       "{} frames, {} held up for a second; at most {} things in one; {} lives; at most {} steps, {} played\n",
       frames_, slow_, most_, lives_, most_steps_, steps);
-  for (const auto& [kind, all] : {std::pair{"tool", &tools_}, {"dialog", &dialogs_}, {"panel", &panels_}})
-    for (const Reach& r : *all) {
-      fmt::print("  {:6} reported with {} {}\n", r.times, kind, r.what);
-      EXPECT_GT(r.times, 0) << kind << " " << r.what;
-    }
+  for (const Reach& r : reaches_) {
+    fmt::print("  {:6} reported with {} {}\n", r.times, r.kind, r.what);
+    EXPECT_GT(r.times, 0) << r.kind << " " << r.what;
+  }
   EXPECT_GE(slow_, 1);
 }
 
