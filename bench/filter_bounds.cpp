@@ -1,12 +1,16 @@
 #include "bench/filter_bounds.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "bench/repeats.h"
+#include "bench/rolled_work.h"
 #include "engine/field/node_pool.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/gaussian_weights.h"
 #include "engine/filter/merge.h"
 #include "engine/simd/kernel.h"
@@ -52,16 +56,77 @@ class NewTiles {
   std::vector<engine::TileRef> tiles_;
 };
 
+// Seconds that one operation takes alone, for each kind that a filter has.
+class OperationTimes {
+ public:
+  OperationTimes() {
+    floats_.fill(1.0F);
+    doubles_.fill(1.0);
+  }
+
+  void measure(const std::vector<Operations>& ways, engine::CpuLevel level) {
+    const auto any = [&](double Operations::*kind) {
+      return std::ranges::any_of(ways, [&](const Operations& way) { return way.*kind > 0.0; });
+    };
+    const auto add = [&](double Operations::*kind, std::vector<double>& times, double in_a_round,
+                         auto&& work) {
+      if (any(kind)) times.push_back(secondsFor([&] { kept_ = work(); }) / (kRounds * in_a_round));
+    };
+    add(&Operations::products, products_, 8.0 * 8.0,
+        [&] { return FETTLE_AT_LEVEL(level, productsAlone)(kRounds); });
+    add(&Operations::extrema, extrema_, 8.0 * 16.0,
+        [&] { return FETTLE_AT_LEVEL(level, extremaAlone)(kRounds); });
+    add(&Operations::chords, chords_, FETTLE_AT_LEVEL(level, kChains) * 16.0,
+        [&] { return FETTLE_AT_LEVEL(level, chordsAlone)(floats_.data(), kRounds); });
+    add(&Operations::sums, sums_, FETTLE_AT_LEVEL(level, kSumsAtOnce),
+        [&] { return FETTLE_AT_LEVEL(level, sumsAlone)(doubles_.data(), kRounds); });
+    add(&Operations::tests, tests_, 16.0, [&] {
+      return FETTLE_AT_LEVEL(level, testsAlone)(floats_.data(), floats_.data() + kMostPlaces * kMostLanes,
+                                                kRounds);
+    });
+  }
+
+  // Of the repeats until now; only of what was measured.
+  [[nodiscard]] double of(const Operations& way) const {
+    const auto part = [](double count, const std::vector<double>& times) {
+      return count > 0.0 ? count * median(times) : 0.0;
+    };
+    return part(way.products, products_) + part(way.extrema, extrema_) + part(way.chords, chords_) +
+           part(way.sums, sums_) + part(way.tests, tests_);
+  }
+  void forget() {
+    for (auto* times : {&products_, &extrema_, &chords_, &sums_, &tests_}) times->clear();
+  }
+
+ private:
+  static constexpr int kRounds = 2'000'000;
+  static constexpr std::size_t kMostPlaces = 64, kMostChains = 8, kMostLanes = 16;
+
+  alignas(64) std::array<float, 4 * (kMostPlaces + kMostChains) * kMostLanes> floats_;
+  alignas(64) std::array<double, kMostPlaces * 8> doubles_;
+  std::vector<double> products_, extrema_, chords_, sums_, tests_;
+  volatile double kept_ = 0.0;
+};
+
 }  // namespace
 
-double operationsOf(const engine::FilterSpec& spec) {
+std::vector<Operations> operationsOf(const engine::Version& field, const engine::FilterSpec& spec) {
   if (spec.kind == engine::FilterKind::kGaussian)
-    return 2.0 * (2.0 * static_cast<double>(engine::gaussianHalfWeights(spec).size()) - 1.0);
+    return {Operations{
+        .products = 2.0 * (2.0 * static_cast<double>(engine::gaussianHalfWeights(spec).size()) - 1.0)}};
   // Of 3 x 3: five to sort a column that two windows below each other share and twelve for three of these. Of 5 x 5: four windows take
   // 244 of the networks in median_small-inl.h: 72 to sort rows, 60 for pairs of them, 72 for the middle ranks of both fours, 40 at the end.
-  if (spec.kind == engine::FilterKind::kMedian && spec.window == 3) return 17.0;
-  if (spec.kind == engine::FilterKind::kMedian && spec.window == 5) return 61.0;
-  return 0.0;
+  if (spec.kind == engine::FilterKind::kMedian && spec.window == 3) return {Operations{.extrema = 17.0}};
+  if (spec.kind == engine::FilterKind::kMedian && spec.window == 5) return {Operations{.extrema = 61.0}};
+  if (!engine::filterOf(spec.kind).has_element || spec.element == engine::Element::kSquare) return {};
+  if (spec.element == engine::Element::kDisk)
+    return {Operations{.chords = static_cast<double>(chordsOfDisk(spec, field.grid()))}};
+  const BallPairs all = pairsOfBall(field, spec);
+  const auto [heights, eroded] = touchesOfBall(field, spec);
+  // The first erosion is of floats, the second one of doubles.
+  return {Operations{.chords = 3.0 * static_cast<double>(all.pairs),
+                     .sums = 2.0 * static_cast<double>(all.depths)},
+          Operations{.sums = heights.sums + eroded.sums, .tests = heights.tests + eroded.tests}};
 }
 
 engine::Result<FilterBound> filterBound(const engine::Version& field, const engine::FilterSpec& spec,
@@ -73,28 +138,29 @@ engine::Result<FilterBound> filterBound(const engine::Version& field, const engi
   if (!tiles.take(static_cast<std::size_t>(reader.tileColumns()) *
                   static_cast<std::size_t>(reader.tileRows())))
     return engine::failure("memory for the bound could not be had", "bench filters");
-  constexpr int kRounds = 2'000'000;
-  constexpr double kProducts = kRounds * 8.0 * 8.0, kExtrema = kRounds * 8.0 * 16.0;
-  const bool products = spec.kind == engine::FilterKind::kGaussian;
-  std::vector<double> filter, written, operations;
-  volatile double kept = 0.0;
+  const std::vector<Operations> ways = operationsOf(field, spec);
+  OperationTimes times;
+  std::vector<double> filter, written;
   for (int i = -1; i < repeats; ++i) {  // the first one obtains memory
     engine::JobControl own;
     engine::Result<engine::Filtered> result;
     const double whole = secondsFor([&] { result = engine::applyFilter(field, field, spec, own); });
     if (!result) return tl::unexpected(result.error());
     const double merged = secondsFor([&] { tiles.fill(reader, level); });
-    const double counted = secondsFor([&] {
-      kept = products ? FETTLE_AT_LEVEL(level, productsAlone)(kRounds)
-                      : FETTLE_AT_LEVEL(level, extremaAlone)(kRounds);
-    });
+    if (i == 0) times.forget();
+    times.measure(ways, level);
     if (job.cancelled()) return engine::cancelled();
     if (i < 0) continue;
     filter.push_back(whole / samples);
     written.push_back(merged / samples);
-    operations.push_back(operationsOf(spec) * counted / (products ? kProducts : kExtrema));
   }
-  return FilterBound{median(filter), median(written), median(operations)};
+  FilterBound bound{median(filter), median(written), 0.0, {}};
+  for (const Operations& way : ways)
+    if (const double seconds = times.of(way); bound.operations == 0.0 || seconds < bound.operations) {
+      bound.operations = seconds;
+      bound.counted = way;
+    }
+  return bound;
 }
 
 }  // namespace fettle::bench

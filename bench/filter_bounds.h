@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
@@ -7,20 +9,31 @@
 
 namespace fettle::bench {
 
+/// What a filter works out for a sample, in registers or from the nearest cache.
+struct Operations {
+  double products = 0.0;  ///< fused, of doubles
+  double extrema = 0.0;   ///< minima and maxima of floats
+  double chords = 0.0;    ///< two loads and two minima of floats; of doubles two
+  double sums = 0.0;      ///< a load, a sum and a minimum of doubles
+  double tests = 0.0;     ///< of samples or groups of them, as BowlTest of engine/filter/bowls.h
+};
+
 /// What a filter of one thread cannot do without, measured alone, beside the filter in the same run. Seconds per sample of processor
 /// time, medians of the repeats.
 struct FilterBound {
   double filter = 0.0;  ///< all of applyFilter
   double tiles =
       0.0;  ///< every tile read, and a new one written with its marks, bounds and report: results lie ready
-  double operations =
-      0.0;  ///< fused products or minima and maxima, in registers; 0: not counted for this filter
+  double operations = 0.0;  ///< `counted` alone; 0: not counted for this filter
+  Operations counted;
 };
 
-/// Products per sample of a Gaussian's two passes, or minima and maxima of a median's shared networks; 0: not counted.
-[[nodiscard]] double operationsOf(const engine::FilterSpec& spec);
+/// Of a Gaussian's two passes, a median's shared networks, both erosions of an opening or closing by a disk or ball: of each way in
+/// which the results can be had. Empty: not counted. Throws std::bad_alloc.
+[[nodiscard]] std::vector<Operations> operationsOf(const engine::Version& field,
+                                                   const engine::FilterSpec& spec);
 
-/// Of a spec with one thread. Error kFailed: out of memory. Thread: any; blocks.
+/// Of a spec with one thread, by the way that takes least. Error kFailed: out of memory. Thread: any; blocks.
 [[nodiscard]] engine::Result<FilterBound> filterBound(const engine::Version& field,
                                                       const engine::FilterSpec& spec, int repeats,
                                                       engine::JobControl& job);

@@ -18,6 +18,22 @@ std::string_view elementWord(engine::Element element) {
   return engine::kElementWords[static_cast<std::size_t>(element)];
 }
 
+struct OperationName {
+  const char* key;
+  double bench::Operations::*count;
+};
+constexpr OperationName kOperationNames[] = {{"products", &bench::Operations::products},
+                                             {"extrema", &bench::Operations::extrema},
+                                             {"chords", &bench::Operations::chords},
+                                             {"sums", &bench::Operations::sums},
+                                             {"tests", &bench::Operations::tests}};
+
+Report countsOf(const bench::Operations& operations) {
+  Report counts;
+  for (const OperationName& name : kOperationNames) counts[name.key] = operations.*name.count;
+  return counts;
+}
+
 engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_device, engine::JobControl& job) {
   std::unique_ptr<engine::TgvDevice> device;
   if (on_device) {
@@ -58,6 +74,7 @@ engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_devic
                               {"bound_filter_s", row.bound.filter},
                               {"bound_tiles_s", row.bound.tiles},
                               {"bound_operations_s", row.bound.operations},
+                              {"bound_counts", countsOf(row.bound.counted)},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   }
   return report;
@@ -69,6 +86,15 @@ std::string valueAndTarget(double value, double target, int digits) {
   if (target == 0.0) return fmt::format("{:.{}f}{:>8}", value, digits, "");
   return fmt::format("{:.{}f} {:>6}{}", value, digits, fmt::format("{:g}", target),
                      value >= target ? '*' : ' ');
+}
+
+// "17 extrema", "46.1 sums, 1.3 tests".
+std::string countsText(const Report& row) {
+  std::string text;
+  for (const OperationName& name : kOperationNames)
+    if (const double count = row["bound_counts"][name.key].get<double>(); count > 0.0)
+      text += fmt::format("{}{:.4g} {}", text.empty() ? "" : ", ", count, name.key);
+  return text;
 }
 
 void printBenchFilters(const Report& report) {
@@ -98,7 +124,7 @@ void printBenchFilters(const Report& report) {
       fmt::print(
           "{:<16}cannot do without, alone, in ns per sample: {:.3f} for reading tiles and writing new ones",
           "", tiles * 1e9);
-      if (operations > 0.0) fmt::print(", {:.3f} for its operations", operations * 1e9);
+      if (operations > 0.0) fmt::print(", {:.3f} for its operations ({})", operations * 1e9, countsText(row));
       fmt::print("; all of it {:.3f}, {:.0f} % of that bound's rate\n", number("bound_filter_s") * 1e9,
                  100.0 * (tiles + operations) / number("bound_filter_s"));
     }

@@ -104,6 +104,35 @@ TEST(FiltersBench, HasARowWithADeviceBesideEachOfTheProcessorForWhatCanUseIt) {
   EXPECT_GE(device.squares, 3U);
 }
 
+TEST(FiltersBench, HasTheBoundsOfADiskAndABallBesideTheirRowsOfOneThread) {
+  FiltersBenchOptions options;
+  options.side = 128;
+  options.kinds = {FilterKind::kOpening};
+  options.windows = {11};
+  options.grounds = {FilterGround::kPlain};
+  options.threads = {1, 2};
+  options.repeats = 1;
+  options.bounds = true;
+  engine::JobControl job;
+  const auto report = benchFilters(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  ASSERT_EQ(report->rows.size(), 6U);
+  for (const FiltersBenchRow& row : report->rows) {
+    SCOPED_TRACE(static_cast<int>(row.element));
+    if (row.threads != 1) {
+      EXPECT_EQ(row.bound.filter, 0.0);
+      continue;
+    }
+    EXPECT_GT(row.bound.filter, 0.0);
+    EXPECT_GT(row.bound.tiles, 0.0);
+    EXPECT_EQ(row.bound.operations > 0.0, row.element != engine::Element::kSquare);
+    // Eleven rows of a disk, twice.
+    EXPECT_EQ(row.bound.counted.chords,
+              row.element == engine::Element::kDisk ? 22.0 : row.bound.counted.chords);
+    EXPECT_EQ(row.bound.counted.sums > 0.0, row.element == engine::Element::kBall);
+  }
+}
+
 TEST(FiltersBench, OptionsOutOfRangeAreRefused) {
   const auto refused = [](auto&& spoil) {
     FiltersBenchOptions options;
