@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 
 #include "engine/base/stopwatch.h"
-#include "render/detail/pick.h"
+#include "render/live/live_eyes.h"
 #include "render/live/live_fields.h"
 #include "render/live/live_frame.h"
 #include "render/live/live_panels.h"
 #include "render/live/live_plan.h"
 #include "render/live/live_redraw.h"
+#include "render/live/seen_frame.h"
 #include "render/live/stereo_compose.h"
 #include "render/vulkan/memory.h"
 
@@ -95,25 +96,13 @@ struct LivePicture::Impl {
   Glyphs glyphs;
   Submissions submissions;
   StagingRing staging;
-  vk::Format colour_format;
   LiveFrame frame;
-  // For two eyes: created on first use.
-  std::unique_ptr<StereoCompose> compose;
-  std::unique_ptr<LiveFrame> both_eyes;  // in one pass
-  std::unique_ptr<LiveFrame> right_eye;  // in a pass of its own; the left one is `frame`
-
+  LiveEyes eyes;
   LiveFields fields;
   std::optional<PictureSpans> spans;
   PatchTreeCache patch_tree_cache;
   Canvas canvas;
-  struct Seen {
-    PicturePlan plan;
-    std::vector<Rectangle> visible;
-    std::vector<std::array<Camera, 2>> eyes;  // of each panel; none unless in stereo
-    StereoMode stereo = StereoMode::kOff;
-    int eye_width = 0;  // of one eye's picture [px]
-  };
-  std::optional<Seen> seen;
+  std::optional<SeenFrame> seen;
   std::optional<DrawnFrame> drawn;  // what the layers of `frame` show
   // The picture with four rays per pixel that is drawn at Sharpness::kRest: what it shows, and how many of its bands are drawn.
   struct Rest {
@@ -130,8 +119,8 @@ struct LivePicture::Impl {
         glyphs(std::move(g)),
         submissions(context),
         staging(context, kStagingBytes),
-        colour_format(colour),
         frame(context, colour),
+        eyes(context, submissions, staging, glyphs, frame, colour),
         fields(context, submissions, staging, options) {}
   Impl& operator=(Impl&&) = delete;
   ~Impl();
@@ -146,14 +135,6 @@ struct LivePicture::Impl {
                                        std::vector<std::string>& warnings);
   DrawnFrame drawnFrameOf(const std::vector<LivePanel>& panels, const PicturePlan& plan,
                           const std::vector<gpu::Quad>& decorations);
-  void recordStereo(const Stereo& stereo, Sharpness sharpness, std::vector<LivePanel>& panels,
-                    const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
-                    const LiveTarget& target);
-  void recordHead(Stereo::Passes passes, Sharpness sharpness, std::vector<LivePanel>& panels,
-                  const glm::vec3& ground, const LiveTarget& target);
-  [[nodiscard]] bool onePass(Stereo::Passes passes) const noexcept;
-  void recordEachEye(Sharpness sharpness, std::vector<LivePanel>& panels,
-                     const std::vector<gpu::Quad>& decorations, const glm::vec3& ground);
 };
 
 LivePicture::Impl::~Impl() {
@@ -204,56 +185,6 @@ engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input,
   FrameStatistics stats;
   drawOn(input, target, stats, *std::move(planned));
   return stats;
-}
-
-void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
-                                     std::vector<LivePanel>& panels,
-                                     const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
-                                     const LiveTarget& target) {
-  const bool one_pass = onePass(stereo.passes);
-  if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
-  compose->begin(submissions, StereoCompose::eyeExtent(stereo.mode, target.extent),
-                 one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
-  if (one_pass) {
-    if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
-    both_eyes->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
-                      LiveFrame::Redraw::kAll, sharpness);
-  } else {
-    recordEachEye(sharpness, panels, decorations, ground);
-  }
-  compose->record(submissions.commands(), stereo.mode, target);
-}
-
-bool LivePicture::Impl::onePass(Stereo::Passes passes) const noexcept {
-  return passes == Stereo::Passes::kBest  ? context.multiviewWorks()
-         : passes == Stereo::Passes::kOne ? context.multiview()
-                                          : false;
-}
-
-// Both eyes into the images of `compose`, in two passes.
-void LivePicture::Impl::recordEachEye(Sharpness sharpness, std::vector<LivePanel>& panels,
-                                      const std::vector<gpu::Quad>& decorations, const glm::vec3& ground) {
-  frame.record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
-               LiveFrame::Redraw::kAll, sharpness);
-  for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
-  if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
-  right_eye->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kRight),
-                    LiveFrame::Redraw::kAll, sharpness);
-}
-
-// A headset's eyes, into the two layers of the target: directly in one pass, else by a copy.
-void LivePicture::Impl::recordHead(Stereo::Passes passes, Sharpness sharpness, std::vector<LivePanel>& panels,
-                                   const glm::vec3& ground, const LiveTarget& target) {
-  if (onePass(passes)) {
-    if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
-    both_eyes->record(submissions, staging, panels, {}, ground, glyphs, target, LiveFrame::Redraw::kAll,
-                      sharpness);
-    return;
-  }
-  if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
-  compose->begin(submissions, target.extent, StereoCompose::Layers::kTwoImages);
-  recordEachEye(sharpness, panels, {}, ground);
-  compose->copyToLayers(submissions.commands(), target);
 }
 
 // Uploads pages of the chosen patches, all that are missing for Pages::kAll; only on demand.
@@ -349,9 +280,9 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   if (still && stats.rest_left > 0)
     recordRest(input, plan, decorations, target, stats);
   else if (head)
-    recordHead(input.stereo.passes, input.sharpness, panels, plan.palette.ground, target);
+    eyes.recordHead(input.stereo.passes, {panels, {}, plan.palette.ground, input.sharpness}, target);
   else if (stereo)
-    recordStereo(input.stereo, input.sharpness, panels, decorations, plan.palette.ground, target);
+    eyes.record(input.stereo, {panels, decorations, plan.palette.ground, input.sharpness}, target);
   else
     frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
                  stats.continued ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll,
@@ -367,7 +298,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   stats.record_ms = watch.ms() - stats.select_ms - upload_ms;
   if (input.part) return;
-  seen = Seen{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
+  seen = SeenFrame{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
   for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
 }
 
@@ -541,54 +472,18 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image
 
 std::optional<Picked> LivePicture::pick(double x, double y) const {
   if (!impl_->seen) return std::nullopt;
-  const Impl::Seen& seen = *impl_->seen;
-  const bool halves = seen.stereo == StereoMode::kSideBySide;
-  const bool right = halves && x >= seen.eye_width;
-  if (right) x -= seen.eye_width;
-  for (std::size_t i = 0; i < seen.visible.size(); ++i) {
-    const Rectangle& r = seen.visible[i];
-    if (x < r.x || y < r.y || x >= r.x + r.width || y >= r.y + r.height) continue;
-    const PanelPlan& p = seen.plan.panels[i];
-    const Camera& camera = halves ? seen.eyes[i][right ? 1 : 0] : p.camera;
-    const Ray ray = inField(p, camera.rayAt({x, y}));
-    const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
-    if (!hit) return std::nullopt;
-    return Picked{static_cast<int>(i), hit->position_mm, hit->column, hit->row};
-  }
-  return std::nullopt;
+  return impl_->seen->pick(x, y);
 }
 
 std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const glm::dvec3& field_mm,
                                                               Eye eye) const {
-  if (!impl_->seen || panel < 0 || static_cast<std::size_t>(panel) >= impl_->seen->visible.size())
-    return std::nullopt;
-  const Impl::Seen& seen = *impl_->seen;
-  const auto i = static_cast<std::size_t>(panel);
-  const PanelPlan& p = seen.plan.panels[i];
-  const bool stereo = seen.stereo != StereoMode::kOff;
-  const Camera& camera = stereo ? seen.eyes[i][static_cast<std::size_t>(eye)] : p.camera;
-  const glm::dvec2 at = camera.pixelOf(inScene(p, field_mm));
-  const bool right = seen.stereo == StereoMode::kSideBySide && eye == Eye::kRight;
-  return std::pair{at.x + (right ? seen.eye_width : 0), at.y};
+  if (!impl_->seen) return std::nullopt;
+  return impl_->seen->pixelOf(panel, field_mm, eye);
 }
 
 std::optional<Grip> LivePicture::grip(double x, double y) const {
   if (!impl_->seen) return std::nullopt;
-  const Impl::Seen& seen = *impl_->seen;
-  const bool halves = seen.stereo == StereoMode::kSideBySide;
-  const bool right = halves && x >= seen.eye_width;
-  if (right) x -= seen.eye_width;
-  // Beside all plots, at the colour bar, as beside the field of the first.
-  std::size_t panel = 0;
-  for (std::size_t i = 0; i < seen.visible.size(); ++i) {
-    const Rectangle& r = seen.visible[i];
-    if (x >= r.x && y >= r.y && x < r.x + r.width && y < r.y + r.height) panel = i;
-  }
-  const PanelPlan& p = seen.plan.panels[panel];
-  const Camera& eye = halves ? seen.eyes[panel][right ? 1 : 0] : p.camera;
-  Grip grip = gripOf(p, eye.rayAt({x, y}));
-  grip.pixel = p.camera.pixelOf(grip.point);
-  return grip;
+  return impl_->seen->grip(x, y);
 }
 
 std::optional<Framing> LivePicture::framing() const {
