@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "engine/field/builder.h"
 #include "engine/filter/gaussian_plane.h"
 #include "engine/filter/gaussian_strip.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/region.h"
+#include "tests/engine/filter/made_scan.h"
 #include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {
@@ -25,34 +23,8 @@ namespace {
 
 using std::numbers::pi;
 
-struct Standard {
-  std::string name;
-  int width, height;
-  double spacing_x, spacing_y, cut_off;
-  std::function<double(int, int)> z;
-};
-
-Version versionOf(const Standard& scan) {
-  Grid grid;
-  grid.width = scan.width;
-  grid.height = scan.height;
-  grid.spacing_x = scan.spacing_x;
-  grid.spacing_y = scan.spacing_y;
-  std::vector<float> z;
-  for (int r = 0; r < scan.height; ++r)
-    for (int c = 0; c < scan.width; ++c) z.push_back(static_cast<float>(scan.z(c, r)));
-  return makeField(grid, z);
-}
-
-FilterSpec specOf(FilterKind kind, double cut_off) {
-  FilterSpec spec;
-  spec.kind = kind;
-  spec.nesting_mm = cut_off;
-  return spec;
-}
-
 // The hard cases: short and long cut-offs (nodes of 1 to 64 samples), holes, walls, spikes, unequal spacing, one row.
-std::vector<Standard> standardScans() {
+std::vector<MadeScan> standardScans() {
   const auto noise = [](int c, int r) { return std::sin(12.9898 * c + 78.233 * r + 0.01 * c * r); };
   const auto holed = [noise](int c, int r) {
     return (c * 5 + r * 3) % 13 == 0 || (c > 30 && c < 60 && r > 10 && r < 30) ? std::nan("") : noise(c, r);
@@ -75,12 +47,12 @@ std::vector<Standard> standardScans() {
 }
 
 // Of all samples there are, without an end of the weights: along x, then along y.
-std::vector<double> plainGaussian(const Standard& scan, const std::vector<double>& z,
+std::vector<double> plainGaussian(const MadeScan& scan, const std::vector<double>& z,
                                   const std::vector<double>& weights) {
   const auto weightsOf = [&](int count, double spacing) {
     std::vector<double> all;
     for (int d = 0; d < count; ++d)
-      all.push_back(std::exp(-pi * pi / std::numbers::ln2 * std::pow(d * spacing / scan.cut_off, 2)));
+      all.push_back(std::exp(-pi * pi / std::numbers::ln2 * std::pow(d * spacing / scan.nesting, 2)));
     return all;
   };
   const std::vector<double> wx = weightsOf(scan.width, scan.spacing_x),
@@ -108,7 +80,7 @@ std::vector<double> plainGaussian(const Standard& scan, const std::vector<double
 }
 
 // The mean distance of a window's samples from its mean.
-double meanDistance(const Standard& scan, const std::vector<double>& z, double mean, int c, int r) {
+double meanDistance(const MadeScan& scan, const std::vector<double>& z, double mean, int c, int r) {
   double sum = 0.0, total = 0.0;
   for (int v = 0; v < scan.height; ++v)
     for (int u = 0; u < scan.width; ++u) {
@@ -116,21 +88,17 @@ double meanDistance(const Standard& scan, const std::vector<double>& z, double m
       if (std::isnan(height)) continue;
       const double x = (u - c) * scan.spacing_x, y = (v - r) * scan.spacing_y;
       const double w =
-          std::exp(-pi * pi / std::numbers::ln2 * (x * x + y * y) / (scan.cut_off * scan.cut_off));
+          std::exp(-pi * pi / std::numbers::ln2 * (x * x + y * y) / (scan.nesting * scan.nesting));
       sum += w * std::fabs(height - mean), total += w;
     }
   return sum / total;
 }
 
-std::vector<double> heightsOf(const Version& field) {
-  const PlainField plain = toPlain(field);
-  return {plain.z.begin(), plain.z.end()};
-}
-
 TEST(ArealGaussian, IsWhatPlainSumsFindWithinItsStatedError) {
-  for (const Standard& scan : standardScans()) {
+  for (const MadeScan& scan : standardScans()) {
     const Version field = versionOf(scan);
-    const PlainField got = toPlain(filtered(field, specOf(FilterKind::kArealGaussian, scan.cut_off)).field);
+    const PlainField got =
+        toPlain(filtered(field, nestingSpec(FilterKind::kArealGaussian, scan.nesting)).field);
     const std::vector<double> z = heightsOf(field);
     const auto plain = plainGaussian(scan, z, std::vector<double>(z.size(), 1.0));
     double largest = 0.0, worst = 0.0;
@@ -138,7 +106,7 @@ TEST(ArealGaussian, IsWhatPlainSumsFindWithinItsStatedError) {
       if (!std::isnan(height)) largest = std::max(largest, std::fabs(height));
     // What a sample beyond the weights' end is of a quarter of a full window.
     const double beyond =
-        4.0 * 4e-8 * largest / (0.22 * std::pow(scan.cut_off, 2) / (scan.spacing_x * scan.spacing_y));
+        4.0 * 4e-8 * largest / (0.22 * std::pow(scan.nesting, 2) / (scan.spacing_x * scan.spacing_y));
     for (std::size_t i = 0; i < z.size(); ++i) {
       ASSERT_EQ(std::isnan(z[i]), std::isnan(got.z[i])) << scan.name;
       if (std::isnan(z[i]) || (i % 7 != 0 && z.size() > 100)) continue;
@@ -158,11 +126,11 @@ TEST(ArealGaussian, TransmitsWhatTheStandardStates) {
         const double wave = waves * cut_off, spacing = cut_off / 40.0;
         const double kx = 2.0 * pi / wave * std::cos(degrees * pi / 180.0),
                      ky = 2.0 * pi / wave * std::sin(degrees * pi / 180.0);
-        const Standard scan{"wave", 280, 140, spacing, 2.0 * spacing, cut_off, [&](int c, int r) {
+        const MadeScan scan{"wave", 280, 140, spacing, 2.0 * spacing, cut_off, [&](int c, int r) {
                               return std::cos(kx * spacing * (c - 140) + ky * 2.0 * spacing * (r - 70));
                             }};
         const PlainField got =
-            toPlain(filtered(versionOf(scan), specOf(FilterKind::kArealGaussian, cut_off)).field);
+            toPlain(filtered(versionOf(scan), nestingSpec(FilterKind::kArealGaussian, cut_off)).field);
         const double passed = std::exp2(-1.0 / (waves * waves));
         // Farther than 1.2 cut-offs from the border: less than 1e-9 of the weights lie beyond.
         for (int r = 50; r <= 90; r += 5)
@@ -175,15 +143,15 @@ TEST(ArealGaussian, TransmitsWhatTheStandardStates) {
 TEST(ArealGaussian, OfAConstantIsThatConstant) {
   for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
     for (const double cut_off : {5.0, 60.0}) {
-      const Standard scan{
+      const MadeScan scan{
           "flat", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) { return c == r ? std::nan("") : 0.1; }};
       const Version field = versionOf(scan);
-      EXPECT_EQ(contentHash(filtered(field, specOf(kind, cut_off)).field), contentHash(field));
+      EXPECT_EQ(contentHash(filtered(field, nestingSpec(kind, cut_off)).field), contentHash(field));
     }
 }
 
 TEST(ArealGaussian, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
-  const Standard scan{"rough", 333, 275, 1.0, 2.0, 0.0, [](int c, int r) {
+  const MadeScan scan{"rough", 333, 275, 1.0, 2.0, 0.0, [](int c, int r) {
                         return c % 17 == 3 && r % 5 == 1 ? std::nan("")
                                                          : std::sin(3.1 * c + 1.7 * r * r) + 0.01 * c;
                       }};
@@ -191,7 +159,7 @@ TEST(ArealGaussian, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
   JobControl job;
   for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
     for (const double cut_off : {9.0, 30.0, 70.0, 1e5}) {
-      FilterSpec spec = specOf(kind, cut_off);
+      FilterSpec spec = nestingSpec(kind, cut_off);
       spec.threads = 1;
       const std::uint64_t one = contentHash(applyFilter(field, field, spec, job)->field);
       for (const int threads : {2, 5})
@@ -213,7 +181,7 @@ TEST(ArealGaussian, HasTheBitsOfPlanesInStrips) {
   JobControl job;
   for (const bool holes : {false, true})
     for (const auto& [width, height] : {std::pair{150, 130}, {70, 3}, {1, 90}, {65, 66}}) {
-      const Standard scan{"rough", width, height, 1.0, 1.0, 0.0, [holes](int c, int r) {
+      const MadeScan scan{"rough", width, height, 1.0, 1.0, 0.0, [holes](int c, int r) {
                             return holes && c > 20 && c < 40 && r > 60 && r < 75
                                        ? std::nan("")
                                        : std::sin(3.1 * c + 1.7 * r * r) + 0.01 * c;
@@ -246,14 +214,14 @@ TEST(ArealGaussian, HasTheBitsOfPlanesInStrips) {
 
 // Of a piece, with as much around it as the filter reaches: what a preview shows.
 TEST(ArealGaussian, OfARangeIsThatOfTheField) {
-  const Standard scan{"rough", 700, 600, 1.0, 1.0, 0.0, [](int c, int r) {
+  const MadeScan scan{"rough", 700, 600, 1.0, 1.0, 0.0, [](int c, int r) {
                         return c % 11 == 3 ? std::nan("") : std::sin(3.1 * c + 1.7 * r * r);
                       }};
   const Version field = versionOf(scan);
   JobControl job;
   for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
     for (const double cut_off : {9.0, 60.0, 110.0}) {
-      const FilterSpec spec = specOf(kind, cut_off);
+      const FilterSpec spec = nestingSpec(kind, cut_off);
       const Version whole = applyFilter(field, field, spec, job)->field;
       for (const TileRange& range : {TileRange{1, 1, 2, 1}, {0, 8, 1, 5}, {5, 5, 1, 1}}) {
         const auto part = filterRange(field, field, field, spec, range, job);
@@ -271,7 +239,7 @@ TEST(ArealGaussian, OfARangeIsThatOfTheField) {
 
 // Round by round in double: median of all distances, Tukey's weights, weighted means.
 TEST(RobustGaussian, IsWhatPlainRoundsFind) {
-  for (const Standard& scan : standardScans()) {
+  for (const MadeScan& scan : standardScans()) {
     if (scan.name == "few samples") continue;  // whose median lies on a surface through them
     const Version field = versionOf(scan);
     const std::vector<double> z = heightsOf(field);
@@ -296,7 +264,8 @@ TEST(RobustGaussian, IsWhatPlainRoundsFind) {
       }
     }
     EXPECT_LT(round, kMostRobustRounds) << scan.name;
-    const PlainField got = toPlain(filtered(field, specOf(FilterKind::kRobustGaussian, scan.cut_off)).field);
+    const PlainField got =
+        toPlain(filtered(field, nestingSpec(FilterKind::kRobustGaussian, scan.nesting)).field);
     for (std::size_t i = 0; i < count; ++i)
       if (!std::isnan(z[i])) {
         ASSERT_NEAR(got.z[i], plain[i], 1e-5 * limit + 0.5 * static_cast<double>(ulp(got.z[i])))
@@ -309,12 +278,12 @@ TEST(RobustGaussian, IsWhatPlainRoundsFind) {
 TEST(RobustGaussian, PassesOverGrooves) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0.0, 1.0);
-  const Standard scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
+  const MadeScan scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
                         return noise(random) - (c >= 140 && c < 150 ? 40.0 : 0.0);
                       }};
   const Version field = versionOf(scan);
-  const Version linear = filtered(field, specOf(FilterKind::kArealGaussian, 80.0)).field,
-                robust = filtered(field, specOf(FilterKind::kRobustGaussian, 80.0)).field;
+  const Version linear = filtered(field, nestingSpec(FilterKind::kArealGaussian, 80.0)).field,
+                robust = filtered(field, nestingSpec(FilterKind::kRobustGaussian, 80.0)).field;
   // 10 samples of a Gaussian of width 0.47 * 80 = 37.6: 0.264 of its weight in the middle.
   EXPECT_NEAR(linear.reader().heightAt(145, 60), -40.0 * 0.264, 0.2);
   EXPECT_NEAR(robust.reader().heightAt(145, 60), 0.0, 0.1);
@@ -322,7 +291,7 @@ TEST(RobustGaussian, PassesOverGrooves) {
 
 TEST(RobustGaussian, TakesTheMedianOfAllDistances) {
   for (const int width : {1, 2, 7, 150}) {
-    const Standard scan{"any", width, 65, 1.0, 1.0, 0.0, [](int c, int r) {
+    const MadeScan scan{"any", width, 65, 1.0, 1.0, 0.0, [](int c, int r) {
                           return (c + r) % 9 == 1 ? std::nan("") : 100.0 * std::sin(5.0 * c + 3.0 * r);
                         }};
     const Version field = versionOf(scan);
@@ -340,18 +309,20 @@ TEST(RobustGaussian, TakesTheMedianOfAllDistances) {
 }
 
 TEST(ArealGaussian, RefusesWhatItCannotDo) {
-  const Standard scan{"plain", 20, 20, 1.0, 4.0, 0.0, [](int c, int) { return c; }};
+  const MadeScan scan{"plain", 20, 20, 1.0, 4.0, 0.0, [](int c, int) { return c; }};
   const Version field = versionOf(scan);
   for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian}) {
     JobControl job;
     for (const double wrong : {0.0, -1.0, 7.9, std::numeric_limits<double>::infinity(), std::nan("")})
-      EXPECT_EQ(applyFilter(field, field, specOf(kind, wrong), job).error().kind, ErrorKind::kInput) << wrong;
-    EXPECT_EQ(applyFilter(field, field, specOf(FilterKind::kBox, 8.0), job).error().kind, ErrorKind::kInput);
+      EXPECT_EQ(applyFilter(field, field, nestingSpec(kind, wrong), job).error().kind, ErrorKind::kInput)
+          << wrong;
+    EXPECT_EQ(applyFilter(field, field, nestingSpec(FilterKind::kBox, 8.0), job).error().kind,
+              ErrorKind::kInput);
     job.cancel();
-    EXPECT_EQ(applyFilter(field, field, specOf(kind, 8.0), job).error().kind, ErrorKind::kCancelled);
+    EXPECT_EQ(applyFilter(field, field, nestingSpec(kind, 8.0), job).error().kind, ErrorKind::kCancelled);
   }
-  const Standard holes{"holes", 90, 90, 1.0, 1.0, 0.0, [](int, int) { return std::nan(""); }};
-  EXPECT_EQ(filtered(versionOf(holes), specOf(FilterKind::kRobustGaussian, 8.0)).report.changed, 0);
+  const MadeScan holes{"holes", 90, 90, 1.0, 1.0, 0.0, [](int, int) { return std::nan(""); }};
+  EXPECT_EQ(filtered(versionOf(holes), nestingSpec(FilterKind::kRobustGaussian, 8.0)).report.changed, 0);
 }
 
 }  // namespace

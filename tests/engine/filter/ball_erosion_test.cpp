@@ -6,26 +6,17 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/filter/ball_near.h"
+#include "tests/engine/filter/made_scan.h"
 
 namespace fettle::engine::tests {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-
-struct Ground {
-  std::string name;
-  int width, height;
-  double spacing_x, spacing_y, radius;
-  std::function<double(int, int)> z;
-  double height_mm = 1.0;
-  int step = 1;  // of the results that are held against all samples
-};
 
 double noiseAt(int c, int r) {
   auto x = static_cast<std::uint64_t>(r) << 32 | static_cast<std::uint32_t>(c);
@@ -44,7 +35,7 @@ double sphereAt(int c, int r, double middle, double spacing, double radius, doub
   return rest > 0.0 ? std::sqrt(rest) : beside;
 }
 
-std::vector<Ground> grounds() {
+std::vector<MadeScan> grounds() {
   const auto waves = [](int c, int r) { return 2.0 * std::cos(0.011 * r) * std::sin(0.013 * c); };
   const auto rough = [=](int c, int r) { return waves(c, r) + 0.3 * noiseAt(c, r); };
   return {
@@ -129,13 +120,7 @@ class BallErosion : public testing::TestWithParam<CpuLevel> {};
 // From heights and once more from what that leaves turned over, where all places from which the ball touches one sample tie.
 TEST_P(BallErosion, IsTheLeastOverAllSamplesToTheBit) {
   int near = 0, far = 0, without_table = 0;
-  for (const Ground& ground : grounds()) {
-    Grid grid;
-    grid.width = ground.width;
-    grid.height = ground.height;
-    grid.spacing_x = ground.spacing_x;
-    grid.spacing_y = ground.spacing_y;
-    grid.height_unit = {"unit", ground.height_mm};
+  for (const MadeScan& ground : grounds()) {
     const SampleRect all{0, 0, ground.width, ground.height};
     double lowest = kNone, highest = -kNone;
     const auto from = patchOf<float>(all, [&](int c, int r) {
@@ -145,7 +130,7 @@ TEST_P(BallErosion, IsTheLeastOverAllSamplesToTheBit) {
       highest = std::max(highest, static_cast<double>(z));
       return z;
     });
-    const BallElement ball(ground.radius, lowest, highest, grid);
+    const BallElement ball(ground.nesting, lowest, highest, gridOf(ground));
     ++(isNear(ball) ? near : far);
     without_table += ball.table() == nullptr;
     BallScratch scratch;

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/region.h"
+#include "tests/engine/filter/made_scan.h"
 #include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {
@@ -20,32 +18,9 @@ namespace {
 
 constexpr Element kElements[] = {Element::kBall, Element::kDisk, Element::kSquare};
 
-struct Rolled {
-  std::string name;
-  int width, height;
-  double spacing_x, spacing_y, radius;
-  std::function<double(int, int)> z;
-  double height_mm = 1.0;
-};
-
-Version versionOf(const Rolled& scan) {
-  Grid grid;
-  grid.width = scan.width;
-  grid.height = scan.height;
-  grid.spacing_x = scan.spacing_x;
-  grid.spacing_y = scan.spacing_y;
-  grid.height_unit = {"unit", scan.height_mm};
-  std::vector<float> z;
-  for (int r = 0; r < scan.height; ++r)
-    for (int c = 0; c < scan.width; ++c) z.push_back(static_cast<float>(scan.z(c, r)));
-  return makeField(grid, z);
-}
-
 FilterSpec rollingSpec(FilterKind kind, Element element, double radius) {
-  FilterSpec spec;
-  spec.kind = kind;
+  FilterSpec spec = nestingSpec(kind, radius);
   spec.element = element;
-  spec.nesting_mm = radius;
   return spec;
 }
 
@@ -59,7 +34,7 @@ double holed(int c, int r) {
 
 // The hard cases: holes, walls, spikes, unequal spacing, one row, bodies of less than the relief and larger than the field, in
 // blocks and over the whole field at once.
-std::vector<Rolled> rolledScans() {
+std::vector<MadeScan> rolledScans() {
   return {
       {"reaches one sample", 70, 66, 0.1, 0.1, 0.1, holed},
       {"in samples", 150, 131, 1.0, 1.0, 7.0, holed},
@@ -87,9 +62,9 @@ std::vector<Rolled> rolledScans() {
 
 // Over the whole element around each sample: of `sign` times the heights, the least sum with the body's depth; then of what
 // that leaves turned over.
-std::vector<double> plainRolling(const Rolled& scan, const std::vector<double>& z, FilterKind kind,
+std::vector<double> plainRolling(const MadeScan& scan, const std::vector<double>& z, FilterKind kind,
                                  Element element) {
-  const double sign = kind == FilterKind::kOpening ? 1.0 : -1.0, radius = scan.radius;
+  const double sign = kind == FilterKind::kOpening ? 1.0 : -1.0, radius = scan.nesting;
   const auto at = [&](int c, int r) {
     return static_cast<std::size_t>(r) * static_cast<std::size_t>(scan.width) + c;
   };
@@ -138,24 +113,19 @@ std::vector<double> plainRolling(const Rolled& scan, const std::vector<double>& 
   return low;
 }
 
-std::vector<double> samplesOf(const Version& field) {
-  const PlainField plain = toPlain(field);
-  return {plain.z.begin(), plain.z.end()};
-}
-
 TEST(Opening, IsWhatGoingOverTheElementFinds) {
-  for (const Rolled& scan : rolledScans())
+  for (const MadeScan& scan : rolledScans())
     for (const Element element : kElements)
       for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing}) {
         const Version field = versionOf(scan);
-        const std::vector<double> z = samplesOf(field), plain = plainRolling(scan, z, kind, element);
-        const PlainField got = toPlain(filtered(field, rollingSpec(kind, element, scan.radius)).field);
+        const std::vector<double> z = heightsOf(field), plain = plainRolling(scan, z, kind, element);
+        const PlainField got = toPlain(filtered(field, rollingSpec(kind, element, scan.nesting)).field);
         double largest = 0.0;
         for (const double height : z)
           if (!std::isnan(height)) largest = std::max(largest, std::fabs(height));
         // The ball's depth at its rim, no farther away than a field can be wide.
         const double far = Grid::kMaxSide * std::hypot(scan.spacing_x, scan.spacing_y);
-        const double rim = std::min(scan.radius, far * far / scan.radius) / scan.height_mm;
+        const double rim = std::min(scan.nesting, far * far / scan.nesting) / scan.height_mm;
         const double bound = element == Element::kBall ? 0x1p-50 * (largest + rim) : 0.0;
         int wrong = 0, touched = 0, there = 0;
         for (std::size_t i = 0; i < z.size(); ++i) {
@@ -173,10 +143,10 @@ TEST(Opening, IsWhatGoingOverTheElementFinds) {
 }
 
 TEST(Opening, OfWhatItLeftLeavesItAsItIs) {
-  for (const Rolled& scan : rolledScans())
+  for (const MadeScan& scan : rolledScans())
     for (const Element element : kElements)
       for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing}) {
-        const FilterSpec spec = rollingSpec(kind, element, scan.radius);
+        const FilterSpec spec = rollingSpec(kind, element, scan.nesting);
         const Version once = filtered(versionOf(scan), spec).field;
         const FilterReport again = filtered(once, spec).report;
         if (element != Element::kBall) {
@@ -184,7 +154,7 @@ TEST(Opening, OfWhatItLeftLeavesItAsItIs) {
         } else {
           // What was rounded to float may lie half of its last place above the ball.
           double largest = 0.0;
-          for (const double z : samplesOf(once))
+          for (const double z : heightsOf(once))
             if (!std::isnan(z)) largest = std::max(largest, static_cast<double>(ulp(static_cast<float>(z))));
           EXPECT_LE(again.max_change, 1.01 * largest) << scan.name;
         }
@@ -193,10 +163,10 @@ TEST(Opening, OfWhatItLeftLeavesItAsItIs) {
 
 // A groove of width w from above: its middle is filled to R - sqrt(R^2 - (w / 2)^2) below its rims.
 TEST(Closing, OfAGrooveIsTheArcBetweenItsRims) {
-  const Rolled scan{
+  const MadeScan scan{
       "groove", 121, 41, 0.1, 0.2, 5.0, [](int c, int) { return c > 40 && c < 80 ? -50.0 : 2.0; }};
   const Version closed =
-      filtered(versionOf(scan), rollingSpec(FilterKind::kClosing, Element::kBall, scan.radius)).field;
+      filtered(versionOf(scan), rollingSpec(FilterKind::kClosing, Element::kBall, scan.nesting)).field;
   for (int c = 0; c <= 120; ++c) {
     const double x = 0.1 * (c - 60);
     const double arc = std::fabs(x) < 2.0 ? 2.0 + std::sqrt(25.0 - 4.0) - std::sqrt(25.0 - x * x) : 2.0;
@@ -207,12 +177,12 @@ TEST(Closing, OfAGrooveIsTheArcBetweenItsRims) {
 // Of a sphere larger than the ball nothing is taken from below but at borders, of a smaller one all that is beside its top from
 // above is filled: to the surface of the ball of radius R on that of radius r.
 TEST(Opening, OfALargerSphereIsThatSphere) {
-  const Rolled scan{"sphere", 161, 161, 0.1, 0.1, 6.0, [](int c, int r) {
-                      const double x = 0.1 * (c - 80), y = 0.1 * (r - 80);
-                      return std::sqrt(400.0 - x * x - y * y);
-                    }};
+  const MadeScan scan{"sphere", 161, 161, 0.1, 0.1, 6.0, [](int c, int r) {
+                        const double x = 0.1 * (c - 80), y = 0.1 * (r - 80);
+                        return std::sqrt(400.0 - x * x - y * y);
+                      }};
   const Version opened =
-      filtered(versionOf(scan), rollingSpec(FilterKind::kOpening, Element::kBall, scan.radius)).field;
+      filtered(versionOf(scan), rollingSpec(FilterKind::kOpening, Element::kBall, scan.nesting)).field;
   // It touches at R / 20 of the way to the middle, between samples: (spacing / 2)^2 (1 / R - 1 / 20) / 2 twice at most.
   const double between = 2.0 * 0.05 * 0.05 * 2.0 * (1.0 / 6.0 - 1.0 / 20.0);
   for (int r = 40; r <= 120; r += 8)
@@ -224,10 +194,10 @@ TEST(Opening, OfALargerSphereIsThatSphere) {
 }
 
 TEST(Opening, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
-  const Rolled scan{"rough", 333, 275, 1.0, 2.0, 0.0, [](int c, int r) {
-                      return c % 17 == 3 && r % 5 == 1 ? std::nan("")
-                                                       : 20.0 * rough(c, r) + (c == 90 ? 0.0 : -0.0);
-                    }};
+  const MadeScan scan{"rough", 333, 275, 1.0, 2.0, 0.0, [](int c, int r) {
+                        return c % 17 == 3 && r % 5 == 1 ? std::nan("")
+                                                         : 20.0 * rough(c, r) + (c == 90 ? 0.0 : -0.0);
+                      }};
   const Version field = versionOf(scan);
   JobControl job;
   for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing})
@@ -252,9 +222,9 @@ TEST(Opening, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
 }
 
 TEST(Opening, OfARangeIsThatOfTheField) {
-  const Rolled scan{"rough", 500, 430, 1.0, 1.0, 0.0, [](int c, int r) {
-                      return c % 11 == 3 ? std::nan("") : 9.0 * rough(c, r);
-                    }};
+  const MadeScan scan{"rough", 500, 430, 1.0, 1.0, 0.0, [](int c, int r) {
+                        return c % 11 == 3 ? std::nan("") : 9.0 * rough(c, r);
+                      }};
   const Version field = versionOf(scan);
   JobControl job;
   for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing})
@@ -279,13 +249,13 @@ TEST(Opening, OfARangeIsThatOfTheField) {
 
 // Peaks are those of the scan, whichever way up it is shown; of a scan that is itself turned over they are pits.
 TEST(Closing, IsTheOpeningOfASurfaceTurnedOver) {
-  const Rolled scan{"rough", 100, 90, 1.0, 1.0, 6.0, holed};
-  const Rolled turned{"turned", 100, 90, 1.0, 1.0, 6.0, [](int c, int r) { return -holed(c, r); }};
+  const MadeScan scan{"rough", 100, 90, 1.0, 1.0, 6.0, holed};
+  const MadeScan turned{"turned", 100, 90, 1.0, 1.0, 6.0, [](int c, int r) { return -holed(c, r); }};
   for (const Element element : kElements) {
     const auto opened =
-        samplesOf(filtered(versionOf(scan), rollingSpec(FilterKind::kOpening, element, 6.0)).field);
+        heightsOf(filtered(versionOf(scan), rollingSpec(FilterKind::kOpening, element, 6.0)).field);
     const auto closed =
-        samplesOf(filtered(versionOf(turned), rollingSpec(FilterKind::kClosing, element, 6.0)).field);
+        heightsOf(filtered(versionOf(turned), rollingSpec(FilterKind::kClosing, element, 6.0)).field);
     int different = 0;
     for (std::size_t i = 0; i < opened.size(); ++i)
       different += !std::isnan(opened[i]) && opened[i] != -closed[i];
@@ -294,7 +264,7 @@ TEST(Closing, IsTheOpeningOfASurfaceTurnedOver) {
 }
 
 TEST(Opening, DependsOnSamplesWithinTwoElementsAndNoMoreThanThereCanBe) {
-  const Version field = versionOf(Rolled{"spacing 1:4", 20, 20, 0.25, 1.0, 0.0, rough});
+  const Version field = versionOf(MadeScan{"spacing 1:4", 20, 20, 0.25, 1.0, 0.0, rough});
   for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing})
     for (const Element element : kElements) {
       const auto reach = [&](double radius) {
@@ -308,7 +278,7 @@ TEST(Opening, DependsOnSamplesWithinTwoElementsAndNoMoreThanThereCanBe) {
 }
 
 TEST(Opening, RefusesWhatItCannotDo) {
-  const Rolled scan{"plain", 20, 20, 1.0, 4.0, 0.0, [](int c, int) { return c; }};
+  const MadeScan scan{"plain", 20, 20, 1.0, 4.0, 0.0, [](int c, int) { return c; }};
   const Version field = versionOf(scan);
   for (const FilterKind kind : {FilterKind::kOpening, FilterKind::kClosing}) {
     JobControl job;

@@ -3,54 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "engine/field/builder.h"
 #include "engine/filter/areal_gaussian.h"
+#include "tests/engine/filter/made_scan.h"
 #include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {
 namespace {
 
 using Real = long double;
-
-struct Smoothed {
-  std::string name;
-  int width, height;
-  double spacing_x, spacing_y, cut_off;
-  std::function<double(int, int)> z;
-};
-
-Version versionOf(const Smoothed& scan) {
-  Grid grid;
-  grid.width = scan.width;
-  grid.height = scan.height;
-  grid.spacing_x = scan.spacing_x;
-  grid.spacing_y = scan.spacing_y;
-  std::vector<float> z;
-  for (int r = 0; r < scan.height; ++r)
-    for (int c = 0; c < scan.width; ++c) z.push_back(static_cast<float>(scan.z(c, r)));
-  return makeField(grid, z);
-}
-
-FilterSpec splineSpec(FilterKind kind, double cut_off) {
-  FilterSpec spec;
-  spec.kind = kind;
-  spec.nesting_mm = cut_off;
-  return spec;
-}
-
-std::vector<double> heightsOfSpline(const Version& field) {
-  const PlainField plain = toPlain(field);
-  return {plain.z.begin(), plain.z.end()};
-}
 
 // Rows of a least-squares problem, each with its right side at the end, solved by Givens rotations.
 class LeastSquares {
@@ -112,28 +79,28 @@ std::vector<Real> plainLine(const std::vector<Real>& z, double cut_off, double s
   return problem.solution();
 }
 
-std::vector<Real> plainTensor(const Smoothed& scan, const std::vector<double>& z) {
+std::vector<Real> plainTensor(const MadeScan& scan, const std::vector<double>& z) {
   const auto wide = static_cast<std::size_t>(scan.width), high = static_cast<std::size_t>(scan.height);
   std::vector<Real> s(z.begin(), z.end());
   for (std::size_t r = 0; r < high; ++r) {
     const std::vector<Real> line(s.begin() + r * wide, s.begin() + (r + 1) * wide);
-    std::ranges::copy(plainLine(line, scan.cut_off, scan.spacing_x), s.begin() + r * wide);
+    std::ranges::copy(plainLine(line, scan.nesting, scan.spacing_x), s.begin() + r * wide);
   }
   for (std::size_t c = 0; c < wide; ++c) {
     std::vector<Real> line;
     for (std::size_t r = 0; r < high; ++r) line.push_back(s[r * wide + c]);
-    line = plainLine(line, scan.cut_off, scan.spacing_y);
+    line = plainLine(line, scan.nesting, scan.spacing_y);
     for (std::size_t r = 0; r < high; ++r) s[r * wide + c] = line[r];
   }
   return s;
 }
 
 // With weights: a row for each sample, for each second difference along x, along y and of both.
-std::vector<Real> plainWeighted(const Smoothed& scan, const std::vector<double>& z,
+std::vector<Real> plainWeighted(const MadeScan& scan, const std::vector<double>& z,
                                 const std::vector<double>& weights) {
   const int wide = scan.width, high = scan.height;
   const std::size_t n = z.size();
-  const Real ax = stiffness(scan.cut_off, scan.spacing_x), ay = stiffness(scan.cut_off, scan.spacing_y);
+  const Real ax = stiffness(scan.nesting, scan.spacing_x), ay = stiffness(scan.nesting, scan.spacing_y);
   const Real bend[] = {1, -2, 1};
   LeastSquares problem(n);
   const auto at = [wide](int c, int r) { return static_cast<std::size_t>(r * wide + c); };
@@ -174,7 +141,7 @@ double rangeOf(const std::vector<double>& z) {
 
 TEST(Spline, IsTheLeastSumOfItsDefinition) {
   const auto tilted = [](int c, int r) { return 7.0 + 0.3 * c - 0.2 * r + roughness(c, r); };
-  std::vector<Smoothed> scans;
+  std::vector<MadeScan> scans;
   for (const double cut_off : {2.0, 3.7, 12.0, 90.0, 2000.0, 1e5, 1e9})
     scans.push_back({"rough", 45, 38, 1.0, 1.0, cut_off, tilted});
   scans.push_back({"spacing 1:4", 60, 20, 0.25, 1.0, 5.0, tilted});
@@ -185,20 +152,20 @@ TEST(Spline, IsTheLeastSumOfItsDefinition) {
   scans.push_back({"one row", 150, 1, 1.0, 1.0, 30.0, tilted});
   scans.push_back({"one column", 1, 150, 1.0, 1.0, 30.0, tilted});
   for (const int side : {1, 2, 3, 4}) scans.push_back({"few", side, 5 - side, 1.0, 1.0, 4.0, tilted});
-  for (const Smoothed& scan : scans) {
+  for (const MadeScan& scan : scans) {
     const Version field = versionOf(scan);
-    const std::vector<double> z = heightsOfSpline(field);
+    const std::vector<double> z = heightsOf(field);
     const std::vector<Real> plain = plainTensor(scan, z);
-    const PlainField got = toPlain(filtered(field, splineSpec(FilterKind::kSpline, scan.cut_off)).field);
+    const PlainField got = toPlain(filtered(field, nestingSpec(FilterKind::kSpline, scan.nesting)).field);
     const double bound =
-        0x1p-49 * std::max(scan.cut_off / std::min(scan.spacing_x, scan.spacing_y), 8.0) * rangeOf(z);
+        0x1p-49 * std::max(scan.nesting / std::min(scan.spacing_x, scan.spacing_y), 8.0) * rangeOf(z);
     for (std::size_t i = 0; i < z.size(); ++i)
       ASSERT_LE(std::fabs(got.z[i] - plain[i]), 0.5L * ulp(got.z[i]) + std::min(bound, 1e-9 * rangeOf(z)))
-          << scan.name << " " << scan.cut_off << ", " << i;
+          << scan.name << " " << scan.nesting << ", " << i;
   }
 }
 
-std::vector<Smoothed> holedScans() {
+std::vector<MadeScan> holedScans() {
   const auto scattered = [](int c, int r) {
     return (c * 5 + r * 3) % 7 == 0 ? std::nan("") : 3.0 + 0.2 * c - 0.1 * r + roughness(c, r);
   };
@@ -219,13 +186,13 @@ std::vector<Smoothed> holedScans() {
 }
 
 TEST(Spline, OverHolesIsTheLeastSumOverTheSamplesThereAre) {
-  for (const Smoothed& scan : holedScans()) {
+  for (const MadeScan& scan : holedScans()) {
     const Version field = versionOf(scan);
-    const std::vector<double> z = heightsOfSpline(field);
+    const std::vector<double> z = heightsOf(field);
     std::vector<double> weights;
     for (const double each : z) weights.push_back(std::isnan(each) ? 0.0 : 1.0);
     const std::vector<Real> plain = plainWeighted(scan, z, weights);
-    const PlainField got = toPlain(filtered(field, splineSpec(FilterKind::kSpline, scan.cut_off)).field);
+    const PlainField got = toPlain(filtered(field, nestingSpec(FilterKind::kSpline, scan.nesting)).field);
     for (std::size_t i = 0; i < z.size(); ++i) {
       ASSERT_EQ(std::isnan(z[i]), std::isnan(got.z[i]));
       if (!std::isnan(z[i])) {
@@ -245,7 +212,7 @@ TEST(Spline, TransmitsWhatTheStandardStates) {
                           std::cos(degrees * std::numbers::pi / 180.0),
                      ky = 2.0 * std::numbers::pi / (waves * cut_off) *
                           std::sin(degrees * std::numbers::pi / 180.0);
-        const Smoothed scan{"wave",
+        const MadeScan scan{"wave",
                             420,
                             420,
                             1.0,
@@ -256,7 +223,7 @@ TEST(Spline, TransmitsWhatTheStandardStates) {
           return 1.0 / (1.0 + std::pow(std::sin(0.5 * k) / std::sin(std::numbers::pi / cut_off), 4));
         };
         const PlainField got =
-            toPlain(filtered(versionOf(scan), splineSpec(FilterKind::kSpline, cut_off)).field);
+            toPlain(filtered(versionOf(scan), nestingSpec(FilterKind::kSpline, cut_off)).field);
         // The ends have fallen by exp(-pi sqrt(2) x / L): less than 1e-9 from 5 cut-offs on.
         for (int r = 150; r <= 270; r += 7)
           for (int c = 150; c <= 270; c += 11)
@@ -268,27 +235,27 @@ TEST(Spline, TransmitsWhatTheStandardStates) {
 TEST(Spline, LeavesPlanesToTheirEnds) {
   for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline})
     for (const double cut_off : {3.0, 40.0, 1e6}) {
-      const Smoothed scan{"plane", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) {
+      const MadeScan scan{"plane", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) {
                             return (c * 7 + r) % 11 == 0 || (c > 50 && c < 80 && r > 20 && r < 60)
                                        ? std::nan("")
                                        : 100.0 + 0.5 * c - 0.25 * r;
                           }};
       const Version field = versionOf(scan);
       // Exact heights, so that nothing is rounded before.
-      EXPECT_LE(filtered(field, splineSpec(kind, cut_off)).report.max_change, 2e-5) << cut_off;
+      EXPECT_LE(filtered(field, nestingSpec(kind, cut_off)).report.max_change, 2e-5) << cut_off;
     }
 }
 
 // Nothing is left to find once the plane is taken out, so that heights near 0 come back too.
 TEST(Spline, LeavesPlanesThroughZeroToTheDigitsOfDouble) {
   for (const double cut_off : {3.0, 40.0}) {
-    const Smoothed scan{"plane", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) {
+    const MadeScan scan{"plane", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) {
                           return (c * 7 + r) % 11 == 0 || (c > 50 && c < 80 && r > 20 && r < 60)
                                      ? std::nan("")
                                      : 1024.0 * (c - 65) - 512.0 * (r - 45);
                         }};
     // Roundings of heights of 1e5, 1e-11 each, over the windows of a cut-off.
-    EXPECT_LE(filtered(versionOf(scan), splineSpec(FilterKind::kSpline, cut_off)).report.max_change, 1e-8)
+    EXPECT_LE(filtered(versionOf(scan), nestingSpec(FilterKind::kSpline, cut_off)).report.max_change, 1e-8)
         << cut_off;
   }
 }
@@ -296,10 +263,10 @@ TEST(Spline, LeavesPlanesThroughZeroToTheDigitsOfDouble) {
 TEST(Spline, OfAConstantIsThatConstant) {
   for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline})
     for (const double cut_off : {5.0, 60.0}) {
-      const Smoothed scan{
+      const MadeScan scan{
           "flat", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) { return c == r ? std::nan("") : 0.1; }};
       const Version field = versionOf(scan);
-      EXPECT_EQ(contentHash(filtered(field, splineSpec(kind, cut_off)).field), contentHash(field));
+      EXPECT_EQ(contentHash(filtered(field, nestingSpec(kind, cut_off)).field), contentHash(field));
     }
 }
 
@@ -313,7 +280,7 @@ TEST(Spline, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
   for (const Version& field : {whole, holed})
     for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline})
       for (const double cut_off : {9.0, 70.0}) {
-        FilterSpec spec = splineSpec(kind, cut_off);
+        FilterSpec spec = nestingSpec(kind, cut_off);
         spec.threads = 1;
         const std::uint64_t one = contentHash(applyFilter(field, field, spec, job)->field);
         for (const int threads : {2, 5})
@@ -331,11 +298,11 @@ TEST(Spline, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
 
 // Round by round, each after its definition.
 TEST(RobustSpline, IsWhatPlainRoundsFind) {
-  for (Smoothed scan : holedScans()) {
+  for (MadeScan scan : holedScans()) {
     const auto under = scan.z;
     scan.z = [under](int c, int r) { return under(c, r) - (c % 9 == 4 ? 30.0 : 0.0); };
     const Version field = versionOf(scan);
-    const std::vector<double> z = heightsOfSpline(field);
+    const std::vector<double> z = heightsOf(field);
     std::vector<double> weights;
     for (const double each : z) weights.push_back(std::isnan(each) ? 0.0 : 1.0);
     std::vector<Real> plain;
@@ -357,7 +324,7 @@ TEST(RobustSpline, IsWhatPlainRoundsFind) {
       }
     }
     const PlainField got =
-        toPlain(filtered(field, splineSpec(FilterKind::kRobustSpline, scan.cut_off)).field);
+        toPlain(filtered(field, nestingSpec(FilterKind::kRobustSpline, scan.nesting)).field);
     for (std::size_t i = 0; i < z.size(); ++i)
       if (!std::isnan(z[i])) {
         ASSERT_LE(std::fabs(got.z[i] - plain[i]), 1e-5 * limit + 0.5L * ulp(got.z[i]))
@@ -370,13 +337,13 @@ TEST(RobustSpline, IsWhatPlainRoundsFind) {
 TEST(RobustSpline, PassesOverGrooves) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0.0, 1.0);
-  const Smoothed scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
+  const MadeScan scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
                         return noise(random) - (c >= 140 && c < 150 ? 40.0 : 0.0);
                       }};
   const Version field = versionOf(scan);
   const float
-      linear = filtered(field, splineSpec(FilterKind::kSpline, 80.0)).field.reader().heightAt(145, 60),
-      robust = filtered(field, splineSpec(FilterKind::kRobustSpline, 80.0)).field.reader().heightAt(145, 60);
+      linear = filtered(field, nestingSpec(FilterKind::kSpline, 80.0)).field.reader().heightAt(145, 60),
+      robust = filtered(field, nestingSpec(FilterKind::kRobustSpline, 80.0)).field.reader().heightAt(145, 60);
   // The weight of the middle of a line is pi / (sqrt(2) L) for each sample.
   EXPECT_NEAR(linear, -40.0 * 10.0 * std::numbers::pi / std::sqrt(2.0) / 80.0, 1.0);
   EXPECT_NEAR(robust, 0.0, 0.15);
@@ -390,12 +357,12 @@ TEST(Spline, RefusesWhatItCannotDoAndLeavesHolesAlone) {
   for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline}) {
     JobControl job;
     for (const double wrong : {0.0, -1.0, 7.9, std::numeric_limits<double>::infinity(), std::nan("")})
-      EXPECT_EQ(applyFilter(field, field, splineSpec(kind, wrong), job).error().kind, ErrorKind::kInput)
+      EXPECT_EQ(applyFilter(field, field, nestingSpec(kind, wrong), job).error().kind, ErrorKind::kInput)
           << wrong;
     job.cancel();
-    EXPECT_EQ(applyFilter(field, field, splineSpec(kind, 8.0), job).error().kind, ErrorKind::kCancelled);
-    EXPECT_EQ(filtered(holes, splineSpec(kind, 8.0)).report.changed, 0);
-    EXPECT_EQ(filtered(one, splineSpec(kind, 8.0)).report.changed, 0);
+    EXPECT_EQ(applyFilter(field, field, nestingSpec(kind, 8.0), job).error().kind, ErrorKind::kCancelled);
+    EXPECT_EQ(filtered(holes, nestingSpec(kind, 8.0)).report.changed, 0);
+    EXPECT_EQ(filtered(one, nestingSpec(kind, 8.0)).report.changed, 0);
   }
 }
 
