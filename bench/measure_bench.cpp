@@ -7,10 +7,13 @@
 #include <functional>
 #include <random>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "engine/field/builder.h"
+#include "engine/field/live_field.h"
 #include "engine/measure/align.h"
 #include "engine/measure/areal.h"
 #include "engine/measure/form.h"
@@ -18,6 +21,7 @@
 #include "engine/measure/lowered.h"
 #include "engine/measure/scale_filter.h"
 #include "engine/measure/section.h"
+#include "engine/remove/remove.h"
 #include "engine/transform/rearrange.h"
 #include "engine/transform/resample.h"
 
@@ -63,55 +67,80 @@ Bits bitsOf(const std::vector<double>& figures) {
   return sum;
 }
 
-Result<Bits> hashOf(const Result<Version>& field) {
-  if (!field) return tl::unexpected(field.error());
-  return engine::contentHash(*field);
+/// What a step makes or finds. Its hash is none of the step's time.
+using Outcome = std::variant<Version, std::vector<double>>;
+
+Bits hashOf(const Outcome& outcome) {
+  if (const Version* const field = std::get_if<Version>(&outcome)) return engine::contentHash(*field);
+  return bitsOf(std::get<std::vector<double>>(outcome));
 }
 
-Result<Bits> levelled(const Version& field, const engine::FormOptions& options, JobControl& job) {
+Result<Outcome> outcomeOf(Result<Version> field) {
+  if (!field) return tl::unexpected(field.error());
+  return *std::move(field);
+}
+
+Result<Outcome> levelled(const Version& field, const engine::FormOptions& options, JobControl& job) {
   const auto fit = engine::fitForm(field, options, job);
   if (!fit) return tl::unexpected(fit.error());
-  return hashOf(engine::withoutForm(field, fit->form, job));
+  return outcomeOf(engine::withoutForm(field, fit->form, job));
 }
 
-Result<Bits> linesTaken(const Version& field, const engine::LineOptions& options, JobControl& job) {
+Result<Outcome> linesTaken(const Version& field, const engine::LineOptions& options, JobControl& job) {
   const auto lines = engine::findLineOffsets(field, options, job);
   if (!lines) return tl::unexpected(lines.error());
-  return hashOf(engine::lowered(
+  return outcomeOf(engine::lowered(
       field, "taking lines out", [&](const auto& rect, double* out) { lines->readHeights(rect, out); }, job));
 }
 
-Result<Bits> sectioned(const Version& field, double width_mm, JobControl& job) {
+Result<Outcome> sectioned(const Version& field, double width_mm, JobControl& job) {
   const engine::Grid& grid = field.grid();
   const glm::dvec2 end((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
   const glm::dvec2 points[] = {end * 0.1, end * 0.9};
   const auto section = engine::sectionAlong(field, points, {.width_mm = width_mm}, job);
   if (!section) return tl::unexpected(section.error());
-  return bitsOf(section->height);
+  return section->height;
 }
 
-Result<Bits> parameters(const Version& field, const engine::ArealOptions& options, JobControl& job) {
+Result<Outcome> parameters(const Version& field, const engine::ArealOptions& options, JobControl& job) {
   const auto fit = engine::fitForm(field, {}, job);
   if (!fit) return tl::unexpected(fit.error());
   const auto found = engine::measureAreal(field, fit->form, options, job);
   if (!found) return tl::unexpected(found.error());
-  return bitsOf({found->sq, found->ssk, found->sku, found->sa, found->sdq, found->sdr, found->feature.spd});
+  return std::vector{found->sq,  found->ssk, found->sku,        found->sa,
+                     found->sdq, found->sdr, found->feature.spd};
 }
 
 // The field shifted and turned, brought back onto it.
-Result<Bits> aligned(const Version& field, const Version& moved, JobControl& job) {
+Result<Outcome> aligned(const Version& field, const Version& moved, JobControl& job) {
   const auto found = engine::alignFields(field, moved, {}, job);
   if (!found) return tl::unexpected(found.error());
-  return bitsOf(
-      {found->motion.shift.x, found->motion.shift.y, found->motion.shift.z, found->angles.rotation_z});
+  return std::vector{found->motion.shift.x, found->motion.shift.y, found->motion.shift.z,
+                     found->angles.rotation_z};
+}
+
+// A marked row through every tile.
+Result<Version> markedField(const Version& field) {
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  for (std::int32_t r = engine::kTileSide / 2; r < field.grid().height; r += engine::kTileSide)
+    for (std::int32_t c = 0; c < field.grid().width; ++c)
+      if (!live.setMark(c, r, true))
+        return engine::failure("memory for marks could not be had", "bench measure");
+  return live.snapshot();
+}
+
+Result<Outcome> removed(const Version& field, const engine::RemoveOptions& options, JobControl& job) {
+  auto done = engine::removeSamples(field, options, job);
+  if (!done) return tl::unexpected(done.error());
+  return std::move(done->field);
 }
 
 struct Step {
   const char* name;
-  std::function<Result<Bits>(const Version&, JobControl&)> run;
+  std::function<Result<Outcome>(const Version&, JobControl&)> run;
 };
 
-std::vector<Step> steps(const Version& moved) {
+std::vector<Step> steps(const Version& moved, const Version& marked) {
   const auto form = [](int degree, bool robust) {
     return [=](const Version& f, JobControl& job) {
       return levelled(f, {.degree = degree, .robust = robust}, job);
@@ -137,18 +166,23 @@ std::vector<Step> steps(const Version& moved) {
          engine::FilterSpec gaussian;
          gaussian.kind = engine::FilterKind::kArealGaussian;
          gaussian.nesting_mm = kCutOffMm;
-         return hashOf(engine::scaleFiltered(f, gaussian, engine::Waves::kLong, job));
+         return outcomeOf(engine::scaleFiltered(f, gaussian, engine::Waves::kLong, job));
        }},
       {"height, hybrid, functional", measured(false)},
       {"all parameters", measured(true)},
       {"quarter turn",
-       [](const Version& f, JobControl& job) { return hashOf(engine::turned(f, {.quarters = 1}, job)); }},
+       [](const Version& f, JobControl& job) { return outcomeOf(engine::turned(f, {.quarters = 1}, job)); }},
       {"turned by 7 degrees",
        [](const Version& f, JobControl& job) {
-         return hashOf(
+         return outcomeOf(
              engine::resampled(f, {.angle_deg = 7.0, .spacing_x = kSpacingMm, .spacing_y = kSpacingMm}, job));
        }},
       {"align", [&moved](const Version& f, JobControl& job) { return aligned(f, moved, job); }},
+      {"remove above 2 mm", [](const Version& f, JobControl& job) { return removed(f, {.low = 2.0}, job); }},
+      {"remove marked rows",
+       [&marked](const Version&, JobControl& job) {
+         return removed(marked, {.region = engine::Region::kMarked}, job);
+       }},
   };
 }
 
@@ -166,19 +200,22 @@ Result<MeasureBenchReport> benchMeasure(const MeasureBenchOptions& options, JobC
   const auto moved =
       engine::resampled(*field, {.angle_deg = 2.0, .spacing_x = kSpacingMm, .spacing_y = kSpacingMm}, job);
   if (!moved) return tl::unexpected(moved.error());
+  const auto marked = markedField(*field);
+  if (!marked) return tl::unexpected(marked.error());
   std::vector<float> copy(static_cast<std::size_t>(report.samples));
-  for (const Step& step : steps(*moved)) {
+  for (const Step& step : steps(*moved, *marked)) {
     MeasureBenchRow row;
     row.step = step.name;
     std::vector<double> plain, seconds;
     for (int k = 0; k < options.repeats; ++k) {
       plain.push_back(secondsOf(
           [&] { field->reader().readHeights(0, 0, options.side, options.side, copy.data(), options.side); }));
-      Result<Bits> bits;
-      seconds.push_back(secondsOf([&] { bits = step.run(*field, job); }));
-      if (!bits) return tl::unexpected(bits.error());
-      if (k > 0 && *bits != row.bits) return engine::failure("two repeats differ", step.name);
-      row.bits = *bits;
+      Result<Outcome> outcome;
+      seconds.push_back(secondsOf([&] { outcome = step.run(*field, job); }));
+      if (!outcome) return tl::unexpected(outcome.error());
+      const Bits bits = hashOf(*outcome);
+      if (k > 0 && bits != row.bits) return engine::failure("two repeats differ", step.name);
+      row.bits = bits;
     }
     row.plain = median(plain);
     row.median = median(seconds);

@@ -28,8 +28,8 @@ struct MeasureBenchReport {
   std::vector<MeasureBenchRow> rows;
 };
 
-/// Levels, sections, parameters, transforms and an alignment of a waved, tilted field with noise and a wall. Before
-/// each repeat the field's samples are copied into an array that is there already, by one thread. Memory: the field three
+/// Levels, sections, parameters, transforms, an alignment and removals of a waved, tilted field with noise and a wall. Before
+/// each repeat the field's samples are copied into an array that is there already, by one thread. Memory: the field four
 /// times, and 40 bytes per sample for the parameters. Errors: kInput for options out of range; kFailed without memory or
 /// when two repeats differ in a bit; kCancelled. Thread: any; blocks.
 [[nodiscard]] engine::Result<MeasureBenchReport> benchMeasure(const MeasureBenchOptions& options,

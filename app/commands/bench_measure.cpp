@@ -50,7 +50,7 @@ void addBenchMeasure(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::MeasureBenchOptions>();
   Command command = addCommand(
       bench, chosen, "measure",
-      "Time of levels, sections, parameters and transforms, and of copying the field",
+      "Time of levels, sections, parameters, transforms and removed samples, and of copying the field",
       [options](engine::JobControl& job) { return measureSteps(*options, job); }, printBenchMeasure);
   command.add({
       {.name = "--side",

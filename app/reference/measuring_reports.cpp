@@ -235,7 +235,7 @@ std::vector<ReportSchema> measuring() {
          {machine(),
           repeats(),
           {"samples", "integer", "of the field"},
-          rows({{"step", "string", "level, section, parameters, transform or align"},
+          rows({{"step", "string", "level, section, parameters, transform, align or remove"},
                 {"seconds", "number", "median"},
                 {"fastest", "number", ""},
                 {"slowest", "number", ""},
