@@ -12,6 +12,7 @@
 #include "engine/field/means.h"
 #include "engine/measure/lowered.h"
 #include "haptic/journal/computed_heights.h"
+#include "haptic/journal/early_heights.h"
 #include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
@@ -71,7 +72,9 @@ engine::Status previewHeights(const engine::Version& field, const haptic::Height
       if (!last) row.first = watch.seconds();
       last = std::move(picture);
     };
-    const auto whole = haptic::computeHeights(field, maker, seen, show, job);
+    haptic::EarlyHeights early(field, maker);
+    (void)early.see(seen, show, job);  // its errors are those of the whole
+    const auto whole = haptic::computeHeights(field, maker, job);
     row.whole = watch.seconds();
     if (!whole) return tl::unexpected(whole.error());
     if (engine::contentHash(whole->field) != hash)

@@ -41,9 +41,10 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
   followForm(p);
-  if (p.filters.wantsView()) p.filters.look(p.picture.seenPart(client.field().grid(), p.view));
-  bool changed = p.filters.poll(client, notices);
   const auto seen = [&] { return p.picture.seenPart(client.field().grid(), p.view); };
+  if (p.filters.wantsView()) p.filters.look(seen());
+  if (p.heights.wantsView()) p.heights.look(seen());
+  bool changed = p.filters.poll(client, notices);
   p.filters.follow(client, seen);
   // An adoption ends first: its result belongs to the form under which it was computed.
   if (!p.filters.applying()) {

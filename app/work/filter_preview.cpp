@@ -12,8 +12,6 @@ namespace {
 
 // Rounds of adoption: each leaves only the edits of some milliseconds, so without edits one is enough.
 constexpr int kMostRounds = 50;
-// Between two looks at what is there so far: each is drawn.
-constexpr auto kLookAgain = std::chrono::milliseconds(200);
 // All of the view at once looks better than one part after the other, if it does not take longer.
 constexpr auto kWaitForAll = std::chrono::milliseconds(200);
 
@@ -42,14 +40,9 @@ std::string filterName(const engine::FilterSpec& spec) {
 }
 
 std::string previewState(const engine::FilterView::Picture& picture, const engine::Grid& grid) {
-  const auto percent = [](double share) { return static_cast<int>(100.0 * share); };
-  if (picture.step == 0)
-    return picture.exact == 1.0 ? "exact in view" : fmt::format("{} % so far", percent(picture.exact));
-  std::string text =
-      picture.off ? offText(picture.off->rms, picture.off->estimated, grid) : std::string("approximate");
-  if (const int done = percent(picture.exact); done > 0) text += fmt::format(", {} % exact", done);
-  if (picture.untouched > 0.0) text += fmt::format(", {} % to come", std::max(1, percent(picture.untouched)));
-  return text;
+  return soFarText({picture.step != 0,
+                    picture.off ? offText(picture.off->rms, picture.off->estimated, grid) : std::string(),
+                    picture.exact, picture.untouched});
 }
 
 void FilterPreview::compute(LoopClient& client, Keep keep, const engine::FieldView& view) {
@@ -128,7 +121,7 @@ bool FilterPreview::followsSoon() const {
 }
 
 bool FilterPreview::wantsView() const {
-  return view_ != nullptr && computing() && Clock::now() - looked_ >= kLookAgain;
+  return view_ != nullptr && computing() && Clock::now() - looked_ >= PreviewPace::kLookAgain;
 }
 
 void FilterPreview::look(const engine::FieldView& view) {
@@ -147,7 +140,7 @@ bool FilterPreview::takeSoFar() {
   if (!view_ || !computes()) return false;
   const auto now = Clock::now();
   const bool first = !seen_;
-  if (!first && now - looked_ < kLookAgain) return false;
+  if (!first && now - looked_ < PreviewPace::kLookAgain) return false;
   if (!approximating_.busy() && view_->wantsCoarse() && !first)
     approximating_.start([view = view_](engine::JobControl& job) -> engine::Result<bool> {
       if (auto done = view->coarsen(job); !done) return tl::unexpected(done.error());

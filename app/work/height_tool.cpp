@@ -81,9 +81,10 @@ std::string makerName(const haptic::HeightsMaker& maker) {
 }
 
 std::string earlyState(const engine::EarlyPicture& picture) {
-  if (picture.off) return offText(picture.off->rms, picture.off->estimated, picture.field.grid());
-  if (picture.exact == 1.0) return "exact in view";
-  return fmt::format("{} % so far", static_cast<int>(100.0 * picture.exact));
+  const auto& off = picture.off;
+  return soFarText({off.has_value(),
+                    off ? offText(off->rms, off->estimated, picture.field.grid()) : std::string(),
+                    picture.exact, picture.untouched});
 }
 
 void HeightTool::make(const haptic::HeightsMaker& maker) {
@@ -196,8 +197,44 @@ void HeightTool::cancel() noexcept {
 }
 
 void HeightTool::dropEarly() {
-  slot_.reset();
+  moving_.cancel();
+  seeing_.reset();
   early_.reset();
+}
+
+void HeightTool::Seeing::see(const engine::FieldView& view, engine::JobControl& job) {
+  const auto show = [&](engine::EarlyPicture picture) {
+    const std::scoped_lock lock(mutex);
+    newest = Early{std::move(picture), view.tiles};
+  };
+  // Errors of the picture are those of the whole, which reports them.
+  (void)heights.see(view, show, job);
+}
+
+bool HeightTool::wantsView() const {
+  return seeing_ != nullptr && computesPreview() &&
+         PreviewPace::Clock::now() - looked_ >= PreviewPace::kLookAgain;
+}
+
+void HeightTool::look(const engine::FieldView& view) {
+  looked_ = PreviewPace::Clock::now();
+  view_ = view;
+}
+
+// One view after the other: the newest when the one before is there.
+void HeightTool::seeMoved() {
+  (void)moving_.take();
+  if (!seeing_ || !computesPreview() || moving_.busy() || view_.tiles == asked_tiles_) return;
+  asked_tiles_ = view_.tiles;
+  moving_.start([seeing = seeing_, view = view_](engine::JobControl& job) -> engine::Result<bool> {
+    seeing->see(view, job);
+    return true;
+  });
+}
+
+bool HeightTool::moved() const noexcept {
+  // Means are of all of the field.
+  return early_->picture.step == 1 && !view_.tiles.empty() && !(early_->tiles == view_.tiles);
 }
 
 bool HeightTool::dropOutdated(const LoopClient& client) {
@@ -217,10 +254,10 @@ bool HeightTool::dropOutdated(const LoopClient& client) {
 }
 
 bool HeightTool::takeEarly() {
-  if (!slot_) return false;
-  const std::scoped_lock lock(slot_->mutex);
-  if (!slot_->picture) return false;
-  early_ = std::exchange(slot_->picture, std::nullopt);
+  if (!seeing_) return false;
+  const std::scoped_lock lock(seeing_->mutex);
+  if (!seeing_->newest) return false;
+  early_ = std::exchange(seeing_->newest, std::nullopt);
   paces_[wanted_.maker.index()].see(PreviewPace::Clock::now());
   return true;
 }
@@ -229,6 +266,7 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = dropOutdated(client);
   changed |= takeEarly();
   changed |= forgetUndone(client);
+  seeMoved();
   const bool dropped = working_.cancelling();
   if (auto result = working_.take()) {
     changed = true;
@@ -274,31 +312,30 @@ void HeightTool::start(LoopClient& client) {
   engine::Version base = client.newest();
   if (wanted_.becomes == Becomes::kPreview) {
     base_ = base;
-    slot_ = std::make_shared<Slot>();
-    begun_ = PreviewPace::Clock::now();
+    seeing_ = std::make_shared<Seeing>(base, wanted_.maker);
+    view_ = wanted_.view;
+    asked_tiles_ = view_.tiles;
+    begun_ = looked_ = PreviewPace::Clock::now();
     paces_[wanted_.maker.index()].begin(begun_, wanted_.view.tiles.tiles());
   }
   working_.start([base = std::move(base), wanted = wanted_,
-                  slot = slot_](engine::JobControl& job) -> engine::Result<Work> {
-    const auto show = [&slot](engine::EarlyPicture picture) {
-      const std::scoped_lock lock(slot->mutex);
-      slot->picture = std::move(picture);
-    };
-    auto heights = slot ? haptic::computeHeights(base, wanted.maker, wanted.view, show, job)
-                        : haptic::computeHeights(base, wanted.maker, job);
+                  seeing = seeing_](engine::JobControl& job) -> engine::Result<Work> {
+    if (seeing) seeing->see(wanted.view, job);
+    if (job.cancelled()) return engine::cancelled();
+    auto heights = haptic::computeHeights(base, wanted.maker, job);
     if (!heights) return tl::unexpected(heights.error());
     return Work{base, *std::move(heights)};
   });
 }
 
 std::string HeightTool::soFar() const {
-  return early_ ? earlyState(*early_) : std::string();
+  if (!early_) return {};
+  return moved() ? "to come in view" : earlyState(early_->picture);
 }
 
 std::optional<PreviewPicture> HeightTool::picture() const {
   if (early_)
-    return PreviewPicture{early_->field,
-                          fmt::format("{}: {}", makerName(wanted_.maker), earlyState(*early_))};
+    return PreviewPicture{early_->picture.field, fmt::format("{}: {}", makerName(wanted_.maker), soFar())};
   if (preview_) return PreviewPicture{preview_->work.heights.field, makerName(preview_->maker)};
   return std::nullopt;
 }

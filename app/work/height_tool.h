@@ -13,7 +13,10 @@
 #include "app/work/loop_client.h"
 #include "app/work/preview_pace.h"
 #include "app/work/preview_picture.h"
+#include "engine/field/early_picture.h"
+#include "engine/field/field_view.h"
 #include "haptic/journal/computed_heights.h"
+#include "haptic/journal/early_heights.h"
 
 namespace fettle::app {
 
@@ -21,8 +24,8 @@ namespace fettle::app {
 /// --rows` and `fettle remove` do: each a step, worked out in the background while the hand goes on. A stroke meanwhile is
 /// kept: it is worked out again with it.
 ///
-/// A preview is the same beside the field, and no step; what is seen of it comes first (haptic::computeHeights). It becomes
-/// the step as it is. It is of one state of the field, and ends with it: with an edit, an undo, another form, other marks. Threading: main.
+/// A preview is the same beside the field, and no step; what is seen of it comes first, also after the camera moved
+/// (haptic::EarlyHeights). It becomes the step as it is. It is of one state of the field, and ends with it: with an edit, an undo, another form, other marks. Threading: main.
 class HeightTool {
  public:
   /// Edited by the panel.
@@ -43,6 +46,9 @@ class HeightTool {
   [[nodiscard]] bool awaitsRest() const noexcept;
   /// Whether what is computed follows the fields and has not taken long, so that the panel need not say so.
   [[nodiscard]] bool followsSoon() const;
+  /// Whether it is time to say what is shown now, since something is computed for it.
+  [[nodiscard]] bool wantsView() const;
+  void look(const engine::FieldView& view);
   void dropPreview();
   /// Makes what is previewed the step.
   void applyPreview();
@@ -89,11 +95,22 @@ class HeightTool {
     haptic::HeightsMaker maker;
     Work work;
   };
-  // A picture on its way from the worker, which goes on.
-  struct Slot {
-    std::mutex mutex;
-    std::optional<engine::EarlyPicture> picture;
+  struct Early {
+    engine::EarlyPicture picture;
+    engine::TileRange tiles;  // in view, that it is of
   };
+  // Of a preview that is computed: a picture on its way from a worker, which goes on.
+  struct Seeing {
+    Seeing(const engine::Version& base, const haptic::HeightsMaker& maker) : heights(base, maker) {}
+    void see(const engine::FieldView& view, engine::JobControl& job);
+
+    haptic::EarlyHeights heights;
+    std::mutex mutex;
+    std::optional<Early> newest;  // guarded by mutex
+  };
+  void seeMoved();
+  // Whether the camera shows something else than what the picture is of.
+  [[nodiscard]] bool moved() const noexcept;
   void make(const haptic::HeightsMaker& maker);
   void dropEarly();
   void forgetFound() noexcept;
@@ -115,8 +132,11 @@ class HeightTool {
   engine::Version base_;         // of what is worked out as a preview
   std::optional<Work> done_;     // waits for the end of a stroke
   std::optional<Preview> preview_;
-  std::shared_ptr<Slot> slot_;
-  std::optional<engine::EarlyPicture> early_;
+  std::shared_ptr<Seeing> seeing_;
+  std::optional<Early> early_;
+  engine::FieldView view_;         // as the camera shows it
+  engine::TileRange asked_tiles_;  // that are worked out first, or were
+  PreviewPace::Clock::time_point looked_;
   std::string found_;
   std::optional<engine::Version> made_from_;  // by the step that was found; nothing: it was none
   bool made_ = false;                         // and the step is there
@@ -127,12 +147,13 @@ class HeightTool {
   bool follows_ = false;  // what is worked out was asked for by follow()
   PreviewPace::Clock::time_point begun_;
   Background<Work> working_;
+  Background<bool> moving_;  // works out what came into view, beside the whole
 };
 
 /// "Fill holes: least curvature", "Level rows: median", "Remove marked samples": the step in the list of steps.
 [[nodiscard]] std::string makerName(const haptic::HeightsMaker& maker);
 
-/// "approximate, off by 12 um rms", "40 % so far", "exact in view".
+/// "approximate, off by 12 um rms, 20 % exact", "40 % so far", "exact in view".
 [[nodiscard]] std::string earlyState(const engine::EarlyPicture& picture);
 
 }  // namespace fettle::app

@@ -15,6 +15,8 @@ class PreviewPace {
   static constexpr Clock::duration kSoon = std::chrono::milliseconds(500);
   /// Between the last change of a field and the preview of what it says.
   static constexpr Clock::duration kRest = std::chrono::milliseconds(150);
+  /// Between two looks at what the camera shows and at what there is of it: each is drawn.
+  static constexpr Clock::duration kLookAgain = std::chrono::milliseconds(200);
 
   /// One is begun; `tiles`: of the field that are in view.
   void begin(Clock::time_point now, std::int64_t tiles) noexcept {

@@ -19,6 +19,7 @@ struct EarlyPicture {
   Version field;           ///< of the grid of the input, or of one with `step` times its spacing
   std::int32_t step = 1;   ///< samples on a side of the means that it is of; 1: of samples
   double exact = 0.0;      ///< share of what changes in view that has the result's bits, 0 .. 1
+  double untouched = 0.0;  ///< and of what shows the input
   std::optional<Off> off;  ///< of an approximation; empty: what has not the result's bits shows the input
 };
 

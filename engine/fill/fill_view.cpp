@@ -12,6 +12,7 @@
 
 #include "engine/base/stopwatch.h"
 #include "engine/field/means.h"
+#include "engine/fill/coarse_hole.h"
 #include "engine/fill/hole_filler.h"
 #include "engine/fill/holes.h"
 
@@ -24,6 +25,7 @@ constexpr std::int32_t kMargin = 8;  // tiles around the view
 constexpr std::int64_t kSamplesAtOnce = 50'000;
 constexpr std::int64_t kMostOfHole = 10'000;  // samples: some hundredths of a second
 constexpr double kTwice_s = 1.0;              // of work that is done once more with the whole field
+constexpr double kLargest_s = 0.5;            // of large holes, one after the other
 // Of the field in view, as its inverse, and of its samples: from then on the picture is of means.
 constexpr std::int64_t kMuch = 4, kLarge = 1 << 23;
 constexpr double kCells = 1 << 20;
@@ -62,31 +64,6 @@ std::span<const Hole* const> firstOf(std::span<const Hole* const> holes, std::in
 
 bool isSoonFilled(const Hole* hole) noexcept {
   return !hole->cut && hole->samples <= kMostOfHole;
-}
-
-Status showExact(const Version& field, const FillOptions& options, const FieldView& view,
-                 const ShowEarly& show, JobControl& job) {
-  const Stopwatch watch;
-  const TileRange all = allTiles(field.grid());
-  const auto holes = findHoles(field, grownBy(view.tiles, kMargin, all), job);
-  if (!holes) return tl::unexpected(holes.error());
-  Filled counts;
-  std::vector<const Hole*> seen = chooseHoles(*holes, options, field.grid(), counts).holes;
-  std::erase_if(seen, [&](const Hole* hole) { return !reaches(hole->box, view.tiles); });
-  std::int64_t wanted = 0, done = 0;
-  for (const Hole* hole : seen) wanted += hole->samples;
-  std::erase_if(seen, [](const Hole* hole) { return !isSoonFilled(hole); });
-  sortByDistance(seen, view);
-  const bool most = 2 * view.tiles.tiles() > all.tiles();
-  HoleFiller filler(field, options);
-  for (std::span<const Hole* const> rest = seen; !rest.empty() && !(most && watch.seconds() > kTwice_s);) {
-    const auto next = firstOf(rest, kSamplesAtOnce);
-    if (auto filled = filler.fill(*holes, next, counts, job); !filled) return filled;
-    rest = rest.subspan(next.size());
-    for (const Hole* hole : next) done += hole->samples;
-    show({filler.snapshot(), 1, static_cast<double>(done) / static_cast<double>(wanted), std::nullopt});
-  }
-  return {};
 }
 
 // Of holes of means: what is too much for the field is too much for these.
@@ -184,43 +161,131 @@ Result<std::optional<double>> offCoarser(const Version& means, const Version& fi
   return off.rms();
 }
 
-Status showMeans(const Version& field, const FillOptions& options, const FieldView& view,
-                 const ShowEarly& show, JobControl& job) {
-  const Grid& grid = field.grid();
-  const auto step =
-      static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(grid.samples()) / kCells)));
-  const Version means = meansOf(field, {0, 0, grid.width, grid.height}, step);
-  if (job.cancelled()) return cancelled();
-  const FillOptions of_means = ofMeans(options, grid, step);
-  const auto filled = fillHoles(means, of_means, job);
-  if (!filled) return tl::unexpected(filled.error());
-  const auto measured = offHoles(field, options, view, filled->field, step, job);
-  if (!measured) return tl::unexpected(measured.error());
-  std::optional<EarlyPicture::Off> off;
-  if (*measured) {
-    off = {**measured, false};
-  } else if (filled->filled_holes > 0) {
-    const auto estimate = offCoarser(means, filled->field, of_means, job);
-    if (!estimate) return tl::unexpected(estimate.error());
-    off = {estimate->value_or(0.0), true};
-  }
-  // Without holes that are filled the field is as it was.
-  if (off) show({filled->field, step, 0.0, off});
-  return {};
-}
-
 }  // namespace
 
-Status showFilled(const Version& field, const FillOptions& options, const FieldView& view,
-                  const ShowEarly& show, JobControl& outer) try {
-  if (view.tiles.empty() || field.reader().bounds().empty()) return {};
+FillView::FillView(Version field, const FillOptions& options)
+    : field_(std::move(field)), options_(options), filler_(field_, options_) {}
+
+// Of a hole that is cut only a part is known, which lies in its rectangle.
+const FillView::Approximated* FillView::approximatedAt(const HoleRun& first, bool cut) const noexcept {
+  const auto is = [&](const Approximated& each) {
+    if (!cut) return each.first == first;
+    const SampleRect& box = each.box;
+    return first.first >= box.column && first.first < box.column + box.columns && first.row >= box.row &&
+           first.row < box.row + box.rows;
+  };
+  const auto at = std::ranges::find_if(approximated_, is);
+  return at != approximated_.end() ? &*at : nullptr;
+}
+
+Status FillView::see(const FieldView& view, const ShowEarly& show, JobControl& outer) try {
+  if (view.tiles.empty() || field_.reader().bounds().empty()) return {};
   JobControl job = JobControl::partOf(outer);
-  const bool much = kMuch * view.tiles.tiles() > allTiles(field.grid()).tiles();
-  return much && field.grid().samples() > kLarge ? showMeans(field, options, view, show, job)
-                                                 : showExact(field, options, view, show, job);
+  const bool much = kMuch * view.tiles.tiles() > allTiles(field_.grid()).tiles();
+  return much && field_.grid().samples() > kLarge ? seeMeans(view, show, job) : seeSamples(view, show, job);
 } catch (const std::bad_alloc&) {
   return failure("there is not enough memory for the equations of a hole", "fill",
                  "fill smaller holes alone");
+}
+
+Status FillView::seeSamples(const FieldView& view, const ShowEarly& show, JobControl& job) {
+  const Stopwatch watch;
+  const TileRange all = allTiles(field_.grid());
+  const auto holes = findHoles(field_, grownBy(view.tiles, kMargin, all), job);
+  if (!holes) return tl::unexpected(holes.error());
+  Filled counts;
+  std::vector<const Hole*> seen = chooseHoles(*holes, options_, field_.grid(), counts).holes;
+  std::erase_if(seen, [&](const Hole* hole) { return !reaches(hole->box, view.tiles); });
+  sortByDistance(seen, view);
+  // In samples.
+  std::int64_t wanted = 0, exact = 0, coarse = 0;
+  Approximated off;
+  const auto add = [&](const Hole* hole, const Approximated& found) {
+    coarse += hole->samples;
+    off.squares += found.squares;
+    off.compared += found.compared;
+  };
+  std::vector<const Hole*> soon, large;
+  const Version known = filler_.snapshot();
+  for (const Hole* hole : seen) {
+    const HoleRun& first = holes->runsOf(*hole).front();
+    const bool filled = !std::isnan(known.reader().heightAt(first.first, first.row));
+    wanted += hole->samples;
+    if (const Approximated* const found = filled ? approximatedAt(first, hole->cut) : nullptr)
+      add(hole, *found);
+    else if (filled)
+      exact += hole->samples;
+    else if (!hole->cut)
+      (isSoonFilled(hole) ? soon : large).push_back(hole);
+  }
+  bool shown_now = false;
+  const auto show_now = [&] {
+    EarlyPicture picture{filler_.snapshot(), 1, 1.0, 0.0, std::nullopt};
+    if (wanted > 0) {
+      picture.exact = static_cast<double>(exact) / static_cast<double>(wanted);
+      picture.untouched = static_cast<double>(wanted - exact - coarse) / static_cast<double>(wanted);
+    }
+    if (off.compared > 0) picture.off = {std::sqrt(off.squares / static_cast<double>(off.compared)), true};
+    shown_ = shown_now = true;
+    show(std::move(picture));
+  };
+  if (shown_ && exact + coarse > 0) show_now();
+  const bool most = 2 * view.tiles.tiles() > all.tiles();
+  const auto late = [&] { return most && watch.seconds() > kTwice_s; };
+  for (const Hole* hole : large) {
+    if (late() || watch.seconds() > kLargest_s) break;
+    const auto found = coarseHole(field_, options_, *holes, *hole, job);
+    if (!found) {
+      if (found.error().kind == ErrorKind::kCancelled) return tl::unexpected(found.error());
+      continue;  // no mean around it has a height
+    }
+    if (!filler_.put(holes->runsOf(*hole), found->heights))
+      return failure("there is not enough memory for the filled field", "fill",
+                     "keep the samples on a disk with --store FOLDER");
+    approximated_.push_back({holes->runsOf(*hole).front(), hole->box, found->squares, found->compared});
+    add(hole, approximated_.back());
+  }
+  if (coarse > 0 && !large.empty()) show_now();
+  for (std::span<const Hole* const> rest = soon; !rest.empty() && !late();) {
+    const auto next = firstOf(rest, kSamplesAtOnce);
+    if (auto filled = filler_.fill(*holes, next, counts, job); !filled) return filled;
+    rest = rest.subspan(next.size());
+    for (const Hole* hole : next) exact += hole->samples;
+    show_now();
+  }
+  // Nothing is to be filled there, or nothing before the whole.
+  if (shown_ && !shown_now) show_now();
+  return {};
+}
+
+Status FillView::seeMeans(const FieldView& view, const ShowEarly& show, JobControl& job) {
+  if (!has_means_) {
+    const Grid& grid = field_.grid();
+    const auto step =
+        static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(grid.samples()) / kCells)));
+    const Version means = meansOf(field_, {0, 0, grid.width, grid.height}, step);
+    if (job.cancelled()) return cancelled();
+    const FillOptions of_means = ofMeans(options_, grid, step);
+    const auto filled = fillHoles(means, of_means, job);
+    if (!filled) return tl::unexpected(filled.error());
+    const auto measured = offHoles(field_, options_, view, filled->field, step, job);
+    if (!measured) return tl::unexpected(measured.error());
+    std::optional<EarlyPicture::Off> off;
+    if (*measured) {
+      off = {**measured, false};
+    } else if (filled->filled_holes > 0) {
+      const auto estimate = offCoarser(means, filled->field, of_means, job);
+      if (!estimate) return tl::unexpected(estimate.error());
+      off = {estimate->value_or(0.0), true};
+    }
+    if (off) means_ = EarlyPicture{filled->field, step, 0.0, 0.0, off};
+    has_means_ = true;
+  }
+  // Without holes that are filled the field is as it was.
+  if (!means_ && !shown_) return {};
+  shown_ = true;
+  show(means_ ? *means_ : EarlyPicture{filler_.snapshot(), 1, 0.0, 1.0, std::nullopt});
+  return {};
 }
 
 }  // namespace fettle::engine

@@ -66,15 +66,19 @@ ChosenHoles chooseHoles(const Holes& holes, const FillOptions& options, const Gr
 HoleFiller::HoleFiller(const Version& field, const FillOptions& options)
     : field_(field), options_(options), walls_(wallsOf(field)), live_(field, Growth::kAllowed) {}
 
-// Writes the surface of one hole. False without memory.
-bool HoleFiller::write(std::span<const HoleRun> runs, const HoleSurface& surface, Filled& counts) {
-  const float* z = surface.heights.data();
-  std::int64_t written = 0;
+bool HoleFiller::put(std::span<const HoleRun> runs, std::span<const float> heights) {
+  const float* z = heights.data();
   for (const HoleRun& run : runs) {
-    written += std::count_if(z, z + run.samples(), [](float v) { return !std::isnan(v); });
     if (!live_.writeHeights(run.first, run.row, run.samples(), 1, z, run.samples())) return false;
     z += run.samples();
   }
+  return true;
+}
+
+// Writes the surface of one hole. False without memory.
+bool HoleFiller::write(std::span<const HoleRun> runs, const HoleSurface& surface, Filled& counts) {
+  if (!put(runs, surface.heights)) return false;
+  const auto written = std::ranges::count_if(surface.heights, [](float z) { return !std::isnan(z); });
   counts.filled += written;
   ++(written > 0 ? counts.filled_holes : counts.no_rim);
   if (written > 0 && surface.undetermined) ++counts.undetermined;

@@ -35,6 +35,8 @@ class HoleFiller {
   /// Fills these of `holes`, whole ones all; counted in `counts`. Errors: kCancelled, between two holes; kFailed without memory.
   [[nodiscard]] Status fill(const Holes& holes, std::span<const Hole* const> chosen, Filled& counts,
                             JobControl& job);
+  /// Puts heights into the samples of a hole, run by run, in place of what is there: an approximation. False without memory.
+  [[nodiscard]] bool put(std::span<const HoleRun> runs, std::span<const float> heights);
   /// The field with what was filled until now.
   [[nodiscard]] Version snapshot() const noexcept { return live_.snapshot(); }
 

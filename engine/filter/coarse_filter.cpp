@@ -6,35 +6,13 @@
 #include <new>
 #include <utility>
 
+#include "engine/field/between_means.h"
 #include "engine/field/means.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/limit_change.h"
 #include "engine/filter/merge.h"
 
 namespace fettle::engine {
-
-namespace {
-
-// Between two heights, of which a hole does not count.
-inline float between(float a, float b, float share) noexcept {
-  const float mean = a + share * (b - a);
-  return a != a ? b : b != b ? a : mean;
-}
-
-// Between which cells a sample lies, counted from the rectangle's first sample.
-struct CoarsePlace {
-  std::int32_t cell = 0, next = 0;
-  float share = 0.0F;
-};
-CoarsePlace coarsePlaceOf(std::int32_t sample, std::int32_t step, std::int32_t cells) noexcept {
-  const double x = (sample + 0.5) / step - 0.5;
-  const auto cell = static_cast<std::int32_t>(std::floor(x));
-  if (cell < 0) return {0, 0, 0.0F};
-  if (cell >= cells - 1) return {cells - 1, cells - 1, 0.0F};
-  return {cell, cell + 1, static_cast<float>(x - cell)};
-}
-
-}  // namespace
 
 std::optional<FilterSpec> coarseSpec(const FilterSpec& spec, std::int32_t step, std::int32_t counted,
                                      double spacing_mm) noexcept {
@@ -87,10 +65,10 @@ Result<CoarseFilter> CoarseFilter::make(const Version& input, const Version& ori
 }
 
 float CoarseFilter::heightAt(std::int32_t column, std::int32_t row) const noexcept {
-  const CoarsePlace x = coarsePlaceOf(column - rect_.column, step_, columns_);
-  const CoarsePlace y = coarsePlaceOf(row - rect_.row, step_, rows_);
-  const auto across = [&](const float* z) { return between(z[x.cell], z[x.next], x.share); };
-  return between(across(rowOfCells(y.cell)), across(rowOfCells(y.next)), y.share);
+  const BetweenMeans x = betweenMeans(column - rect_.column, step_, columns_);
+  const BetweenMeans y = betweenMeans(row - rect_.row, step_, rows_);
+  const auto across = [&](const float* z) { return heightBetween(z[x.cell], z[x.next], x.share); };
+  return heightBetween(across(rowOfCells(y.cell)), across(rowOfCells(y.next)), y.share);
 }
 
 TileRef CoarseFilter::tile(const Version& input, const Version& original, const FilterSpec& spec,
@@ -99,9 +77,9 @@ TileRef CoarseFilter::tile(const Version& input, const Version& original, const 
   const Tile& before = reader.tile(tc, tr);
   TileRef after = TileRef::adopt(input.memory()->bulk().acquire());
   if (!after) return after;
-  std::array<CoarsePlace, kTileSide> across;
+  std::array<BetweenMeans, kTileSide> across;
   for (std::int32_t c = 0; c < kTileSide; ++c)
-    across[static_cast<std::size_t>(c)] = coarsePlaceOf(tc * kTileSide + c - rect_.column, step_, columns_);
+    across[static_cast<std::size_t>(c)] = betweenMeans(tc * kTileSide + c - rect_.column, step_, columns_);
   using Row = std::array<float, kTileSide>;
   // Two rows of cells, spread out over the samples of the tile.
   std::array<Row, 2> spread{};
@@ -112,20 +90,20 @@ TileRef CoarseFilter::tile(const Version& input, const Version& original, const 
       spread_of[slot] = cell;
       const float* const z = rowOfCells(cell);
       for (std::size_t c = 0; c < kTileSide; ++c)
-        spread[slot][c] = between(z[across[c].cell], z[across[c].next], across[c].share);
+        spread[slot][c] = heightBetween(z[across[c].cell], z[across[c].next], across[c].share);
     }
     return spread[slot];
   };
   alignas(64) std::array<float, kTileSamples> results;
   const float sign = reader.sign();
   for (std::int32_t r = 0; r < kTileSide; ++r) {
-    const CoarsePlace y = coarsePlaceOf(tr * kTileSide + r - rect_.row, step_, rows_);
+    const BetweenMeans y = betweenMeans(tr * kTileSide + r - rect_.row, step_, rows_);
     const Row& low = rowOf(y.cell);
     const Row& high = rowOf(y.next);
     const float* const old = before.samples.data() + r * kTileSide;
     float* const out = results.data() + r * kTileSide;
     for (std::size_t c = 0; c < kTileSide; ++c) {
-      const float z = between(low[c], high[c], y.share);
+      const float z = heightBetween(low[c], high[c], y.share);
       // As stored, without the sign; a cell of holes alone says nothing of a sample in a row that was not read.
       out[c] = z != z ? old[c] : sign * z;
     }

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "engine/field/live_field.h"
-
 namespace fettle::engine {
 
-Result<Version> levelledLines(const Version& field, const LineOffsets& offsets, const TileRange& tiles,
-                              JobControl& job) {
+Status levelLines(const Version& field, const LineOffsets& offsets, const TileRange& tiles, LiveField& to,
+                  JobControl& job) {
   const FieldReader reader = field.reader();
   job.begin("levelling lines", static_cast<std::uint64_t>(tiles.rows));
-  LiveField live(field, Growth::kAllowed);
   float z[kTileSamples];
   double taken[kTileSamples];
   for (std::int32_t tr = tiles.row; tr < tiles.row + tiles.rows; ++tr) {
@@ -25,12 +22,20 @@ Result<Version> levelledLines(const Version& field, const LineOffsets& offsets, 
       for (int r = 0; r < rect.rows; ++r)
         for (int k = r * kTileSide; k < r * kTileSide + rect.columns; ++k)
           z[k] = static_cast<float>(z[k] - taken[k]);
-      if (!live.writeHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide))
+      if (!to.writeHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide))
         return failure("there is not enough memory for the levelled field", "level",
                        "keep the samples on a disk with --store FOLDER");
     }
     job.advance();
   }
+  return {};
+}
+
+Result<Version> levelledLines(const Version& field, const LineOffsets& offsets, const TileRange& tiles,
+                              JobControl& job) {
+  LiveField live(field, Growth::kAllowed);
+  if (auto levelled = levelLines(field, offsets, tiles, live, job); !levelled)
+    return tl::unexpected(levelled.error());
   return live.snapshot();
 }
 

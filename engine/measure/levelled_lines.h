@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/live_field.h"
 #include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 #include "engine/measure/line_offsets.h"
@@ -12,5 +13,9 @@ namespace fettle::engine {
 /// has it, into tiles of the field's own memory; all else stays shared. Errors: kFailed without memory; kCancelled. Thread: any.
 [[nodiscard]] Result<Version> levelledLines(const Version& field, const LineOffsets& offsets,
                                             const TileRange& tiles, JobControl& job);
+
+/// The same into `to`, a field that began as this one.
+[[nodiscard]] Status levelLines(const Version& field, const LineOffsets& offsets, const TileRange& tiles,
+                                LiveField& to, JobControl& job);
 
 }  // namespace fettle::engine

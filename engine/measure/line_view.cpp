@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <new>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "engine/field/means.h"
@@ -81,31 +82,65 @@ Result<Version> levelledMeans(const Version& field, const LineOffsets& offsets, 
 
 }  // namespace
 
-Status showLevelled(const Version& field, const LineOptions& options, const FieldView& view,
-                    const ShowEarly& show, JobControl& outer) try {
-  JobControl job = JobControl::partOf(outer);
-  const Grid& grid = field.grid();
-  const auto stretch = static_cast<std::int32_t>((grid.samples() + kSampled - 1) / kSampled);
-  if (view.tiles.empty() || stretch < 2) return {};
+LineView::LineView(Version field, const LineOptions& options)
+    : field_(std::move(field)), options_(options), live_(field_, Growth::kAllowed) {}
+
+Status LineView::findOffsets(std::int32_t stretch, JobControl& job) {
+  const Grid& grid = field_.grid();
   const std::vector<std::int32_t> places =
-      placesIn(options.axis == ScanAxis::kX ? grid.width : grid.height, stretch);
+      placesIn(options_.axis == ScanAxis::kX ? grid.width : grid.height, stretch);
   std::vector<std::int32_t> every_other;
   for (std::size_t i = 0; i < places.size(); i += 2) every_other.push_back(places[i]);
-  const auto offsets = findLineOffsets(field, options, places, job);
+  auto offsets = findLineOffsets(field_, options_, places, job);
   if (!offsets) return tl::unexpected(offsets.error());
-  const auto other = findLineOffsets(field, options, every_other, job);
+  const auto other = findLineOffsets(field_, options_, every_other, job);
   if (!other) return tl::unexpected(other.error());
   const double share = static_cast<double>(places.size()) / offsets->length;
-  const EarlyPicture::Off off{rmsBetween(*offsets, *other) * std::sqrt(1.0 - share), true};
-  const TileRange all = allTiles(grid);
-  const bool means = kMuch * view.tiles.tiles() > all.tiles() && grid.samples() > kLarge;
-  const auto step =
-      means ? static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(grid.samples()) / kCells)))
-            : 1;
-  auto levelled =
-      means ? levelledMeans(field, *offsets, step, job) : levelledLines(field, *offsets, view.tiles, job);
-  if (!levelled) return tl::unexpected(levelled.error());
-  show({*std::move(levelled), step, 0.0, off});
+  off_ = {rmsBetween(*offsets, *other) * std::sqrt(1.0 - share), true};
+  offsets_ = *std::move(offsets);
+  return {};
+}
+
+// Those that are not levelled yet.
+Status LineView::levelTiles(const TileRange& tiles, JobControl& job) {
+  const TileRange all = allTiles(field_.grid());
+  levelled_.resize(static_cast<std::size_t>(all.tiles()));
+  for (std::int32_t r = tiles.row; r < tiles.row + tiles.rows; ++r) {
+    std::uint8_t* const done =
+        levelled_.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(all.columns);
+    const std::int32_t end = tiles.column + tiles.columns;
+    for (std::int32_t c = tiles.column; c < end; ++c) {
+      if (done[c] != 0) continue;
+      const std::int32_t first = c;
+      while (c < end && done[c] == 0) ++c;
+      if (auto levelled = levelLines(field_, *offsets_, {first, r, c - first, 1}, live_, job); !levelled)
+        return levelled;
+      std::fill(done + first, done + c, std::uint8_t{1});
+    }
+  }
+  return {};
+}
+
+Status LineView::see(const FieldView& view, const ShowEarly& show, JobControl& outer) try {
+  JobControl job = JobControl::partOf(outer);
+  const Grid& grid = field_.grid();
+  const auto stretch = static_cast<std::int32_t>((grid.samples() + kSampled - 1) / kSampled);
+  if (view.tiles.empty() || stretch < 2) return {};
+  if (!offsets_)
+    if (auto found = findOffsets(stretch, job); !found) return found;
+  if (kMuch * view.tiles.tiles() > allTiles(grid).tiles() && grid.samples() > kLarge) {
+    if (!means_) {
+      const auto step =
+          static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(grid.samples()) / kCells)));
+      auto levelled = levelledMeans(field_, *offsets_, step, job);
+      if (!levelled) return tl::unexpected(levelled.error());
+      means_ = EarlyPicture{*std::move(levelled), step, 0.0, 0.0, off_};
+    }
+    show(*means_);
+    return {};
+  }
+  if (auto levelled = levelTiles(view.tiles, job); !levelled) return levelled;
+  show({live_.snapshot(), 1, 0.0, 0.0, off_});
   return {};
 } catch (const std::bad_alloc&) {
   return failure("there is not enough memory for levelled lines", "level", "close other programs");

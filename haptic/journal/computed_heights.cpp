@@ -3,9 +3,7 @@
 #include <utility>
 
 #include "engine/field/sample_rect.h"
-#include "engine/fill/fill_view.h"
 #include "engine/measure/levelled_lines.h"
-#include "engine/measure/line_view.h"
 
 namespace fettle::haptic {
 
@@ -43,34 +41,11 @@ engine::Result<ComputedHeights> made(const engine::Version& before, const engine
   return result;
 }
 
-struct Showing {
-  engine::Status operator()(const engine::FillOptions& options) const {
-    return engine::showFilled(before, options, view, show, job);
-  }
-  engine::Status operator()(const engine::LineOptions& options) const {
-    return engine::showLevelled(before, options, view, show, job);
-  }
-  engine::Status operator()(const engine::RemoveOptions&) const { return {}; }
-  const engine::Version& before;
-  const engine::FieldView& view;
-  const engine::ShowEarly& show;
-  engine::JobControl& job;
-};
-
 }  // namespace
 
 engine::Result<ComputedHeights> computeHeights(const engine::Version& before, const HeightsMaker& maker,
                                                engine::JobControl& job) {
   return std::visit([&](const auto& options) { return made(before, options, job); }, maker);
-}
-
-engine::Result<ComputedHeights> computeHeights(const engine::Version& before, const HeightsMaker& maker,
-                                               const engine::FieldView& view, const engine::ShowEarly& show,
-                                               engine::JobControl& job) {
-  // Errors of the picture are those of the whole, which reports them.
-  (void)std::visit(Showing{before, view, show, job}, maker);
-  if (job.cancelled()) return engine::cancelled();
-  return computeHeights(before, maker, job);
 }
 
 }  // namespace fettle::haptic

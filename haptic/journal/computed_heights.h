@@ -4,8 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
-#include "engine/field/early_picture.h"
-#include "engine/field/field_view.h"
 #include "engine/field/version.h"
 #include "engine/fill/fill.h"
 #include "engine/measure/line_offsets.h"
@@ -29,13 +27,6 @@ struct ComputedHeights {
 /// engine::findLineOffsets and engine::removeSamples. Thread: any; a long job on all workers.
 [[nodiscard]] engine::Result<ComputedHeights> computeHeights(const engine::Version& before,
                                                              const HeightsMaker& maker,
-                                                             engine::JobControl& job);
-
-/// The same, and before it what `view` shows, soon: engine::showFilled, engine::showLevelled. Removed samples come at once.
-[[nodiscard]] engine::Result<ComputedHeights> computeHeights(const engine::Version& before,
-                                                             const HeightsMaker& maker,
-                                                             const engine::FieldView& view,
-                                                             const engine::ShowEarly& show,
                                                              engine::JobControl& job);
 
 }  // namespace fettle::haptic

@@ -1,5 +1,6 @@
 // Filled holes and levelled lines beside the field: adopted as they are, gone with the state that they are of.
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -8,8 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include "app/work/form_change.h"
 #include "app/work/height_tool.h"
 #include "engine/field/live_field.h"
+#include "engine/measure/form_fit.h"
 #include "tests/app/work/part.h"
 
 namespace fettle::tests {
@@ -170,6 +173,111 @@ TEST_F(HeightPreview, EndsWithTheStateThatItIsOf) {
   EXPECT_NE(engine::contentHash(client_->field()), hash_);
 }
 
+TEST_F(HeightPreview, EndsWithAChangeOfFormShownOrOnItsWay) {
+  const auto change = [&](app::FormStep step) {
+    engine::JobControl job;
+    const auto fit = engine::fitNominalForm(scan_, {}, job);
+    ASSERT_TRUE(fit);
+    const auto form = step == app::FormStep::kTakeOut ? std::make_shared<const engine::NominalForm>(fit->form)
+                                                      : engine::FieldForm();
+    auto made = app::makeFormChange(step, form, client_->newest(), client_->scan(), job);
+    ASSERT_TRUE(made) << made.error().line();
+    ASSERT_TRUE(client_->changeForm(*made));
+  };
+  for (const haptic::HeightsMaker& maker :
+       {haptic::HeightsMaker(heights_.fill), haptic::HeightsMaker(heights_.lines)}) {
+    previewAll(maker);
+    untilRest();
+    ASSERT_TRUE(heights_.previews(maker));
+    change(app::FormStep::kTakeOut);
+    poll();
+    EXPECT_EQ(heights_.previewed(), nullptr);
+    EXPECT_FALSE(heights_.picture());
+    EXPECT_TRUE(heights_.found().empty());
+    until([&] { return client_->field().formOver() != nullptr; });
+    // On its way: what would come is of heights that are others now.
+    previewAll(maker);
+    poll();
+    ASSERT_TRUE(heights_.busy());
+    change(app::FormStep::kPutBack);
+    untilRest();
+    EXPECT_EQ(heights_.previewed(), nullptr);
+    EXPECT_FALSE(heights_.picture());
+    EXPECT_TRUE(heights_.found().empty());
+    until([&] { return client_->field().formOver() == nullptr; });
+    EXPECT_EQ(engine::contentHash(client_->field()), hash_);
+  }
+  EXPECT_EQ(steps(), 4) << "forms alone";
+}
+
+TEST_F(HeightPreview, EndsWithTheDocumentShownOrOnItsWay) {
+  previewAll(heights_.fill);
+  untilRest();
+  ASSERT_NE(heights_.previewed(), nullptr);
+  heights_.clear();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  EXPECT_FALSE(heights_.picture());
+  EXPECT_TRUE(heights_.found().empty());
+  // On its way, with another view.
+  previewAll(heights_.fill);
+  poll();
+  ASSERT_TRUE(heights_.busy());
+  heights_.look({{0, 0, 1, 1}, 20, 20});
+  poll();
+  heights_.clear();
+  EXPECT_TRUE(heights_.soFar().empty());
+  EXPECT_FALSE(heights_.picture());
+  // The next document, with its own field: nothing of the one before comes.
+  const engine::Version other = scan_.inverted();
+  auto next =
+      app::LoopClient::start(engine::History(other, kHistoryOfPreviews), other, brushScene(), {}, nullptr);
+  ASSERT_TRUE(next) << next.error().line();
+  client_ = *std::move(next);
+  untilRest();
+  EXPECT_EQ(heights_.previewed(), nullptr);
+  EXPECT_FALSE(heights_.picture());
+  EXPECT_TRUE(heights_.found().empty());
+  EXPECT_EQ(steps(), 0);
+  EXPECT_EQ(client_->field().reader().sign(), other.reader().sign());
+}
+
+// Large holes take seconds; the camera goes from a small one to one of these.
+TEST_F(HeightPreview, FollowsTheCameraWhileTheRestIsWorkedOut) {
+  constexpr int kSide = 300, kApart = 600;
+  const engine::Version large = fieldOf(
+      2 * kApart, 2 * kApart,
+      [](int c, int r) {
+        const int x = c % kApart - 200, y = r % kApart - 200;
+        const bool hole = (x >= 0 && x < kSide && y >= 0 && y < kSide) || (c == 50 && r == 50);
+        return hole ? std::nan("") : std::sin(0.01 * c) + std::cos(0.013 * r);
+      },
+      0.1, 0.1);
+  auto client =
+      app::LoopClient::start(engine::History(large, kHistoryOfPreviews), large, brushScene(), {}, nullptr);
+  ASSERT_TRUE(client) << client.error().line();
+  client_ = *std::move(client);
+  heights_.preview(heights_.fill, {{0, 0, 2, 2}, 60, 60});
+  until([&] { return !heights_.soFar().empty() || !heights_.busy(); });
+  EXPECT_EQ(heights_.soFar(), "exact in view");
+  EXPECT_TRUE(std::isfinite(heights_.picture()->field.reader().heightAt(50, 50)));
+  EXPECT_TRUE(std::isnan(heights_.picture()->field.reader().heightAt(300, 300)));
+  until([&] { return heights_.wantsView(); });
+  heights_.look({{3, 3, 5, 5}, 350, 350});
+  EXPECT_FALSE(heights_.wantsView()) << "not each frame";
+  EXPECT_EQ(heights_.soFar(), "to come in view");
+  until([&] { return heights_.soFar() != "to come in view" || !heights_.busy(); });
+  ASSERT_TRUE(heights_.busy());
+  EXPECT_EQ(heights_.soFar().rfind("approximate, off by about ", 0), 0U) << heights_.soFar();
+  EXPECT_EQ(heights_.picture()->title, "Fill holes: least curvature: " + heights_.soFar());
+  const engine::FieldReader shown = heights_.picture()->field.reader();
+  EXPECT_NEAR(static_cast<double>(shown.heightAt(300, 300)), std::sin(3.0) + std::cos(3.9), 0.2);
+  EXPECT_TRUE(std::isfinite(shown.heightAt(50, 50))) << "as it was";
+  EXPECT_TRUE(std::isnan(shown.heightAt(900, 900))) << "not in view";
+  heights_.cancel();
+  untilRest();
+  EXPECT_FALSE(heights_.picture());
+}
+
 TEST_F(HeightPreview, IsDroppedAndCancelled) {
   previewAll(heights_.fill);
   untilRest();
@@ -188,14 +296,19 @@ TEST_F(HeightPreview, IsDroppedAndCancelled) {
 }
 
 TEST(EarlyState, SaysHowFarAPictureIs) {
-  engine::EarlyPicture picture{roughPart(), 1, 0.4251, std::nullopt};
+  engine::EarlyPicture picture{roughPart(), 1, 0.4251, 0.0, std::nullopt};
   EXPECT_EQ(app::earlyState(picture), "42 % so far");
   picture.exact = 1.0;
   EXPECT_EQ(app::earlyState(picture), "exact in view");
+  picture.exact = 0.0;
   picture.off = {0.0123, false};
   EXPECT_EQ(app::earlyState(picture), "approximate, off by 12.3 \u00b5m rms");
   picture.off->estimated = true;
+  picture.exact = 0.0;
   EXPECT_EQ(app::earlyState(picture), "approximate, off by about 12.3 \u00b5m rms");
+  picture.exact = 0.204;
+  picture.untouched = 0.004;
+  EXPECT_EQ(app::earlyState(picture), "approximate, off by about 12.3 \u00b5m rms, 20 % exact, 1 % to come");
 }
 
 }  // namespace

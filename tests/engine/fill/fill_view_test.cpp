@@ -43,13 +43,18 @@ Grid gridOf(int width, int height) {
   return grid;
 }
 
-std::vector<EarlyPicture> shown(const Version& field, const FillOptions& options, const FieldView& view) {
+std::vector<EarlyPicture> shown(FillView& holes, const FieldView& view) {
   std::vector<EarlyPicture> pictures;
   JobControl job;
-  const auto done = showFilled(
-      field, options, view, [&](EarlyPicture p) { pictures.push_back(std::move(p)); }, job);
+  const auto done = holes.see(
+      view, [&](EarlyPicture p) { pictures.push_back(std::move(p)); }, job);
   EXPECT_TRUE(done) << done.error().line();
   return pictures;
+}
+
+std::vector<EarlyPicture> shown(const Version& field, const FillOptions& options, const FieldView& view) {
+  FillView holes(field, options);
+  return shown(holes, view);
 }
 
 Version whole(const Version& field, const FillOptions& options) {
@@ -237,8 +242,9 @@ TEST(FillView, ACancelIsHeard) {
   const Version one = viewedScan(gridOf(200, 100), [](int c, int r) { return c == 50 && r == 50; });
   JobControl job;
   job.cancel();
-  const auto done = showFilled(
-      one, {}, viewOf({0, 0, 1, 1}), [](const EarlyPicture&) { FAIL(); }, job);
+  FillView holes(one, {});
+  const auto done = holes.see(
+      viewOf({0, 0, 1, 1}), [](const EarlyPicture&) { FAIL(); }, job);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
 }
@@ -306,6 +312,125 @@ TEST(FillView, ALargeHoleOfALargeFieldSaysAboutHowFarItIsOff) {
   // A hole too large for the options stays one.
   options.most_extent_mm = 100.0;
   EXPECT_TRUE(shown(scan, options, viewOf(allTiles(scan.grid()))).empty());
+}
+
+// Of 21,000 samples, beside small ones, in a view of a part.
+TEST(FillView, ALargeHoleInAPartIsApproximatedFirstAndSaysAboutHowFarItIsOff) {
+  const Predicate large = [](int c, int r) { return std::hypot(c - 800, r - 700) <= 82.0; };
+  const Predicate small = [](int c, int r) {
+    return std::hypot(c - 800, r - 700) > 90.0 && c % 40 < 3 && r % 40 < 3 && c > 40 && r > 40;
+  };
+  const Version scan =
+      viewedScan(gridOf(2000, 1800), [&](int c, int r) { return large(c, r) || small(c, r); });
+  const TileRange tiles{8, 7, 9, 8};  // all of it, of a field of 32 x 29
+  for (const FillMethod method : {FillMethod::kMembrane, FillMethod::kCurvature}) {
+    FillOptions options;
+    options.method = method;
+    const Version all = whole(scan, options);
+    const auto pictures = shown(scan, options, viewOf(tiles));
+    ASSERT_GE(pictures.size(), 2U);
+    EXPECT_EQ(pictures.front().exact, 0.0) << "large ones come first";
+    for (const EarlyPicture& picture : pictures) {
+      EXPECT_EQ(picture.step, 1);
+      ASSERT_TRUE(picture.off);
+      EXPECT_TRUE(picture.off->estimated);
+      double squares = 0.0;
+      int compared = 0;
+      for (int r = 610; r < 790; ++r)
+        for (int c = 710; c < 890; ++c) {
+          if (!large(c, r)) continue;
+          const auto z = static_cast<double>(picture.field.reader().heightAt(c, r));
+          ASSERT_TRUE(std::isfinite(z)) << c << ", " << r;
+          squares += std::pow(z - static_cast<double>(all.reader().heightAt(c, r)), 2);
+          ++compared;
+        }
+      const double off = std::sqrt(squares / compared);
+      EXPECT_GT(picture.off->rms, 0.3 * off);
+      EXPECT_LT(picture.off->rms, 6.0 * off);
+      EXPECT_LT(off, 0.05) << "of waves of 2";
+    }
+    const EarlyPicture& last = pictures.back();
+    EXPECT_GT(last.exact, 0.0);
+    EXPECT_LT(last.exact, 0.1);
+    EXPECT_EQ(last.untouched, 0.0);
+    for (int r = tiles.row * kTileSide; r < (tiles.row + tiles.rows) * kTileSide; ++r)
+      for (int c = tiles.column * kTileSide; c < (tiles.column + tiles.columns) * kTileSide; ++c)
+        if (!large(c, r)) {
+          ASSERT_TRUE(sameBits(last.field.reader().heightAt(c, r), all.reader().heightAt(c, r)))
+              << c << ", " << r;
+        }
+  }
+}
+
+TEST(FillView, AHoleOfAnySizeIsApproximatedFromFewMeans) {
+  // 360,000 samples; a scratch through most of the field.
+  const Predicate holes[] = {[](int c, int r) { return c > 700 && c <= 1300 && r > 700 && r <= 1300; },
+                             [](int c, int r) { return std::abs(c - r) < 4 && c > 100 && c < 1900; }};
+  for (const Predicate& hole : holes) {
+    const Version scan = viewedScan(gridOf(2000, 2000), hole);
+    const auto pictures = shown(scan, {}, {allTiles(scan.grid()), 1000, 1000});
+    ASSERT_FALSE(pictures.empty());
+    EXPECT_EQ(pictures.back().exact, 0.0);
+    ASSERT_TRUE(pictures.back().off);
+    EXPECT_TRUE(std::isfinite(pictures.back().field.reader().heightAt(1000, 1000)));
+  }
+}
+
+TEST(FillView, WhatComesIntoViewIsFilledNextAndWhatWasSeenStays) {
+  const Predicate large = [](int c, int r) { return std::hypot(c - 1500, r - 700) <= 70.0; };
+  const Version scan = viewedScan(
+      gridOf(2200, 1500), [&](int c, int r) { return large(c, r) || (c % 40 == 20 && r % 40 == 20); });
+  const FillOptions options;
+  const Version all = whole(scan, options);
+  FillView holes(scan, options);
+  const FieldView left = viewOf({1, 8, 6, 6}), right = viewOf({20, 8, 8, 7}), far = viewOf({1, 18, 4, 4});
+  const auto first = shown(holes, left);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first.back().exact, 1.0);
+  EXPECT_FALSE(first.back().off);
+  EXPECT_TRUE(std::isnan(first.back().field.reader().heightAt(1500, 700)));
+  const auto moved = shown(holes, right);
+  ASSERT_EQ(moved.size(), 2U);
+  EXPECT_TRUE(moved.front().off) << "the large one";
+  EXPECT_EQ(moved.front().exact, 0.0);
+  EXPECT_TRUE(std::isfinite(moved.back().field.reader().heightAt(1500, 700)));
+  EXPECT_TRUE(sameBits(moved.back().field.reader().heightAt(1380, 740), all.reader().heightAt(1380, 740)));
+  // Back again: at once, as it was, and no word of what is not in view.
+  const auto back = shown(holes, left);
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back.back().exact, 1.0);
+  EXPECT_FALSE(back.back().off);
+  EXPECT_EQ(contentHash(back.back().field), contentHash(moved.back().field));
+  const auto again = shown(holes, right);
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again.back().off->rms, moved.back().off->rms);
+  EXPECT_EQ(again.back().exact, moved.back().exact);
+  // Where nothing is filled, that is what is said.
+  const Version one = viewedScan(gridOf(2200, 1500), [](int c, int r) { return c == 50 && r == 50; });
+  FillView lone(one, options);
+  ASSERT_EQ(shown(lone, viewOf({0, 0, 2, 2})).size(), 1U);
+  const auto nothing = shown(lone, far);
+  ASSERT_EQ(nothing.size(), 1U);
+  EXPECT_EQ(nothing.back().exact, 1.0);
+  EXPECT_EQ(nothing.back().untouched, 0.0);
+}
+
+TEST(FillView, ZoomedInAndOutOfALargeFieldShowsSamplesAndTheSameMeansAgain) {
+  const Version scan = viewedScan(gridOf(3100, 2900), [](int c, int r) {
+    return (c % 100 - 50) * (c % 100 - 50) + (r % 100 - 50) * (r % 100 - 50) <= 200;
+  });
+  FillView holes(scan, {});
+  const auto out = shown(holes, viewOf(allTiles(scan.grid())));
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_GT(out.back().step, 1);
+  const auto in = shown(holes, viewOf({10, 10, 15, 15}));
+  ASSERT_FALSE(in.empty());
+  EXPECT_EQ(in.back().step, 1);
+  EXPECT_EQ(in.back().exact, 1.0);
+  const auto again = shown(holes, viewOf(allTiles(scan.grid())));
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_TRUE(again.back().field == out.back().field) << "made once";
+  EXPECT_EQ(again.back().off->rms, out.back().off->rms);
 }
 
 }  // namespace

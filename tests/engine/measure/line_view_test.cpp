@@ -111,14 +111,19 @@ Version levelledWhole(const Version& field, const LineOptions& options) {
   return *std::move(levelled);
 }
 
-std::vector<EarlyPicture> levelledViews(const Version& field, const LineOptions& options,
-                                        const FieldView& view) {
+std::vector<EarlyPicture> levelledViews(LineView& lines, const FieldView& view) {
   std::vector<EarlyPicture> pictures;
   JobControl job;
-  const auto done = showLevelled(
-      field, options, view, [&](EarlyPicture p) { pictures.push_back(std::move(p)); }, job);
+  const auto done = lines.see(
+      view, [&](EarlyPicture p) { pictures.push_back(std::move(p)); }, job);
   EXPECT_TRUE(done) << done.error().line();
   return pictures;
+}
+
+std::vector<EarlyPicture> levelledViews(const Version& field, const LineOptions& options,
+                                        const FieldView& view) {
+  LineView lines(field, options);
+  return levelledViews(lines, view);
 }
 
 double rmsIn(const SampleRect& rect, const Version& a, const Version& b) {
@@ -180,6 +185,32 @@ TEST(LineView, LevelsTheTilesInViewAndSaysHowFarTheyAreOff) {
   }
 }
 
+TEST(LineView, WhatComesIntoViewIsLevelledAlikeAndWhatWasSeenStays) {
+  const Version field = stripes(4200, 4100, ScanAxis::kX);
+  LineOptions options;
+  options.method = LineMethod::kPolynomial;
+  options.degree = 1;
+  LineView lines(field, options);
+  const auto one = levelledViews(lines, {{3, 0, 20, 20}, 800, 640});
+  ASSERT_EQ(one.size(), 1U);
+  // Some of it was seen.
+  const auto other = levelledViews(lines, {{13, 15, 20, 20}, 1500, 1600});
+  ASSERT_EQ(other.size(), 1U);
+  EXPECT_EQ(other.back().off->rms, one.back().off->rms);
+  const auto alone = levelledViews(field, options, {{13, 15, 20, 20}, 1500, 1600});
+  const SampleRect seen{13 * kTileSide, 15 * kTileSide, 20 * kTileSide, 20 * kTileSide};
+  EXPECT_EQ(rmsIn(seen, other.back().field, alone.back().field), 0.0);
+  EXPECT_GT(rmsIn(seen, other.back().field, field), 0.5);
+  EXPECT_EQ(rmsIn({3 * kTileSide, 0, 20 * kTileSide, 15 * kTileSide}, other.back().field, one.back().field),
+            0.0);
+  // All of it, and a part again.
+  const auto all = levelledViews(lines, {allTiles(field.grid()), 2100, 2050});
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all.back().step, 5);
+  EXPECT_EQ(contentHash(levelledViews(lines, {{3, 0, 20, 20}, 800, 640}).back().field),
+            contentHash(other.back().field));
+}
+
 TEST(LineView, ShowsNothingWhereTheWholeTakesNoLonger) {
   const Version field = stripes(200, 100, ScanAxis::kX);
   EXPECT_TRUE(levelledViews(field, {}, {allTiles(field.grid()), 100, 50}).empty());
@@ -190,13 +221,15 @@ TEST(LineView, ShowsNothingWhereTheWholeTakesNoLonger) {
   EXPECT_EQ(levelledViews(rows, {}, {{0, 0, 2, 1}, 64, 0}).size(), 1U);
   const Version holes = fieldOf(2100, 2100, [](int, int) { return std::nan(""); });
   JobControl job;
-  const auto refused = showLevelled(
-      holes, {}, {{0, 0, 2, 2}, 64, 64}, [](const EarlyPicture&) { FAIL(); }, job);
+  const FieldView part{{0, 0, 2, 2}, 64, 64};
+  const auto refused = LineView(holes, {}).see(
+      part, [](const EarlyPicture&) { FAIL(); }, job);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
   job.cancel();
-  EXPECT_EQ(showLevelled(
-                large, {}, {{0, 0, 2, 2}, 64, 64}, [](const EarlyPicture&) { FAIL(); }, job)
+  EXPECT_EQ(LineView(large, {})
+                .see(
+                    part, [](const EarlyPicture&) { FAIL(); }, job)
                 .error()
                 .kind,
             ErrorKind::kCancelled);
