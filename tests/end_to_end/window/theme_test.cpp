@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/end_to_end/window/window_fixture.h"
+#include "tests/haptic/devices/fake_vendor/shared_page.h"
 
 namespace fettle::tests {
 namespace {
@@ -175,6 +176,119 @@ TEST_F(ThemeTest, every_page_is_readable_on_light_and_dark_panels) {
     (void)user.look("tools around the cursor");
     display.hands({"keyup", "space"});
     (void)user.rest();
+    program->signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    expectSilence(*program);
+  }
+}
+
+// Rests on what reads `text`, and waits for a tip that has `part`; then every text of it is read.
+void expectTipReadable(User& user, const std::string& text, const std::string& part) {
+  ViewProgram& program = user.program();
+  const State now = program.now();
+  const auto found = std::ranges::find_if(
+      now["texts"], [&](const State& t) { return t["text"] == text && t["at"][0] >= now["picture"][2]; });
+  ASSERT_NE(found, now["texts"].end()) << text << ": " << now["texts"].dump();
+  const State& at = (*found)["at"];
+  user.at({at[0].get<int>() + at[2].get<int>() / 2, at[1].get<int>() + at[3].get<int>() / 2});
+  const auto says = [&](const State& t) {
+    return t["text"].get<std::string>().find(part) != std::string::npos;
+  };
+  program.until("a tip of " + text, [&](const State& s) { return std::ranges::any_of(s["texts"], says); });
+  const Screen seen = user.look("tip of " + text);
+  const State shown = program.now();
+  // Its lines from there on: tips are written last.
+  bool of_tip = false;
+  for (const State& t : shown["texts"]) {
+    of_tip |= says(t);
+    if (!of_tip) continue;
+    EXPECT_GE(contrastOf(seen, t["at"]), 4.5) << t.dump();
+    // The tip is as wide as it needs, also after another one.
+    const int x = t["at"][0], y = t["at"][1], wide = t["at"][2], high = t["at"][3];
+    const std::uint8_t *const above = seen.at(x - 2, y + high / 2), *const behind =
+                                                                        seen.at(x + wide + 2, y + high / 2);
+    EXPECT_TRUE(std::equal(above, above + 3, behind)) << t.dump();
+  }
+  EXPECT_TRUE(of_tip);
+}
+
+TEST_F(ThemeTest, tips_are_readable_on_light_and_dark_panels) {
+  for (const std::string theme : {"light", "dark"}) {
+    std::filesystem::remove(folder.path() / "fettle" / "window.json");
+    const auto program = start({scan, "--theme", theme});
+    User user(display, *program, theme + "_tips");
+    (void)opened(*program);
+    for (int i = 0; i < 3; ++i) (void)user.key("n");
+    expectTipReadable(user, "Smooth", "Takes noise off");
+    expectTipReadable(user, "range sigma", "Heights that differ");
+    expectTipReadable(user, "Add preview", "Keeps what is shown");
+    expectTipReadable(user, "keep marks", "\"keep marks\":");
+    program->signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    expectSilence(*program);
+  }
+}
+
+// With a replacement of a maker's library: what a page of a real device says while it is measured and afterwards.
+TEST_F(ThemeTest, the_page_of_a_real_device_is_readable_on_light_and_dark_panels) {
+  for (const std::string theme : {"light", "dark"}) {
+    std::filesystem::remove(folder.path() / "fettle" / "window.json");
+    const std::string file = folder.file("page_" + theme);
+    fake::SharedPage* const page = fake::SharedPage::map(file.c_str());
+    ASSERT_NE(page, nullptr);
+    const auto program = start({scan, "--device", "forcedimension", "--theme", theme},
+                               {{"FETTLE_LIBDHD", FETTLE_FAKE_DHD}, {"FAKE_VENDOR_PAGE", file}});
+    User user(display, *program, theme + "_device");
+    program->until("the device",
+                   [](const State& s) { return s.contains("device") && s["connected"] == true; });
+    (void)opened(*program);
+    const auto handTo = [&](double right_mm, double away_mm, double up_mm) {
+      page->right_mm = right_mm;
+      page->away_mm = away_mm;
+      page->up_mm = up_mm;
+      program->until("the hand", [&](const State& s) {
+        return std::abs(s["device_mm"][0].get<double>() - right_mm) < 1e-3 &&
+               std::abs(s["device_mm"][1].get<double>() - away_mm) < 1e-3 &&
+               std::abs(s["device_mm"][2].get<double>() - up_mm) < 1e-3;
+      });
+    };
+    const char* const title = "Set up the device";
+    (void)user.press("ctrl+shift+d");
+    (void)user.rest();
+    expectReadable(user, "device, nothing measured", title);
+    (void)user.press("r");
+    program->until("a reach", [](const State& s) { return s["device_check"].contains("reach_mm"); });
+    for (const double side : {-1.0, 1.0}) {
+      handTo(50.0 * side, 50.0 * side, 40.0 * side);
+      program->until("the reach", [&](const State& s) {
+        return s["device_check"]["reach_mm"][side < 0.0 ? 0 : 1] ==
+               State({50.0 * side, 50.0 * side, 40.0 * side});
+      });
+    }
+    expectReadable(user, "device, reach", title);
+    (void)user.press("r");
+    program->until("its end", [](const State& s) { return s["device_check"]["running"] == false; });
+    // As expected, and the wrong way.
+    for (const bool right : {true, false}) {
+      handTo(0.0, 0.0, 30.0);
+      (void)user.press(right ? "1" : "3");
+      program->until("asked", [](const State& s) { return s["device_check"]["running"] == true; });
+      handTo(right ? 30.0 : 0.0, 0.0, right ? 30.0 : 5.0);
+      program->until("a direction",
+                     [&](const State& s) { return s["device_check"].contains(right ? "right" : "up"); });
+    }
+    (void)user.press("t");
+    program->until("the rest", [](const State& s) {
+      return s["device_check"].contains("rest") && s["device_check"]["running"] == false;
+    });
+    handTo(0.0, 0.0, 10.0);  // a frame later
+    expectReadable(user, "device, all measured", title);
+    (void)user.press("Escape");
+    program->until("no page", [](const State& s) { return s["dialog"] == "none"; });
+    for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan", "Haptics"})
+      (void)user.click(header);
+    user.at({20, 990});
+    expectReadable(user, "panel of a device");
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0) << program->err();
     expectSilence(*program);
