@@ -25,8 +25,7 @@ namespace {
 
 struct LevelArguments {
   BatchOptions files;
-  std::string rows;  // empty: lines stay
-  std::string scan_axis = "x";
+  LineArguments lines;
   FormArguments form;
   std::string layer;  // empty: the form becomes heights
   bool estimate = false;
@@ -53,7 +52,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   if (!imported) return tl::unexpected(imported.error());
   auto counted = countedOf(imported->field, imported->original, task.in, options.form, job);
   if (!counted) return tl::unexpected(counted.error());
-  const LineArguments lines{options.rows, options.scan_axis};
+  const LineArguments& lines = options.lines;
   engine::Result<Foreseen> foreseen;
   if (memoryPlace(task.out) == nullptr)
     foreseen = foreseeLevel(options, task, imported->field, *counted, lines, job);
@@ -96,14 +95,18 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
 }
 
 engine::Result<Report> level(const LevelArguments& options, engine::JobControl& job) {
-  if (!options.layer.empty() && !options.rows.empty())
+  const LineArguments& lines = options.lines;
+  if (!options.layer.empty() && !lines.rows.empty())
     return engine::inputError("offsets of lines are no form that could lie over a scan", "--rows",
                               "level the lines first, by a run without --layer");
-  if (options.layer.empty() && options.form.form == "none" && options.rows.empty())
+  if (options.layer.empty() && options.form.form == "none" && lines.rows.empty())
     return engine::inputError("there is no form to take out", "--form",
                               "name another than none, or give --rows");
-  if (options.scan_axis != "x" && options.rows.empty())
+  if (lines.scan_axis != "x" && lines.rows.empty())
     return engine::inputError("there are no lines to level along y", "--scan-axis", "add --rows");
+  if (lines.keep_form != LineArguments::kNoForm && lines.rows.empty())
+    return engine::inputError("without lines that are levelled all form across them stays", "--keep-form",
+                              "add --rows");
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   const auto tasks = batchTasks(options.files, {options.form.marks}, job);
   if (!tasks) return tl::unexpected(tasks.error());
@@ -133,15 +136,23 @@ void addLevel(Command root, Chosen& chosen) {
   addBatchOptions(command, options->files);
   command.add({
       {.name = "--rows",
-       .to = &options->rows,
+       .to = &options->lines.rows,
        .text = "First level the lines of a line scanner, each by this, of the samples of --region; --robust "
                "for mean and poly. "
-               "Where features fill more than half of a line take matching, or leave them out by marks",
+               "Where features fill more than half of a line take matching, or leave them out by marks. Slow "
+               "form from line to line goes with the lines: see --keep-form",
        .words = lineWords()},
       {.name = "--scan-axis",
-       .to = &options->scan_axis,
+       .to = &options->lines.scan_axis,
        .text = "Along which its lines are",
        .words = {{"x", "rows"}, {"y", "columns"}}},
+      {.name = "--keep-form",
+       .to = &options->lines.keep_form,
+       .text =
+           "With --rows: form across the lines stays, as far as it is a polynomial of this degree, and "
+           "slow drift of the scanner with it; what goes is the rest. 5 keeps a wave as long as the field",
+       .range = Range{0.0, engine::LineOptions::kMostFormDegree},
+       .otherwise = "all of it goes but the mean height"},
   });
   addFormOptions(command, options->form);
   command.add(
@@ -165,6 +176,8 @@ void addLevel(Command root, Chosen& chosen) {
         "A slightly bent plate becomes level, whatever stands on it"},
        {"fettle level scan.tif level.tif --rows median --region unmarked --marks marks.png",
         "Every line of an AFM scan at the same height, then the plane, by what is not marked"},
+       {"fettle level scan.tif level.tif --rows matching --keep-form 5 --form none",
+        "Stripes go, tilt and slow form stay as they are"},
        {"fettle level scan.tif work.fettle --layer put --form poly2",
         "A session whose samples are the scan's, seen and worked on without their form"},
        {"fettle level work.fettle scan_again.fettle --layer remove", "The same with its form, bit by bit"}});

@@ -45,6 +45,7 @@ engine::LineOptions lineOptionsOf(const LineArguments& lines, const FormArgument
       options.method = row.method;
       options.degree = row.degree;
     }
+  if (lines.keep_form != LineArguments::kNoForm) options.form_degree = lines.keep_form;
   options.axis = lines.scan_axis == "y" ? engine::ScanAxis::kY : engine::ScanAxis::kX;
   const engine::FormChoice counting = formChoiceOf(form);
   options.region = counting.region;
@@ -144,6 +145,8 @@ void addLevelling(Report& report, const LineArguments& lines, const FormArgument
                    {"scan_axis", lines.scan_axis},
                    {"rows_rms", levelling.lines->rms},
                    {"rows_empty", levelling.lines->empty}});
+  if (levelling.lines && lines.keep_form != LineArguments::kNoForm)
+    report.update({{"keep_form", lines.keep_form}, {"rows_form_rms", levelling.lines->form_rms}});
   addForm(report, form, levelling.fit, grid);
 }
 

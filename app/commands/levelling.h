@@ -23,6 +23,10 @@ namespace fettle::app {
 struct LineArguments {
   std::string rows;             ///< a word of lineWords(); empty: lines stay
   std::string scan_axis = "x";  ///< along which its lines are: x, rows, or y, columns
+  /// LineOptions::form_degree; kNoForm: none stays.
+  int keep_form = kNoForm;
+
+  static constexpr int kNoForm = -1;
 };
 
 /// "median", "mean", "poly1" to "poly3", "difference", "matching".
@@ -56,7 +60,7 @@ enum class Lowered : std::uint8_t { kOnce = 1, kTwice = 2 };
                                            const LineArguments& lines, const FormArguments& form,
                                            Lowered lowered);
 
-/// As keys of a report: of lines rows, scan_axis, rows_rms, rows_empty; then those of addForm.
+/// As keys of a report: of lines rows, scan_axis, rows_rms, rows_empty, and where form across them stays keep_form, rows_form_rms; then those of addForm.
 void addLevelling(Report& report, const LineArguments& lines, const FormArguments& form,
                   const Levelling& levelling, const engine::Grid& grid);
 

@@ -62,7 +62,7 @@ class StepReader {
       return edges(what == kLinesWord ? EdgesBecome::kLines : EdgesBecome::kMarks);
     }
     if (what == kLevelWord) {
-      onlyKeys(what, {"do", "rows", "scan_axis", "form", "robust", "region"});
+      onlyKeys(what, {"do", "rows", "scan_axis", "keep_form", "form", "robust", "region"});
       return level();
     }
     if (what == kFillWord) {
@@ -247,6 +247,9 @@ class StepReader {
     step.lines.scan_axis = word("scan_axis", {"x", "y"}, step.lines.scan_axis);
     if (step.lines.rows.empty() && table_.contains("scan_axis"))
       complain(*table_.get("scan_axis"), "scan_axis is that of lines: add rows");
+    whole("keep_form", step.lines.keep_form, 0, engine::LineOptions::kMostFormDegree);
+    if (step.lines.rows.empty() && table_.contains("keep_form"))
+      complain(*table_.get("keep_form"), "keep_form is that of lines: add rows");
     fitted(step.form, !step.lines.rows.empty());
     return step;
   }
@@ -390,6 +393,8 @@ std::string textOf(const RecipeLevel& step) {
   std::string text = fmt::format("do = \"{}\"\n", kLevelWord);
   if (!step.lines.rows.empty())
     text += fmt::format("rows = \"{}\"\nscan_axis = \"{}\"\n", step.lines.rows, step.lines.scan_axis);
+  if (step.lines.keep_form != LineArguments::kNoForm)
+    text += fmt::format("keep_form = {}\n", step.lines.keep_form);
   return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
                             step.form.region);
 }

@@ -49,8 +49,8 @@ constexpr Tip kTips[] = {
     {Action::kLevelPreview, "Shows it beside the scan and changes nothing."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},
     {Action::kLevelLines,
-     "For scanners whose rows lie at different heights: stripes go. Slow forms from line to line go as well: "
-     "look at a preview first."},
+     "For scanners whose rows lie at different heights: stripes go. Whether slow form from line to line goes "
+     "as well is a field of the panel."},
     {Action::kShowMarks, "They count whether they are shown or not."},
     {Action::kKeepWithin,
      "Strokes move no sample farther than this from the scan as it was opened, over all strokes together."},

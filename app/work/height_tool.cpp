@@ -23,7 +23,9 @@ struct MakerName {
     const char* axis = lines.axis == engine::ScanAxis::kX ? "rows" : "columns";
     const std::string degree =
         lines.method == engine::LineMethod::kPolynomial ? fmt::format(" {}", lines.degree) : "";
-    return fmt::format("Level {}: {}{}", axis, kMethods[static_cast<std::size_t>(lines.method)], degree);
+    const char* form = lines.form_degree ? ", form stays" : "";
+    return fmt::format("Level {}: {}{}{}", axis, kMethods[static_cast<std::size_t>(lines.method)], degree,
+                       form);
   }
   std::string operator()(const engine::RemoveOptions& remove) const {
     constexpr const char* kOf[] = {"all samples", "marked samples", "samples not marked"};
@@ -50,7 +52,11 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   if (std::holds_alternative<engine::RemoveOptions>(maker)) return removedText(heights.removed);
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
-    return fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
+    std::string text = fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
+    if (!(heights.rows_form_rms > 0.0)) return text;
+    const ReadAs form = readOnScreenAs(heights.rows_form_rms, grid.height_unit.mm, grid.height_unit.name);
+    return text + fmt::format("; form across them of {:.3g} {} (rms) stays",
+                              heights.rows_form_rms / form.size, form.name);
   }
   const engine::Filled& filled = heights.filled;
   std::string text =

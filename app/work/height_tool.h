@@ -30,7 +30,8 @@ class HeightTool {
  public:
   /// Edited by the panel.
   engine::FillOptions fill;
-  engine::LineOptions lines;
+  /// Slow form stays unless a person says otherwise: who takes stripes away does not expect it to go.
+  engine::LineOptions lines{.form_degree = engine::LineOptions::kUsualFormDegree};
   engine::RemoveOptions remove;
 
   void fillHoles() { make(fill); }
@@ -150,7 +151,7 @@ class HeightTool {
   Background<bool> moving_;  // works out what came into view, beside the whole
 };
 
-/// "Fill holes: least curvature", "Level rows: median", "Remove marked samples": the step in the list of steps.
+/// "Fill holes: least curvature", "Level rows: median, form stays", "Remove marked samples": the step in the list of steps.
 [[nodiscard]] std::string makerName(const haptic::HeightsMaker& maker);
 
 /// "approximate, off by 12 um rms, 20 % exact", "40 % so far", "exact in view".

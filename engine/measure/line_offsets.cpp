@@ -13,6 +13,7 @@
 #include <Eigen/Dense>
 
 #include "engine/compare/tile_sums.h"
+#include "engine/measure/line_form.h"
 
 namespace fettle::engine {
 
@@ -262,6 +263,7 @@ class LineSearch {
           found_.coefficients[static_cast<std::size_t>(l)] = sum +=
               found_.coefficients[static_cast<std::size_t>(l)];
     }
+    if (options_.form_degree) leaveForm(found_, counts_, *options_.form_degree);
     fillEmpty();
     centre();
     return std::move(found_);
@@ -434,6 +436,9 @@ Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& opt
   if (options.degree < 0 || options.degree > LineOptions::kMostDegree)
     return inputError(fmt::format("a line's polynomial of degree {} is not possible", options.degree),
                       "lines", fmt::format("take 0 to {}", LineOptions::kMostDegree));
+  if (const int form = options.form_degree.value_or(0); form < 0 || form > LineOptions::kMostFormDegree)
+    return inputError(fmt::format("a form of degree {} across the lines is not possible", form), "lines",
+                      fmt::format("take 0 to {}", LineOptions::kMostFormDegree));
   return LineSearch(field, options, places, job).run();
 }
 

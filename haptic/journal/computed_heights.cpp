@@ -28,6 +28,7 @@ engine::Result<ComputedHeights> made(const engine::Version& before, const engine
   ComputedHeights result;
   result.field = *std::move(levelled);
   result.rows_rms = offsets->rms;
+  result.rows_form_rms = offsets->form_rms;
   return result;
 }
 

@@ -18,7 +18,8 @@ using HeightsMaker = std::variant<engine::FillOptions, engine::LineOptions, engi
 struct ComputedHeights {
   engine::Version field;  ///< of the memory of the field before, sharing the tiles that stay
   engine::Filled filled;  ///< of holes; its field is empty
-  double rows_rms = 0.0;  ///< of levelled lines [height_unit]
+  double rows_rms = 0.0,
+         rows_form_rms = 0.0;  ///< of levelled lines, and of the form across them that stays [height_unit]
   engine::RemoveCounts removed;
 };
 

@@ -114,11 +114,13 @@ json jsonOf(const engine::FillOptions& fill) {
   return out;
 }
 json jsonOf(const engine::LineOptions& lines) {
-  return {{"lines", kLineMethods[static_cast<std::size_t>(lines.method)]},
-          {"degree", lines.degree},
-          {"axis", kScanAxes[static_cast<std::size_t>(lines.axis)]},
-          {"region", engine::wordOf(lines.region)},
-          {"robust", lines.robust}};
+  json out = {{"lines", kLineMethods[static_cast<std::size_t>(lines.method)]},
+              {"degree", lines.degree},
+              {"axis", kScanAxes[static_cast<std::size_t>(lines.axis)]},
+              {"region", engine::wordOf(lines.region)},
+              {"robust", lines.robust}};
+  if (lines.form_degree) out["form_degree"] = *lines.form_degree;
+  return out;
 }
 
 json jsonOf(const engine::RemoveOptions& remove) {
@@ -142,11 +144,13 @@ HeightsMaker makerOf(const json& in) {
         .low = in.value("low", -kAny),
         .high = in.value("high", kAny),
         .region = static_cast<engine::Region>(wordOf(in.at("region"), kRegions))};
-  return engine::LineOptions{.method = static_cast<engine::LineMethod>(wordOf(in.at("lines"), kLineMethods)),
-                             .degree = in.at("degree").get<int>(),
-                             .axis = static_cast<engine::ScanAxis>(wordOf(in.at("axis"), kScanAxes)),
-                             .region = static_cast<engine::Region>(wordOf(in.at("region"), kRegions)),
-                             .robust = in.at("robust").get<bool>()};
+  engine::LineOptions lines{.method = static_cast<engine::LineMethod>(wordOf(in.at("lines"), kLineMethods)),
+                            .degree = in.at("degree").get<int>(),
+                            .axis = static_cast<engine::ScanAxis>(wordOf(in.at("axis"), kScanAxes)),
+                            .region = static_cast<engine::Region>(wordOf(in.at("region"), kRegions)),
+                            .robust = in.at("robust").get<bool>()};
+  if (const auto form = in.find("form_degree"); form != in.end()) lines.form_degree = form->get<int>();
+  return lines;
 }
 
 journal::Entry entryOf(const json& in) {

@@ -91,17 +91,23 @@ TEST(Recipes, LinesOfAScannerAreLevelledAsByTheCommand) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");
   ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "--seed", "3"}).status, 0);
-  for (const auto& [rows, axis, form] :
-       {std::tuple{"median", "y", "none"}, std::tuple{"matching", "x", "poly2"},
-        std::tuple{"poly1", "x", "plane"}}) {
+  for (const auto& [rows, axis, form, keep] :
+       {std::tuple{"median", "y", "none", ""}, std::tuple{"matching", "x", "poly2", ""},
+        std::tuple{"poly1", "x", "plane", ""}, std::tuple{"matching", "y", "none", "4"}}) {
     std::ofstream(recipe) << fmt::format(
-        "recipe = 1\n[[step]]\ndo = \"level\"\nrows = \"{}\"\nscan_axis = \"{}\"\nform = \"{}\"\n", rows,
-        axis, form);
+        "recipe = 1\n[[step]]\ndo = \"level\"\nrows = \"{}\"\nscan_axis = \"{}\"\nform = \"{}\"\n{}", rows,
+        axis, form, *keep == '\0' ? std::string() : fmt::format("keep_form = {}\n", keep));
     const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
-    const auto level = fettleJson(
-        {"level", scan, folder.file("l.tif"), "--rows", rows, "--scan-axis", axis, "--form", form});
-    for (const char* key : {"rows", "scan_axis", "rows_rms", "rows_empty", "form", "rms"})
-      EXPECT_EQ(report["steps"][0][key], level[key]) << rows << " " << key;
+    std::vector<std::string> command = {
+        "level", scan, folder.file("l.tif"), "--rows", rows, "--scan-axis", axis, "--form", form};
+    if (*keep != '\0') command.insert(command.end(), {"--keep-form", keep});
+    const auto level = fettleJson(command);
+    EXPECT_EQ(level.contains("keep_form"), *keep != '\0');
+    for (const char* key :
+         {"rows", "scan_axis", "rows_rms", "rows_empty", "keep_form", "rows_form_rms", "form", "rms"})
+      if (level.contains(key)) {
+        EXPECT_EQ(report["steps"][0][key], level[key]) << rows << " " << key;
+      }
     EXPECT_GT(level["rows_rms"], 0.0);
     EXPECT_EQ(report["hash"], level["hash"]) << rows;
   }
@@ -235,6 +241,7 @@ TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   EXPECT_EQ(report["hash"], filtered["hash"]);
   expectRefusedStep(folder, "do = \"level\"\nrows = \"medium\"\n", "rows is not one of median, mean");
   expectRefusedStep(folder, "do = \"level\"\nscan_axis = \"y\"\n", "scan_axis is that of lines: add rows");
+  expectRefusedStep(folder, "do = \"level\"\nkeep_form = 3\n", "keep_form is that of lines: add rows");
   expectRefusedStep(folder, "do = \"level\"\nform = \"none\"\n", "form is not one of mean, plane");
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"torus\"\n";
   expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "form is not one of mean, plane");
@@ -257,11 +264,12 @@ TEST(Recipes, OfALevelledSessionBeginsWithTheLevelAndDoesItAgain) {
             std::string::npos);
   EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("o.tif")})["hash"], once["hash"]);
   // A second one, with lines, on top; and through commands that keep what a session begins with.
-  const auto twice =
-      fettleJson({"level", file("a.fettle"), file("b.fettle"), "--form", "none", "--rows", "median"});
+  const auto twice = fettleJson({"level", file("a.fettle"), file("b.fettle"), "--form", "none", "--rows",
+                                 "median", "--keep-form", "2"});
   ASSERT_EQ(fettle({"convert", file("b.fettle"), file("c.fettle")}).status, 0);
   const std::string text = recipeOf("c.fettle");
-  EXPECT_LT(text.find("poly3"), text.find("rows = \"median\"\nscan_axis = \"x\"\nform = \"none\""));
+  EXPECT_LT(text.find("poly3"),
+            text.find("rows = \"median\"\nscan_axis = \"x\"\nkeep_form = 2\nform = \"none\""));
   EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("d.fettle")})["hash"],
             twice["hash"]);
   EXPECT_EQ(recipeOf("d.fettle"), text);

@@ -53,6 +53,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--estimate"});
   run({"level", scan, file("level.tif"), "--robust"});
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
+  run({"level", scan, file("level.tif"), "--rows", "median", "--keep-form", "3"});
   run({"level", scan, file("layer.fettle"), "--layer", "put"});
   run({"info", file("layer.fettle")});
   run({"level", file("layer.fettle"), file("level.tif"), "--layer", "bake"});

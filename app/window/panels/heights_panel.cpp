@@ -68,6 +68,18 @@ void linesFields(engine::LineOptions& lines) {
     if (changed) lines.axis = axis == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
     return changed;
   });
+  constexpr const char* kForm =
+      "What changes slowly from line to line, as tilt and bends up to a wave as long as the field: form of "
+      "the part, and slow drift of the scanner. Drift can be taken out with the panel Form. With \"goes, "
+      "too\" all lines end at the same height.";
+  (void)field("slow form", kForm, [&] {
+    int goes = lines.form_degree ? 0 : 1;
+    constexpr const char* kWhat[] = {"stays", "goes, too"};
+    const bool changed = ImGui::Combo("##lines form", &goes, kWhat, std::size(kWhat));
+    if (changed)
+      lines.form_degree = goes == 0 ? std::optional(engine::LineOptions::kUsualFormDegree) : std::nullopt;
+    return changed;
+  });
   (void)field("found in", [&] {
     constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,

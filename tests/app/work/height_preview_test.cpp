@@ -78,7 +78,7 @@ class HeightPreview : public testing::Test {
 TEST_F(HeightPreview, BecomesTheStepAsItIs) {
   heights_.lines.method = engine::LineMethod::kMatching;
   const std::pair<haptic::HeightsMaker, const char*> kMakers[] = {
-      {heights_.fill, "Fill holes: least curvature"}, {heights_.lines, "Level rows: matching"}};
+      {heights_.fill, "Fill holes: least curvature"}, {heights_.lines, "Level rows: matching, form stays"}};
   for (const auto& [maker, name] : kMakers) {
     const std::uint64_t expected = madeBy(maker);
     EXPECT_NE(expected, hash_);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -37,10 +38,10 @@ State jsonOf(const std::vector<std::string>& arguments) {
   return outcome.status == 0 ? State::parse(outcome.out) : State::object();
 }
 
-// As the panel does it without a choice.
-engine::Version levelledRows(const engine::Version& field) {
+// As the panel does it; `form`: what stays.
+engine::Version levelledRows(const engine::Version& field, std::optional<int> form) {
   engine::JobControl job;
-  const auto offsets = engine::findLineOffsets(field, {}, job);
+  const auto offsets = engine::findLineOffsets(field, {.form_degree = form}, job);
   EXPECT_TRUE(offsets);
   return *engine::levelledLines(field, *offsets, engine::allTiles(field.grid()), job);
 }
@@ -155,7 +156,12 @@ TEST_F(WindowTest, filled_holes_and_levelled_lines_are_previewed_beside_the_scan
   const State undone = user.key("ctrl+z");
   EXPECT_EQ(undone["steps"], 0);
   EXPECT_EQ(undone["heights_found"], "");
-  EXPECT_EQ(user.key("ctrl+r")["heights_preview"], "Level rows: median");
+  EXPECT_EQ(user.key("ctrl+r")["heights_preview"], "Level rows: median, form stays");
+  // The preview follows the field.
+  (void)user.click("stays");
+  user.tap("goes, too");
+  (void)program->until("without its form",
+                       [](const State& s) { return s["heights_preview"] == "Level rows: median"; });
   user.at({20, 790});
   (void)user.look("levelled beside the scan");
   EXPECT_TRUE(user.key("Escape")["heights_preview"].is_null());
@@ -184,7 +190,7 @@ TEST_F(WindowTest, filled_holes_and_levelled_lines_are_previewed_beside_the_scan
   EXPECT_TRUE(user.key("Escape")["heights_preview"].is_null());
   saveAs(user, saved);
   (void)quit(user);
-  EXPECT_EQ(compare(levelledRows(load(scan)), load(saved)).changed, 0);
+  EXPECT_EQ(compare(levelledRows(load(scan), std::nullopt), load(saved)).changed, 0);
 }
 
 // How many would go is read before anything is done; what is marked goes when it is named, and undo brings all back.
@@ -278,13 +284,14 @@ TEST_F(WindowTest, levelled_lines_of_a_large_field_are_approximated_first) {
   EXPECT_EQ(first["computing_heights"], true);
   (void)user.look("approximate, if soon enough");
   const State full = user.rest("all of it");
-  EXPECT_EQ(full["heights_preview"], "Level rows: median");
+  EXPECT_EQ(full["heights_preview"], "Level rows: median, form stays");
   EXPECT_EQ(full["heights_so_far"], "");
   (void)user.look("all of it");
   EXPECT_EQ(user.key("Return")["steps"], 1);
   saveAs(user, saved);
   (void)quit(user);
-  EXPECT_EQ(compare(levelledRows(load(large)), load(saved)).changed, 0);
+  EXPECT_EQ(compare(levelledRows(load(large), engine::LineOptions::kUsualFormDegree), load(saved)).changed,
+            0);
 }
 
 TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {

@@ -148,6 +148,8 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   filled.maker = fill;
   levelled.maker = engine::LineOptions{engine::LineMethod::kPolynomial, 2, engine::ScanAxis::kY,
                                        engine::Region::kUnmarked, true};
+  haptic::journal::StepMade levelled_but_form = levelled;
+  levelled_but_form.maker = engine::LineOptions{.form_degree = 3};
   haptic::journal::StepMade removed{12, "Remove samples", engine::StepKind::kFilter, there};
   removed.maker = engine::RemoveOptions{engine::RemoveOptions::Heights::kOutside, -1.0 / 3.0,
                                         std::numeric_limits<double>::infinity(), engine::Region::kMarked};
@@ -173,6 +175,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::StepMade{10, "Heights", engine::StepKind::kForm, there, false, false, {}, false, true},
       filled,
       levelled,
+      levelled_but_form,
       removed,
       haptic::journal::FilterBegun{2, edge_preserving},
       haptic::journal::FilterBegun{3, rolling},
