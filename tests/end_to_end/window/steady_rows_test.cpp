@@ -117,7 +117,7 @@ TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
 // By a click on the button the table takes its place; nothing moves when the figures come, grow old or are measured again.
 TEST_F(SteadyRows, no_row_moves_while_parameters_are_measured) {
   const std::string large = folder.file("large.tif");
-  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", large, "--size", "2400x2400", "--seed", "5"}).status, 0);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", large, "--size", "1000x1000", "--seed", "5"}).status, 0);
   writePanels({"Measure"});
   const auto program = start({large});
   User user(display, *program, "steady measure");
