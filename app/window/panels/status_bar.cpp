@@ -111,7 +111,8 @@ void deviceWord(const Parts& parts) {
   LoopClient& client = *parts.document.client();
   const haptic::LoopState state = client.state();
   const haptic::LinkState link = state.link;
-  if (state.tick == 0 || !client.device().profile().gives_force || link == haptic::LinkState::kConnected) return;
+  if (state.tick == 0 || !client.device().profile().gives_force || link == haptic::LinkState::kConnected)
+    return;
   const std::string word =
       fmt::format("{}: {}", client.device().profile().name,
                   link == haptic::LinkState::kUncalibrated ? "not calibrated" : "not plugged in");
