@@ -22,11 +22,16 @@ TEST(PreviewBench, EachFilterIsSeenWholeAndInPart) {
     EXPECT_GE(row.whole, row.first) << row.what;
     EXPECT_GT(row.alone, 0.0);
     const bool fills = row.what.starts_with("fill");
-    // Lines of so small a field are levelled at once; of holes the large one of the smaller field reaches its border.
-    EXPECT_EQ(row.first > 0.0, fills && row.what != "fill one large") << row.what;
-    EXPECT_EQ(row.off_whole, 0.0) << "exact";
-    if (row.first > 0.0) {
-      EXPECT_GT(row.exact, 0.0) << row.what << row.side;
+    // Lines of so small a field are levelled at once; of holes the large one of the smaller field reaches its border, that of the
+    // larger one begins with means.
+    const bool large = row.what == "fill one large";
+    EXPECT_EQ(row.first > 0.0, fills && !(large && row.side == 256)) << row.what;
+    if (large && row.first > 0.0) {
+      EXPECT_GT(row.off_whole, 0.0);
+      EXPECT_LT(row.off_whole, 2.0 * row.off_said);
+    } else {
+      EXPECT_EQ(row.off_whole, 0.0) << "exact";
+      EXPECT_EQ(row.exact > 0.0, row.first > 0.0) << row.what << row.side;
     }
   }
   EXPECT_EQ(report->rows[0].filter, "median 5");
