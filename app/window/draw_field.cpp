@@ -41,7 +41,8 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, c
 // What the colours show the difference from.
 std::optional<engine::Version> comparedWith(Parts& parts) {
   if (const auto& form = parts.form.previewed()) return form->surface;
-  if (parts.compare.shown && parts.compare.compared()) return parts.compare.compared()->other;
+  if (parts.compare.shown)
+    if (const auto* other = parts.compare.beside(parts.document.client()->field())) return *other;
   if (parts.settings.display.deviation) return parts.document.client()->original();
   return std::nullopt;
 }

@@ -10,6 +10,8 @@
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
 #include "engine/compare/compare.h"
+#include "engine/field/difference.h"
+#include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/measure/moved_onto.h"
 
@@ -45,6 +47,7 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
   lines.push_back(fmt::format("deviation: rms {:.4g}, mean {:.4g}, largest {:.4g} {}, {} samples",
                               compared.rms_mm / height.size, compared.mean_mm / height.size,
                               compared.most_mm / height.size, height.name, compared.samples));
+  if (compared.restored) lines.emplace_back("heights count with the form that was taken out");
   return lines;
 }
 
@@ -52,36 +55,68 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
 
 void CompareTool::compareWith(const LoopClient& client, std::string path, const ScanOptions& reading) {
   reading_ = reading;
+  following_ = false;
   working_.start([field = client.newest(), path = std::move(path), reading = reading_,
                   what = options](engine::JobControl& job) -> engine::Result<Work> {
     const auto import = importOptions(reading);
     if (!import) return tl::unexpected(import.error());
     const auto other = engine::importField(path, *import, job);
     if (!other) return tl::unexpected(other.error());
-    Work work{field, {}};
+    // Both as they were measured: one may be seen without a form that the other still has.
+    const auto samples = engine::withoutLayer(field, job);
+    if (!samples) return tl::unexpected(samples.error());
+    const auto others = engine::withoutLayer(other->field, job);
+    if (!others) return tl::unexpected(others.error());
+    Work work;
+    work.samples = *samples;
     work.compared.path = path;
+    work.compared.restored = field.formOver() != nullptr || other->field.formOver() != nullptr;
     engine::RigidMotion motion;
     if (what.moves != Moves::kNone) {
       engine::AlignOptions how;
       how.moves = kMovesOf[static_cast<std::size_t>(what.moves)];
       how.region = what.region;
-      const auto found = engine::alignFields(field, other->field, how, job);
+      const auto found = engine::alignFields(*samples, *others, how, job);
       if (!found) return tl::unexpected(found.error());
       motion = found->motion;
       work.compared.alignment = *found;
     }
-    auto moved = engine::movedOnto(other->field, motion, field.grid(), job);
+    auto moved = engine::movedOnto(*others, motion, samples->grid(), job);
     if (!moved) return tl::unexpected(moved.error());
-    const auto deviation = engine::compareFields(*moved, field, job);
+    const auto deviation = engine::compareFields(*moved, *samples, job);
     if (!deviation) return tl::unexpected(deviation.error());
     if (deviation->samples == 0)
       return engine::inputError("nothing of it lies over the field", path, "let it be moved: choose all");
-    const double mm = field.grid().height_unit.mm;
-    work.compared.other = *std::move(moved);
+    const double mm = samples->grid().height_unit.mm;
     work.compared.rms_mm = deviation->rms * mm;
     work.compared.mean_mm = deviation->mean * mm;
     work.compared.most_mm = deviation->max_abs * mm;
     work.compared.samples = deviation->samples;
+    work.compared.moved = *std::move(moved);
+    if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
+    return work;
+  });
+}
+
+engine::Status CompareTool::see(Work& work, const engine::Version& field, engine::JobControl& job) {
+  const auto seen = engine::seenLike(work.compared.moved, field, job);
+  if (!seen) return tl::unexpected(seen.error());
+  work.compared.other = *seen;
+  work.compared.under = field.formOver();
+  work.seen = field;
+  return {};
+}
+
+// A form came over the field or went: the other scan is seen under it as well, what was found stays.
+void CompareTool::followForm(const LoopClient& client) {
+  following_ = true;
+  working_.start([field = client.newest(), work = Work{*compared_, samples_, of_}](
+                     engine::JobControl& job) mutable -> engine::Result<Work> {
+    const engine::Version before = work.seen;
+    if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
+    const auto samples = engine::withoutLayer(field, job);
+    if (!samples) return tl::unexpected(samples.error());
+    if (!engine::sameHeights(work.samples, *samples)) work.seen = before;
     return work;
   });
 }
@@ -92,23 +127,34 @@ bool CompareTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
   if (auto done = working_.take()) {
     changed = true;
     if (!dropped && *done) {
-      of_ = std::move((*done)->field);
+      of_ = std::move((*done)->seen);
+      samples_ = std::move((*done)->samples);
       compared_ = std::move((*done)->compared);
       lines_ = linesOf(*compared_);
     } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
       notices.push_back({done->error().line(), done->error().remedy});
     }
+    // Else it would be tried again for ever.
+    if (following_ && (dropped || !*done)) clear();
   }
   if (!compared_) return changed;
+  if (!working_.busy() && client.newest().formOver() != compared_->under) {
+    followForm(client);
+    changed = true;
+  }
   const bool outdated = !(client.newest() == of_);
   return std::exchange(outdated_, outdated) != outdated || changed;
+}
+
+const engine::Version* CompareTool::beside(const engine::Version& field) const noexcept {
+  return compared_ && compared_->under == field.formOver() ? &compared_->other : nullptr;
 }
 
 void CompareTool::clear() {
   working_.cancel();
   compared_.reset();
   lines_.clear();
-  of_ = {};
+  of_ = samples_ = {};
   outdated_ = false;
 }
 

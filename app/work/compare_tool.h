@@ -13,7 +13,8 @@
 namespace fettle::app {
 
 /// Another scan beside the field that is worked on: brought onto it, as `fettle align` does, and what the field deviates from it. The field stays
-/// as it is, so that this is no step; it is worked out in the background while the hand goes on. Threading: main.
+/// as it is, so that this is no step; it is worked out in the background while the hand goes on. A form over either of them
+/// counts: both are compared as they were measured. Threading: main.
 class CompareTool {
  public:
   /// How the other scan may be moved.
@@ -28,7 +29,10 @@ class CompareTool {
 
   struct Compared {
     std::string path;
-    engine::Version other;  ///< at the samples of the field; a hole where it has no height
+    engine::Version moved;    ///< at the samples of the field; a hole where it has no height
+    engine::Version other;    ///< the same, as it is seen under `under`
+    engine::FieldForm under;  ///< the form over the field, or null
+    bool restored = false;    ///< a form over one of them counts
     std::optional<engine::Alignment> alignment;         ///< none: it was not moved
     double rms_mm = 0.0, mean_mm = 0.0, most_mm = 0.0;  ///< of the field less the other
     std::int64_t samples = 0;                           ///< that both have
@@ -47,6 +51,8 @@ class CompareTool {
   [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
   [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
   [[nodiscard]] const std::optional<Compared>& compared() const noexcept { return compared_; }
+  /// The other scan as the field is seen, for its colours; null until it is known under the form over the field.
+  [[nodiscard]] const engine::Version* beside(const engine::Version& field) const noexcept;
   /// Whether the field has changed since.
   [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   /// Lines of what was found, as `fettle align` prints them.
@@ -56,14 +62,19 @@ class CompareTool {
 
  private:
   struct Work {
-    engine::Version field;
     Compared compared;
+    engine::Version samples;  // of the field, without a form
+    engine::Version seen;     // the field itself
   };
+  [[nodiscard]] static engine::Status see(Work& work, const engine::Version& field, engine::JobControl& job);
+  void followForm(const LoopClient& client);
+
   std::optional<Compared> compared_;
   ScanOptions reading_;
   std::vector<std::string> lines_;
-  engine::Version of_;  // that it was compared with
+  engine::Version of_, samples_;  // that it was compared with: as it is seen, and as it was measured
   bool outdated_ = false;
+  bool following_ = false;  // what works is followForm()
   Background<Work> working_;
 };
 

@@ -1,0 +1,123 @@
+#include "app/work/compare_tool.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "app/work/form_tool.h"
+#include "engine/formats/formats.h"
+#include "tests/app/work/loop_client_bench.h"
+#include "tests/haptic/support/fields.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::app {
+namespace {
+
+using tests::LoopClientBench;
+
+constexpr int kComparedWide = 120, kComparedHigh = 90;
+
+// Waves on a slope of 30 mm: what a comparison without the slope would see is a thousand times the waves.
+double slopedWaves(int c, int r, double shifted = 0.0) {
+  return 0.25 * c + 0.03 * std::sin(0.3 * c) * std::cos(0.4 * r) + shifted;
+}
+
+engine::Version slopedField(double shifted) {
+  return tests::fieldOf(
+      kComparedWide, kComparedHigh, [&](int c, int r) { return slopedWaves(c, r, shifted); }, 0.1, 0.1);
+}
+
+class CompareToolTest : public ::testing::Test {
+ protected:
+  CompareToolTest() {
+    engine::JobControl job;
+    EXPECT_TRUE(engine::exportField(slopedField(0.02), other, {}, job));
+  }
+  enum class Form : std::uint8_t { kOut, kBack };
+  void take(Form step) {
+    if (step == Form::kOut)
+      form.takeOut(bench.client());
+    else
+      form.putBack(bench.client());
+    ASSERT_TRUE(bench.until([&] {
+      (void)form.poll(bench.client(), bench.noticesToFill());
+      return !form.busy();
+    }));
+    ASSERT_TRUE(bench.settled());
+  }
+  // Until nothing is under way, at the field as it is now.
+  bool rest() {
+    return bench.until([&] {
+      (void)tool.poll(bench.client(), bench.noticesToFill());
+      return !tool.busy();
+    });
+  }
+  // Largest difference of the field as it is seen from the other scan, as colours show it.
+  double mostSeen() {
+    const engine::Version now = bench.client().field();
+    const engine::Version* const beside = tool.beside(now);
+    if (beside == nullptr) return NAN;
+    double most = 0.0;
+    for (int r = 0; r < kComparedHigh; ++r)
+      for (int c = 0; c < kComparedWide; ++c) {
+        float a = 0.0F, b = 0.0F;
+        now.reader().readHeights(c, r, 1, 1, &a, 1);
+        beside->reader().readHeights(c, r, 1, 1, &b, 1);
+        most = std::fmax(most, std::abs(static_cast<double>(a) - static_cast<double>(b)));
+      }
+    return most;
+  }
+
+  tests::TempFolder folder;
+  std::string other = folder.file("other.tif");
+  LoopClientBench bench{slopedField(0.0)};
+  FormTool form;
+  CompareTool tool;
+};
+
+// Half a unit in the last place of 30 mm, four times: two samples stored, and two seen without the slope.
+constexpr double kRounding = 4.0 * 1e-6;
+
+TEST_F(CompareToolTest, a_form_that_is_taken_out_counts_as_it_was_measured) {
+  take(Form::kOut);
+  ASSERT_NE(bench.client().newest().formOver(), nullptr);
+  tool.options.moves = CompareTool::Moves::kNone;
+  tool.compareWith(bench.client(), other, {});
+  ASSERT_TRUE(rest());
+  ASSERT_TRUE(tool.compared().has_value());
+  EXPECT_NEAR(tool.compared()->rms_mm, 0.02, kRounding);
+  EXPECT_NEAR(mostSeen(), 0.02, kRounding);
+  EXPECT_EQ(tool.lines().back(), "heights count with the form that was taken out");
+
+  // Aligned, the slope is no tilt between the two.
+  tool.options.moves = CompareTool::Moves::kLevel;
+  tool.again(bench.client());
+  ASSERT_TRUE(rest());
+  ASSERT_TRUE(tool.compared()->alignment.has_value());
+  EXPECT_NEAR(tool.compared()->alignment->angles.tilt_y, 0.0, 0.01);
+  EXPECT_LT(tool.compared()->rms_mm, 1e-4);
+  EXPECT_LT(mostSeen(), 1e-3);
+}
+
+TEST_F(CompareToolTest, the_other_scan_follows_a_form_that_goes_and_comes) {
+  tool.options.moves = CompareTool::Moves::kNone;
+  tool.compareWith(bench.client(), other, {});
+  ASSERT_TRUE(rest());
+  EXPECT_NEAR(mostSeen(), 0.02, kRounding);
+  for (const Form step : {Form::kOut, Form::kBack}) {
+    take(step);
+    EXPECT_EQ(tool.beside(bench.client().field()), nullptr) << "of another form";
+    (void)tool.poll(bench.client(), bench.noticesToFill());
+    ASSERT_TRUE(rest());
+    EXPECT_NEAR(mostSeen(), 0.02, kRounding);
+    (void)tool.poll(bench.client(), bench.noticesToFill());
+    EXPECT_FALSE(tool.outdated()) << "the heights are those that were compared";
+    EXPECT_NEAR(tool.compared()->rms_mm, 0.02, kRounding);
+  }
+  EXPECT_TRUE(bench.notices().empty());
+}
+
+}  // namespace
+}  // namespace fettle::app
