@@ -330,9 +330,10 @@ Result<StepFigures> grooveFigures(const Section& section, double first_mm, doubl
   const double width = second_mm - first_mm;
   if (!(width > 0.0))
     return inputError("the edges of a groove are not in order", "section", "give the nearer one first");
-  const Stretch before{first_mm - width, first_mm - width / 3.0};
+  // As long as the section is: what is stated is what counts.
+  const Stretch before{std::max(0.0, first_mm - width), first_mm - width / 3.0};
   const Stretch inside{first_mm + width / 3.0, second_mm - width / 3.0};
-  const Stretch behind{second_mm + width / 3.0, second_mm + width};
+  const Stretch behind{second_mm + width / 3.0, std::min(section.lengthMm(), second_mm + width)};
   auto figures = parallelLines(section, {before, behind}, inside, noise_mm);
   if (!figures) return figures;
   figures->step_mm.value = -figures->step_mm.value;

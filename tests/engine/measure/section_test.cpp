@@ -190,6 +190,13 @@ TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
   EXPECT_NEAR(depth->edge_after.from_mm, 8.05 + 4.0 / 3.0, 1e-12);
   EXPECT_NEAR(depth->behind.to_mm, 16.05, 1e-12);
   EXPECT_FALSE(grooveFigures(across, 12.0, 8.0, 0.0));
+  // Of a line that ends sooner than a width beside the groove it is what there is.
+  const Section near_ends = taken(groove, {{6.0, 0.2}, {15.0, 0.2}});
+  const auto cut = grooveFigures(near_ends, 2.05, 6.05, 0.0);
+  ASSERT_TRUE(cut) << cut.error().line();
+  EXPECT_NEAR(cut->step_mm.value, 0.02 * cosine, 3e-7);
+  EXPECT_EQ(cut->before.from_mm, 0.0);
+  EXPECT_EQ(cut->behind.to_mm, near_ends.lengthMm());
   EXPECT_FALSE(stepFigures(across, 0.0, {0.0, 20.0}, 0.0));
 }
 
