@@ -13,6 +13,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/layer_over.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
@@ -179,14 +180,14 @@ std::string featureCsv(const Report& report) {
   std::string text = fmt::format(
       "number,x [{1}],y [{1}],z [{0}],height [{0}],samples,area [{1}2],area above saddle [{1}2],volume above "
       "saddle "
-      "[{1}2 {0}],open\n",
+      "[{1}2 {0}],open,layer\n",
       height, length);
   for (const Report& f : report["features"])
-    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g},{}\n", f["number"].get<int>(),
-                        f["x"].get<double>(), f["y"].get<double>(), f["z"].get<double>(),
-                        f["height"].get<double>(), f["samples"].get<std::int64_t>(), f["area"].get<double>(),
-                        f["area_above"].get<double>(), f["volume"].get<double>(),
-                        f["open"].get<bool>() ? "yes" : "no");
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g},{},{}\n",
+                        f["number"].get<int>(), f["x"].get<double>(), f["y"].get<double>(),
+                        f["z"].get<double>(), f["height"].get<double>(), f["samples"].get<std::int64_t>(),
+                        f["area"].get<double>(), f["area_above"].get<double>(), f["volume"].get<double>(),
+                        f["open"].get<bool>() ? "yes" : "no", layerOf(report));
   return text;
 }
 
@@ -263,6 +264,7 @@ engine::Result<Report> features(const FeatureRun& options, engine::JobControl& j
   const engine::Grid& grid = imported->field.grid();
   Report report;
   addForm(report, options.form, limited->fit, grid);
+  addLayer(report, imported->field);
   addScale(report, options.scale);
   report["kind"] = options.kind;
   report["unit"] = grid.height_unit.name;
@@ -289,6 +291,7 @@ void printFeatures(const Report& report) {
   const Report& all = report["features"];
   fmt::print("{} {} at least {:.4g} {} high\n", all.size(), report["kind"].get<std::string>(),
              report["least_height"].get<double>() / height.size, height.name);
+  printLayer(report);
   if (const std::string scale = scaleText(report, "\n"); !scale.empty()) fmt::print("{}\n", scale);
   if (!report["mean_area"].is_null())
     fmt::print("closed ones in the mean: height {:.4g} {}, area {:.4g} {}2, volume {:.4g} {}2 {}\n",

@@ -12,6 +12,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/fit_files.h"
+#include "app/commands/layer_over.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -202,6 +203,7 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
                 {"robust", options.robust},
                 {"fits", Report::array()},
                 {"not_fitted", Report::array()}};
+  addLayer(report, *field);
   std::vector<FittedRegion> fitted;
   for (std::size_t k = 0; k < regions->size(); ++k) {
     engine::FitRegion& region = (*regions)[k];

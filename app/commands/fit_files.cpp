@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
+#include "app/commands/layer_over.h"
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
 #include "engine/field/builder.h"
@@ -125,6 +126,7 @@ void printFits(const Report& report) {
     const ReadAs as = readLengthAs(noise, 1.0, "mm");
     fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise / as.size, as.name);
   }
+  printLayer(report);
   for (const Report& fit : report["fits"]) {
     const std::string shape = fit["shape"].get<std::string>();
     const double rms = fit["rms_mm"].get<double>();
@@ -173,13 +175,14 @@ void printFits(const Report& report) {
 }
 
 std::string fitCsv(const Report& report) {
-  std::string text = "region,shape,figure,value,standard_error,unit\n";
+  std::string text = "region,shape,figure,value,standard_error,unit,layer\n";
+  const std::string layer = layerOf(report);
   for (const Report& fit : report["fits"]) {
     const auto row = [&](const std::string& figure, const Report& value, const Report& error,
                          const char* unit) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{},{}\n", fit["region"].get<int>(),
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{},{},{}\n", fit["region"].get<int>(),
                      fit["shape"].get<std::string>(), figure, value.get<double>(),
-                     error.is_null() ? "" : fmt::format("{:.6g}", error.get<double>()), unit);
+                     error.is_null() ? "" : fmt::format("{:.6g}", error.get<double>()), unit, layer);
     };
     for (std::size_t k = 0; k < 3; ++k)
       row(fmt::format("point_{}", kAxes[k]), fit["point_mm"][k], fit["point_error_mm"][k], "mm");

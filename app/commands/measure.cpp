@@ -10,6 +10,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/layer_over.h"
 #include "app/commands/list_text.h"
 #include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
@@ -120,6 +121,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
     return tl::unexpected(status.error());
   Report report;
   addForm(report, options.form, limited->fit, grid);
+  addLayer(report, imported->field);
   if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
   addScale(report, options.scale);
   addAreal(report, *measured, options.groups, grid);
@@ -214,6 +216,7 @@ void printOneMeasured(const Report& report) {
   fmt::print("{} sample{}{}, form {}{}\n", samples, samples == 1 ? "" : "s",
              filled > 0 ? fmt::format(", {} of the scan filled and not measured", filled) : "",
              report["form"].get<std::string>(), report["robust"].get<bool>() ? ", robust" : "");
+  printLayer(report);
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());

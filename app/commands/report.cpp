@@ -17,6 +17,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/form_option.h"
+#include "app/commands/layer_over.h"
 #include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
@@ -257,6 +258,8 @@ class ScanReport {
     };
     if (imported_.field.lines() != nullptr)
       about.rows.push_back({"Edge lines", fmt::format("{}", imported_.field.lines()->size())});
+    if (const std::string layer = layerOver(imported_.field); !layer.empty())
+      about.rows.push_back({"Form over the scan, left out of all figures", layer});
     if (imported_.original)
       if (const std::int64_t filled = engine::countFilled(imported_.field, *imported_.original); filled > 0)
         about.rows.push_back({"Filled samples, not measured", fmt::format("{}", filled)});
@@ -279,6 +282,7 @@ class ScanReport {
       for (std::size_t i = 0; i < std::size(cells); ++i) heights_.rows[i].push_back(cells[i]);
     }
     report_["hash"] = hashOf(states_.back().field);
+    addLayer(report_, imported_.field);
     if (states_.size() > 1) report_["original_hash"] = hashOf(states_.front().field);
     return {};
   }
@@ -368,7 +372,9 @@ class ScanReport {
     }
     const std::vector<ArealLine> lines = arealLines(reports);
     addScale(report_, options_.scale);
-    const std::string scale = scaleText(report_, "; ");
+    std::string scale = scaleText(report_, "; ");
+    if (const std::string layer = layerText(layerOver(imported_.field)); !layer.empty())
+      scale = layer + (scale.empty() ? "" : "; ") + scale;
     page_.parts.emplace_back(
         textureTable(lines, heads({}),
                      fmt::format("ISO 25178-2 about the form {}{}, over {} samples{}{}.{}",

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/layer_over.h"
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/section_files.h"
 #include "app/commands/section_options.h"
@@ -149,13 +150,14 @@ engine::Status addDrawing(ReportPage& page, const std::string& name, const std::
     drawn.other = taken.sections.back();
     drawn.other_name = states.back().name;
   }
-  const auto svg = drawnByGnuplot(sectionsPlot({drawn}));
+  const auto svg = drawnByGnuplot(sectionsPlot({drawn}, {}));
   if (!svg) return tl::unexpected(svg.error());
   page.parts.emplace_back(ReportPage::Heading{name});
   page.parts.emplace_back(ReportPage::Plot{
-      fmt::format("Heights from {:.6g}, {:.6g} to {:.6g}, {:.6g} mm, {:.5g} {} long{}", points.front().x,
+      fmt::format("Heights from {:.6g}, {:.6g} to {:.6g}, {:.6g} mm, {:.5g} {} long{}, {}", points.front().x,
                   points.front().y, points.back().x, points.back().y, first.lengthMm() / taken.along.size,
-                  taken.along.name, first.lanes > 1 ? fmt::format(", means of {} lanes", first.lanes) : ""),
+                  taken.along.name, first.lanes > 1 ? fmt::format(", means of {} lanes", first.lanes) : "",
+                  takingText({engine::SectionOptions().interpolation, layerOver(states.back().field), {}})),
       *svg});
   return {};
 }

@@ -12,6 +12,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/commands/command.h"
+#include "app/commands/layer_over.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"
@@ -100,8 +101,7 @@ engine::SectionOptions sectionOptionsOf(const SectionArguments& options) {
   of.region = options.region == "marked"     ? engine::Region::kMarked
               : options.region == "unmarked" ? engine::Region::kUnmarked
                                              : engine::Region::kAll;
-  of.interpolation =
-      options.interpolation == "nearest" ? engine::Interpolation::kNearest : engine::Interpolation::kBilinear;
+  of.interpolation = interpolationNamed(options.interpolation);
   return of;
 }
 
@@ -172,14 +172,15 @@ engine::Result<Report> probed(const SectionArguments& options, const ReadScan& s
 }
 
 engine::Status writeSectionFiles(const SectionArguments& options, const std::vector<DrawnSection>& drawn,
-                                 engine::JobControl& job) {
+                                 const SectionTaking& taking, engine::JobControl& job) {
   // The picture first: a program of its own makes it, which can fail where writing a text does not.
   if (!options.plot.empty())
-    if (auto status = drawSections(drawn, options.plot); !status) return status;
+    if (auto status = drawSections(drawn, taking, options.plot); !status) return status;
   if (!options.csv.empty())
-    if (auto status = writeTo(
-            options.csv, ".csv", job,
-            [&](const std::string& file) { return engine::writeFileAtomically(file, sectionCsv(drawn)); });
+    if (auto status = writeTo(options.csv, ".csv", job,
+                              [&](const std::string& file) {
+                                return engine::writeFileAtomically(file, sectionCsv(drawn, taking));
+                              });
         !status)
       return status;
   return options.dxf.empty() ? engine::Status() : engine::writeFileAtomically(options.dxf, sectionDxf(drawn));
@@ -227,7 +228,15 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     other->noise_mm = std::fmax(other->noise_mm, scan->noise_mm);
     others.push_back(*std::move(other));
   }
-  Report report{{"noise_mm", numberOrNull(scan->noise_mm)}, {"sections", Report::array()}};
+  SectionTaking taking{sectionOptionsOf(options).interpolation, layerOver(scan->field), {}};
+  Report report{{"noise_mm", numberOrNull(scan->noise_mm)},
+                {"interpolation", interpolationWord(taking.interpolation)},
+                {"sections", Report::array()}};
+  addLayer(report, scan->field);
+  for (const ReadScan& other : others) {
+    addLayer(report, other.field, kOtherLayerKey);
+    taking.other_layer = layerOver(other.field);
+  }
   std::vector<DrawnSection> drawn;
   drawn.reserve(planned->size());
   for (std::size_t i = 0; i < planned->size(); ++i) {
@@ -275,7 +284,8 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     if (!probes) return tl::unexpected(probes.error());
     report["probes"] = *std::move(probes);
   }
-  if (auto status = writeSectionFiles(options, drawn, job); !status) return tl::unexpected(status.error());
+  if (auto status = writeSectionFiles(options, drawn, taking, job); !status)
+    return tl::unexpected(status.error());
   return report;
 }
 

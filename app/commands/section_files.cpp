@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/layer_over.h"
 #include "app/commands/plots/gnuplot.h"
+#include "app/commands/section_options.h"
 #include "app/work/outputs.h"
 #include "app/work/read_units.h"
 #include "engine/io/files/atomic_file.h"
@@ -65,10 +67,21 @@ struct HeightRange {
 
 }  // namespace
 
-std::string sectionCsv(const std::vector<DrawnSection>& sections) {
+std::string takingText(const SectionTaking& taking) {
+  std::string text = fmt::format("{} between samples", interpolationWord(taking.interpolation));
+  for (const std::string& layer : {layerText(taking.layer), layerText(taking.other_layer, "the other scan")})
+    if (!layer.empty()) text += ", " + layer;
+  return text;
+}
+
+std::string sectionCsv(const std::vector<DrawnSection>& sections, const SectionTaking& taking) {
   const bool both = !sections.empty() && sections.front().other.size() > 0;
   std::string text = "section,along_mm,x_mm,y_mm,height_mm,share";
-  text += both ? ",other_mm\n" : "\n";
+  if (both) text += ",other_mm";
+  text += ",interpolation,layer";
+  text += both ? ",other_layer\n" : "\n";
+  const std::string ending = fmt::format(",{},{}{}{}\n", interpolationWord(taking.interpolation),
+                                         taking.layer, both ? "," : "", both ? taking.other_layer : "");
   for (std::size_t s = 0; s < sections.size(); ++s) {
     const engine::Section& section = sections[s].section;
     for (std::size_t i = 0; i < section.size(); ++i) {
@@ -76,7 +89,7 @@ std::string sectionCsv(const std::vector<DrawnSection>& sections) {
                      section.position[i].x, section.position[i].y, cellOf(section.height[i]),
                      section.share[i]);
       if (both) fmt::format_to(std::back_inserter(text), ",{}", cellOf(sections[s].other.height[i]));
-      text += "\n";
+      text += ending;
     }
   }
   return text;
@@ -92,7 +105,7 @@ std::string sectionDxf(const std::vector<DrawnSection>& sections) {
   return text;
 }
 
-std::string sectionsPlot(const std::vector<DrawnSection>& sections) {
+std::string sectionsPlot(const std::vector<DrawnSection>& sections, const std::string& caption) {
   HeightRange range;
   for (const DrawnSection& drawn : sections) {
     range.add(drawn.section);
@@ -103,6 +116,7 @@ std::string sectionsPlot(const std::vector<DrawnSection>& sections) {
   const ReadAs height = readLengthAs(range.high - range.low, 1.0, "mm"),
                length = readLengthAs(longest, 1.0, "mm");
   std::string script = kPlotHead, curves;
+  if (!caption.empty()) script += fmt::format("set title {}\n", quoted(caption));
   script += fmt::format("set xlabel 'length along the line [{}]'\n", length.name);
   script += fmt::format("set ylabel 'height [{}]'\nset format y '%.9g'\n", height.name);
   constexpr std::size_t kMostDrawn = 7;
@@ -128,8 +142,9 @@ std::string sectionsPlot(const std::vector<DrawnSection>& sections) {
   return script + curves + "\n";
 }
 
-engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path) {
-  const std::string script = sectionsPlot(sections);
+engine::Status drawSections(const std::vector<DrawnSection>& sections, const SectionTaking& taking,
+                            const std::string& path) {
+  const std::string script = sectionsPlot(sections, takingText(taking));
   if (withDot(std::filesystem::path(path).extension().string()) == ".png") return drawnAsPng(script, path);
   const auto svg = drawnByGnuplot(script);
   if (!svg) return tl::unexpected(svg.error());

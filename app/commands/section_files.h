@@ -18,9 +18,18 @@ struct DrawnSection {
   std::vector<SectionMark> marks;  ///< at which a thin line stands, with its name
 };
 
-/// A row per place: section, length, position, height, share of the lanes, height of the other, all in millimetres.
-/// Cells without a height are empty.
-[[nodiscard]] std::string sectionCsv(const std::vector<DrawnSection>& sections);
+/// How sections were taken, as their files state it.
+struct SectionTaking {
+  engine::Interpolation interpolation = engine::Interpolation::kBilinear;
+  std::string layer = {}, other_layer = {};  ///< forms over the scan and over the other, layer_over.h
+};
+
+/// "bilinear between samples, without the form poly2 that lies over the scan".
+[[nodiscard]] std::string takingText(const SectionTaking& taking);
+
+/// A row per place: section, length, position, height, share of the lanes, height of the other, all in millimetres; how they
+/// were taken. Cells without a height are empty.
+[[nodiscard]] std::string sectionCsv(const std::vector<DrawnSection>& sections, const SectionTaking& taking);
 
 /// DXF R12: length and height in millimetres as polylines, one for each run of heights, on a layer for each section, its
 /// other beside it.
@@ -28,9 +37,10 @@ struct DrawnSection {
 
 /// Draws heights over lengths, a colour for each section and broken lines for the other, to an .svg or a .png. Errors:
 /// as drawnByGnuplot.
-[[nodiscard]] engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path);
+[[nodiscard]] engine::Status drawSections(const std::vector<DrawnSection>& sections,
+                                          const SectionTaking& taking, const std::string& path);
 
-/// That drawing as a script for gnuplot (plots/gnuplot.h): of at most the first 7.
-[[nodiscard]] std::string sectionsPlot(const std::vector<DrawnSection>& sections);
+/// That drawing as a script for gnuplot (plots/gnuplot.h): of at most the first 7. `caption` stands above it; empty: none.
+[[nodiscard]] std::string sectionsPlot(const std::vector<DrawnSection>& sections, const std::string& caption);
 
 }  // namespace fettle::app

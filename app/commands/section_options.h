@@ -11,6 +11,7 @@
 #include "app/commands/scan_options.h"
 #include "app/work/section_report.h"
 #include "engine/base/error.h"
+#include "engine/measure/section.h"
 
 namespace fettle::app {
 
@@ -38,6 +39,10 @@ struct SectionArguments : SectionWants {
 /// The options of the line, and of what is measured along it.
 void addLineOptions(Command command, SectionArguments& options);
 void addFigureOptions(Command command, SectionArguments& options);
+
+/// What --interpolation means, and the word of it: "bilinear", "nearest".
+[[nodiscard]] engine::Interpolation interpolationNamed(const std::string& word);
+[[nodiscard]] const char* interpolationWord(engine::Interpolation interpolation) noexcept;
 
 /// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);

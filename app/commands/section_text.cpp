@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/layer_over.h"
+#include "app/commands/section_files.h"
+#include "app/commands/section_options.h"
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
 #include "app/work/section_lines.h"
@@ -39,6 +42,11 @@ void printSections(const Report& report) {
     const ReadAs as = readLengthAs(noise_mm, 1.0, "mm");
     fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise_mm / as.size, as.name);
   }
+  if (!report["sections"].empty())
+    fmt::print("heights {}\n", takingText({interpolationNamed(report["interpolation"].get<std::string>()),
+                                           layerOf(report), layerOf(report, kOtherLayerKey)}));
+  else
+    printLayer(report);
   for (const Report& one : report["sections"]) {
     const int lanes = one["lanes"].get<int>();
     fmt::print("section {}: {} long, {} places {} apart, {} lane{}, heights {:.9g} to {}\n",

@@ -130,6 +130,7 @@ std::vector<ReportSchema> changing() {
        1,
        {{"",
          {hash(),
+          layer(),
           {"original_hash?", "string", "of the original"},
           {"rms_change?", "number", "from the original, height unit"},
           {"max_change?", "number", "from the original, height unit"},

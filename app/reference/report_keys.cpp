@@ -106,6 +106,11 @@ ReportForm noEstimate() {
   return {"--estimate of too little work", {{"text", "string", "that it is so"}}};
 }
 
+ReportKey layer() {
+  return {"layer?", "string",
+          "of a session: the form that lies over it, without which it is measured; a word of --form"};
+}
+
 Keys form() {
   return joined({{"form", "string", "none, mean, plane, poly2 to poly5, sphere, cylinder, cone"},
                  {"robust", "boolean", ""},

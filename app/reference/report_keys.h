@@ -32,6 +32,8 @@ using Keys = std::vector<ReportKey>;
 [[nodiscard]] ReportForm bandsInTurn();
 /// Of all shards together.
 [[nodiscard]] Keys gathered();
+/// The form that lies over a scan as a layer, of what is measured without it.
+[[nodiscard]] ReportKey layer();
 /// What is taken out of a surface before it is measured.
 [[nodiscard]] Keys form();
 [[nodiscard]] Keys formFigures();

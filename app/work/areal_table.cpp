@@ -293,15 +293,16 @@ std::string arealRows(const std::string& scan, const Report& report) {
   const ReadAs height{report["unit"], 1.0}, length{report["lateral_unit"], 1.0};
   std::string text;
   auto out = std::back_inserter(text);
+  const std::string layer = report.value("layer", std::string());
   const auto add = [&](const char* group, const std::string& name, const Report& value, Quantity quantity,
                        const std::string& remark, const Report& effect) {
     const Shown shown = shownAs(quantity, height, length);
     const auto number = [&shown](const Report& of) {
       return of.is_null() ? "" : fmt::format("{:.9g}", of.get<double>() * shown.factor);
     };
-    fmt::format_to(out, "{},{},{},{},{},{},{},{}\n", csvField(scan), group, csvField(name), number(value),
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{}\n", csvField(scan), group, csvField(name), number(value),
                    shown.unit, csvField(remark), effect.is_null() ? "" : number(effect["without"]),
-                   effect.is_null() ? "" : number(effect["error"]));
+                   effect.is_null() ? "" : number(effect["error"]), layer);
   };
   for (const ArealRow& row : kArealRows)
     if (report.contains(row.key)) {

@@ -54,9 +54,10 @@ struct ArealLine {
 /// The same lines without values and units: of parameters that are still to be measured.
 [[nodiscard]] std::vector<ArealLine> arealNames();
 
-/// Rows "scan,group,parameter,value,unit,remark,without_noise,error" of a report of addAreal, in the scan's units, ratios in per cent;
-/// without the heading kArealHeading.
+/// Rows of kArealHeading of a report of addAreal, in the scan's units, ratios in per cent; the last one is the form that lies
+/// over the scan, `layer` of the report.
 [[nodiscard]] std::string arealRows(const std::string& scan, const Report& report);
-inline constexpr const char* kArealHeading = "scan,group,parameter,value,unit,remark,without_noise,error\n";
+inline constexpr const char* kArealHeading =
+    "scan,group,parameter,value,unit,remark,without_noise,error,layer\n";
 
 }  // namespace fettle::app

@@ -66,7 +66,8 @@ TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
   // From the plane z = x tan 30 to (2, 2, 6).
   const double turn = std::acos(-1.0) / 6.0;
   EXPECT_NEAR(report["between"]["distance_mm"], 6.0 * std::cos(turn) - 2.0 * std::sin(turn), 1e-5);
-  EXPECT_TRUE(bytesOf(csv).starts_with("region,shape,figure,value,standard_error,unit\n1,plane,point_x,"));
+  EXPECT_TRUE(
+      bytesOf(csv).starts_with("region,shape,figure,value,standard_error,unit,layer\n1,plane,point_x,"));
   const auto left = fettleJson({"info", residuals, "--unit", "mm"});
   EXPECT_EQ(left["no_data"], 50);
   EXPECT_LT(left["max"].get<double>(), 1e-6);

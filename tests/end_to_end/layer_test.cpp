@@ -39,6 +39,23 @@ std::string ballGrid() {
   return text.str();
 }
 
+std::string textOf(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// Every row of a table, the heading too, ends so.
+void expectRowsEnd(const std::string& path, const std::string& heading, const std::string& cells) {
+  std::istringstream in(textOf(path));
+  std::string line;
+  ASSERT_TRUE(std::getline(in, line));
+  EXPECT_TRUE(line.ends_with(heading)) << line;
+  int rows = 0;
+  for (; std::getline(in, line); ++rows) ASSERT_TRUE(line.ends_with(cells)) << line;
+  EXPECT_GT(rows, 0) << path;
+}
+
 class Layer : public testing::Test {
  protected:
   void SetUp() override {
@@ -216,6 +233,68 @@ TEST_F(Layer, WhatMeansTheSamplesTakesThemWithTheForm) {
   runWhole({"transform", scan_, file("t.tif"), "--turn", "90"});
   EXPECT_EQ(engine::contentHash(fieldOf(file("t.fettle"))), engine::contentHash(fieldOf(file("t.tif"))));
   EXPECT_EQ(fettleJson({"align", scan_, session_, "--moves", "level"})["schema"], "fettle.align/1");
+}
+
+// Who has a figure must see that it is of what is left when the form is taken out.
+TEST_F(Layer, FiguresSayThatAFormLiesOverTheScan) {
+  const std::string said = "without the form poly2 that lies over the scan";
+  const std::vector<std::vector<std::string>> commands = {
+      {"measure", "--only", "height", "--noise-trials", "0", "--csv"},
+      {"features", "--csv"},
+      {"fit", "--shape", "plane", "--csv"},
+      {"section", "--start", "1,1", "--end", "4,1", "--csv"}};
+  for (const std::vector<std::string>& command : commands) {
+    SCOPED_TRACE(command.front());
+    for (const bool layered : {true, false}) {
+      std::vector<std::string> arguments = command;
+      arguments.insert(arguments.begin() + 1, layered ? session_ : scan_);
+      const std::string table = file((command.front() + (layered ? "_layer.csv" : ".csv")).c_str());
+      arguments.push_back(table);
+      const Outcome text = fettle(arguments);
+      ASSERT_EQ(text.status, 0) << text.err;
+      EXPECT_EQ(text.out.find(said) != std::string::npos, layered) << text.out;
+      arguments = command;
+      arguments.pop_back();  // --csv
+      arguments.insert(arguments.begin() + 1, layered ? session_ : scan_);
+      const auto report = fettleJson(arguments);
+      EXPECT_EQ(report.contains("layer"), layered);
+      if (layered) {
+        EXPECT_EQ(report["layer"], "poly2");
+      }
+      expectRowsEnd(table, ",layer", layered ? ",poly2" : ",");
+    }
+  }
+}
+
+TEST_F(Layer, ASectionStatesWhatLiesOverBothScansAndItsInterpolation) {
+  for (const std::string how : {"bilinear", "nearest"}) {
+    const std::string csv = file("s.csv"), plot = file("s.svg");
+    std::vector<std::string> arguments = {
+        "section", scan_,   "--compare", session_,  "--start",         "1,1", "--end",
+        "4,1",     "--csv", csv,         "--force", "--interpolation", how};
+    const auto report = fettleJson(arguments);
+    EXPECT_EQ(report["interpolation"], how);
+    EXPECT_FALSE(report.contains("layer"));
+    EXPECT_EQ(report["other_layer"], "poly2");
+    expectRowsEnd(csv, ",interpolation,layer,other_layer", "," + how + ",,poly2");
+    arguments.insert(arguments.end(), {"--plot", plot});
+    const Outcome text = fettle(arguments);
+    ASSERT_EQ(text.status, 0) << text.err;
+    const std::string said = how + " between samples, without the form poly2 that lies over the other scan";
+    EXPECT_NE(text.out.find("heights " + said), std::string::npos) << text.out;
+    EXPECT_NE(textOf(plot).find(said), std::string::npos);
+  }
+}
+
+TEST_F(Layer, AReportStatesItInItsTablesAndCaptions) {
+  const std::string page = file("page.html");
+  const auto report = fettleJson({"report", session_, page, "--noise-trials", "0", "--section", "1,1:4,1"});
+  EXPECT_EQ(report["layer"], "poly2");
+  const std::string html = textOf(page);
+  for (const char* said :
+       {"Form over the scan, left out of all figures", "; without the form poly2 that lies over the scan.",
+        "long, bilinear between samples, without the form poly2 that lies over the scan"})
+    EXPECT_NE(html.find(said), std::string::npos) << said;
 }
 
 TEST_F(Layer, WhatHasNoEffectIsRefused) {

@@ -305,9 +305,9 @@ TEST(Measure, CsvHasARowPerScanAndParameter) {
   std::string line, all;
   int rows = 0;
   while (std::getline(in, line)) ++rows, all += line + "\n";
-  EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark,without_noise,error\n"));
+  EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark,without_noise,error,layer\n"));
   EXPECT_EQ(rows, 1 + 2 * (24 + 2));
-  EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat,,\n"), std::string::npos)
+  EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat,,,\n"), std::string::npos)
       << all;
   EXPECT_NE(all.find(",height,Sq,0.0014"), std::string::npos) << all;
   EXPECT_EQ(all.find("nan"), std::string::npos) << all;

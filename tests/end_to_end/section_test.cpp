@@ -58,8 +58,9 @@ TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
   EXPECT_NEAR(report["sections"][0]["deviation"]["mean_mm"], 0.25, 1e-6);
   EXPECT_EQ(report["sections"][0]["without_height"], 1);
   const std::string csv = bytesOf(folder.file("p.csv"));
-  EXPECT_TRUE(csv.starts_with("section,along_mm,x_mm,y_mm,height_mm,share,other_mm\n0,0,0,1,1"));
-  EXPECT_NE(csv.find("\n0,1,1,1,,0,\n"), std::string::npos);
+  EXPECT_TRUE(csv.starts_with(
+      "section,along_mm,x_mm,y_mm,height_mm,share,other_mm,interpolation,layer,other_layer\n0,0,0,1,1"));
+  EXPECT_NE(csv.find("\n0,1,1,1,,0,,bilinear,,\n"), std::string::npos);
   // A hole divides the first polyline.
   const std::string dxf = bytesOf(folder.file("p.dxf"));
   std::size_t polylines = 0;

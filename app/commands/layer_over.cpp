@@ -1,0 +1,33 @@
+#include "app/commands/layer_over.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands/form_option.h"
+#include "engine/field/nominal_form.h"
+
+namespace fettle::app {
+
+std::string layerOver(const engine::Version& field) {
+  const engine::FieldForm& form = field.formOver();
+  return form == nullptr ? std::string() : formWordOf(*form);
+}
+
+void addLayer(Report& report, const engine::Version& field, const char* key) {
+  if (std::string layer = layerOver(field); !layer.empty()) report[key] = std::move(layer);
+}
+
+std::string layerOf(const Report& report, const char* key) {
+  return report.value(key, std::string());
+}
+
+std::string layerText(const std::string& layer, const char* scan) {
+  return layer.empty() ? std::string() : fmt::format("without the form {} that lies over {}", layer, scan);
+}
+
+void printLayer(const Report& report) {
+  if (const std::string text = layerText(layerOf(report)); !text.empty()) fmt::print("{}\n", text);
+}
+
+}  // namespace fettle::app
