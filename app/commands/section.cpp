@@ -26,6 +26,7 @@
 #include "app/work/streams.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/measure/around.h"
 #include "engine/measure/probe.h"
 #include "engine/measure/section.h"
 
@@ -151,7 +152,7 @@ Report describedSection(std::size_t index, const Section& section) {
 engine::Result<Report> probed(const SectionArguments& options, const ReadScan& scan) {
   Report report = Report::array();
   const engine::Grid& grid = scan.field.grid();
-  const double radius = options.probe_radius.value_or(5.0 * std::max(grid.spacingXMm(), grid.spacingYMm()));
+  const double radius = options.probe_radius.value_or(engine::usualProbeRadiusMm(grid));
   for (const std::string& text : options.probes) {
     const std::vector<double> at = numbersOf(text, 2);
     const auto figures =

@@ -61,10 +61,13 @@ engine::Result<CoarseForm> coarseForm(const engine::Version& field, const engine
   coarse.step = std::max(1, static_cast<std::int32_t>(
                                 std::ceil(std::sqrt(static_cast<double>(field.grid().samples()) / cells))));
   coarse.means = engine::meansOf(field, allOf(field), coarse.step);
-  auto surface = fittedSurface(coarse.means, choice, job);
+  engine::FormChoice of_means = choice;
+  if (choice.through) of_means.through = choice.through->onMeans(field.grid(), coarse.step);
+  auto surface = fittedSurface(coarse.means, of_means, job);
   if (!surface) return tl::unexpected(surface.error());
   coarse.surface = *std::move(surface);
-  const auto other = fittedSurface(engine::meansOf(coarse.means, allOf(coarse.means), 2), choice, job);
+  if (of_means.through) of_means.through = of_means.through->onMeans(coarse.means.grid(), 2);
+  const auto other = fittedSurface(engine::meansOf(coarse.means, allOf(coarse.means), 2), of_means, job);
   if (!other) return tl::unexpected(other.error());
   coarse.off_rms = rmsBetween(coarse.surface.reader(), other->reader());
   return coarse;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -84,6 +86,20 @@ Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const Form
   return fitted;
 }
 
+Result<FittedForm> fitThrough(const Version& field, const FormChoice& choice) {
+  if (choice.kind != FormKind::kPlane || choice.robust)
+    return inputError("three points are those of a plane, and all of their samples count", "through",
+                      choice.robust ? "fit it without robustness" : "take the form plane");
+  auto plane = planeThrough(field, *choice.through, choice.region);
+  if (!plane) return tl::unexpected(plane.error());
+  FittedForm fitted;
+  fitted.form = plane->form;
+  fitted.samples = plane->samples;
+  fitted.rms = plane->rms;
+  fitted.through = *std::move(plane);
+  return fitted;
+}
+
 }  // namespace
 
 Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid) {
@@ -128,7 +144,22 @@ Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid) {
   return form;
 }
 
+std::optional<Tilt> tiltOf(const FittedForm& fit, const Grid& grid) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto degrees = [](double radians) { return radians * 180.0 / std::numbers::pi; };
+  const PolynomialForm* form = fit.form.polynomial();
+  if (form == nullptr || form->degree == 0) return std::nullopt;
+  const PolynomialForm::Gradient gradient = form->gradient();
+  const double slope_x = gradient.by_column * grid.height_unit.mm / grid.spacingXMm(),
+               slope_y = gradient.by_row * grid.height_unit.mm / grid.spacingYMm();
+  const auto errorOf = [&](double slope, double error) { return degrees(error / (1.0 + slope * slope)); };
+  return Tilt{degrees(std::atan(slope_x)), degrees(std::atan(slope_y)),
+              errorOf(slope_x, fit.through ? fit.through->slope_x_error : kNone),
+              errorOf(slope_y, fit.through ? fit.through->slope_y_error : kNone)};
+}
+
 Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice, JobControl& job) {
+  if (choice.through) return fitThrough(field, choice);
   const FormInfo& info = infoOf(choice.kind);
   if (info.shape) return fitShapeForm(field, *info.shape, choice, job);
   auto fit = fitForm(field, {info.degree, choice.region, choice.robust}, job);

@@ -10,6 +10,7 @@
 #include "engine/measure/fit.h"
 #include "engine/measure/form_kind.h"
 #include "engine/measure/region.h"
+#include "engine/measure/three_points.h"
 
 namespace fettle::engine {
 
@@ -18,6 +19,8 @@ struct FormChoice {
   FormKind kind = FormKind::kPlane;
   Region region = Region::kAll;
   bool robust = false;  ///< steps, spikes and other samples far from the form do not count
+  /// A plane through three means of heights, those of the region; not with `robust`.
+  std::optional<ThreePoints> through = {};
 
   friend bool operator==(const FormChoice&, const FormChoice&) = default;
 };
@@ -32,10 +35,13 @@ struct FittedForm {
       true;  ///< false: so few samples do not determine the polynomial, it is the flattest of those
   std::optional<ShapeFit> fit;  ///< of a shape
   std::int64_t beyond = 0;      ///< samples of the region beyond the outline of the shape (shape_form.h)
+  /// Of a plane through three points: `samples` and `rms` are those of the samples around these.
+  std::optional<ThreePointPlane> through = {};
 };
 
 /// A polynomial by fitForm() (form.h), of heights; a shape by fitShape() (fit.h), of orthogonal distances, as `fettle fit` has
-/// it and ISO 25178-3 for the F-operation: a steep flank then counts no more than a flat one. Signs applied.
+/// it and ISO 25178-3 for the F-operation: a steep flank then counts no more than a flat one; a plane through three points by
+/// planeThrough() (three_points.h), which names "through" where it refuses. Signs applied.
 ///
 /// A shape is fitted to at most some four million samples, evenly spread over larger regions: its figures then have the standard
 /// errors of as many. Refused (kInput): a region without samples; what the samples do not determine, as fitShape; a shape
@@ -43,6 +49,15 @@ struct FittedForm {
 /// Errors else, accuracy, threads and cost as of those two; one more pass.
 [[nodiscard]] Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice,
                                                 JobControl& job);
+
+/// How a polynomial is tilted in the middle of its field [degrees], up to higher x and y.
+struct Tilt {
+  double x_deg = 0.0, y_deg = 0.0;
+  /// Standard errors, of a plane through three points; else NaN, as where each has but one sample.
+  double x_error_deg = 0.0, y_error_deg = 0.0;
+};
+/// None of a shape, and of a mean height.
+[[nodiscard]] std::optional<Tilt> tiltOf(const FittedForm& fit, const Grid& grid);
 
 /// The form that a fitted sphere, cylinder or cone is over a field of this grid. Errors: one that is too steep (kInput).
 [[nodiscard]] Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid);

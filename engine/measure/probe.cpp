@@ -9,7 +9,8 @@
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
-#include <glm/geometric.hpp>
+
+#include "engine/measure/around.h"
 
 namespace fettle::engine {
 
@@ -28,26 +29,14 @@ Result<ProbeFigures> probeAt(const Version& field, glm::dvec2 at, double radius_
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
   const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
-  if (!std::isfinite(at.x) || !std::isfinite(at.y) || !(radius_mm > 0.0) ||
-      !(radius_mm * radius_mm / (spacing.x * spacing.y) < 1e6))
+  if (!canProbe(grid, at, radius_mm))
     return inputError("there is no such place or radius", "probe",
                       "give fewer than a thousand samples as radius");
-  const auto within = [](double value, std::int32_t side) {
-    return static_cast<std::int32_t>(std::clamp(value, 0.0, side - 1.0));
-  };
-  const glm::dvec2 low = (at - radius_mm) / spacing - 1e-9, high = (at + radius_mm) / spacing + 1e-9;
   std::vector<ProbedSample> samples;
-  for (std::int32_t r = within(std::ceil(low.y), grid.height); r <= within(std::floor(high.y), grid.height);
-       ++r)
-    for (std::int32_t c = within(std::ceil(low.x), grid.width); c <= within(std::floor(high.x), grid.width);
-         ++c) {
-      const glm::dvec2 from = (glm::dvec2(c, r) * spacing - at) / radius_mm;
-      const double z = reader.heightAt(c, r);
-      if (glm::length(from) > 1.0 + 1e-9 || std::isnan(z) ||
-          (region != Region::kAll && reader.markedAt(c, r) != (region == Region::kMarked)))
-        continue;
-      samples.push_back({from.x, from.y, z * grid.height_unit.mm});
-    }
+  forEachAround(reader, at, radius_mm, region, [&](std::int32_t c, std::int32_t r, double z) {
+    const glm::dvec2 from = (glm::dvec2(c, r) * spacing - at) / radius_mm;
+    samples.push_back({from.x, from.y, z * grid.height_unit.mm});
+  });
   const auto n = static_cast<Eigen::Index>(samples.size());
   Eigen::MatrixXd rows(n, kQuadratic);
   Eigen::VectorXd heights(n);
