@@ -1,6 +1,5 @@
 #include "app/commands/form_option.h"
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -8,7 +7,9 @@
 #include <glm/vec3.hpp>
 
 #include "app/commands/scan_files.h"
+#include "app/commands/section_options.h"
 #include "app/terminal.h"
+#include "app/work/section_report.h"
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
 
@@ -18,6 +19,14 @@ namespace {
 
 constexpr const char* kNoForm = "none";
 constexpr const char* kMeasured = "measured";
+
+// Nothing where the text is not three points.
+std::optional<engine::ThreePoints> throughOf(const FormArguments& arguments) {
+  if (arguments.through.empty()) return std::nullopt;
+  const auto points = polylineOf(arguments.through, "--through");
+  if (!points || points->size() != 3) return std::nullopt;
+  return engine::ThreePoints{{points->at(0), points->at(1), points->at(2)}, arguments.probe_mm.value_or(0.0)};
+}
 
 }  // namespace
 
@@ -55,13 +64,35 @@ void addFormOptions(Command command, FormArguments& arguments) {
        .to = &arguments.marks,
        .text = "Picture of marks for --region, instead of the marks of a session",
        .kind = ValueKind::kMarks},
+      {.name = "--through",
+       .to = &arguments.through,
+       .text = "The plane through the mean heights around three points instead, mm from the lower left "
+               "sample",
+       .shown = "X,Y:X,Y:X,Y"},
+      {.name = "--probe",
+       .to = &arguments.probe_mm,
+       .text = "Samples this near to a point of --through count",
+       .range = Range{1e-9, 1e9},
+       .unit = "mm",
+       .otherwise = "5 samples"},
   });
 }
 
 engine::FormChoice formChoiceOf(const FormArguments& arguments) {
   const engine::FormInfo* form = engine::formNamed(arguments.form);
   return {form != nullptr ? form->kind : engine::FormKind::kMean,
-          engine::regionNamed(arguments.region).value_or(engine::Region::kAll), arguments.robust};
+          engine::regionNamed(arguments.region).value_or(engine::Region::kAll), arguments.robust,
+          throughOf(arguments)};
+}
+
+void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments& arguments) {
+  arguments.through.clear();
+  arguments.probe_mm.reset();
+  if (!points) return;
+  const auto& [first, second, third] = points->at_mm;
+  arguments.through =
+      fmt::format("{},{}:{},{}:{},{}", first.x, first.y, second.x, second.y, third.x, third.y);
+  if (points->radius_mm > 0.0) arguments.probe_mm = points->radius_mm;
 }
 
 engine::Result<engine::Version> countedOf(const engine::Version& field,
@@ -80,6 +111,18 @@ engine::Status checkForm(const FormArguments& arguments) {
   if (!arguments.marks.empty() && arguments.region != "marked" && arguments.region != "unmarked")
     return engine::inputError("marks choose nothing in this region", "--marks",
                               "add --region marked or --region unmarked");
+  if (arguments.through.empty() && arguments.probe_mm)
+    return engine::inputError("there are no points around which samples would count", "--probe",
+                              "add --through X,Y:X,Y:X,Y");
+  if (arguments.through.empty()) return {};
+  if (!throughOf(arguments))
+    return engine::inputError(fmt::format("'{}' is not three points", arguments.through), "--through",
+                              "give X,Y:X,Y:X,Y in mm from the lower left sample");
+  if (arguments.form != engine::infoOf(engine::FormKind::kPlane).word)
+    return engine::inputError("three points are those of a plane", "--form", "omit it, or take plane");
+  if (arguments.robust)
+    return engine::inputError("around three points all samples count", "--robust",
+                              "omit it, or leave samples out by --region with --marks");
   return {};
 }
 
@@ -120,14 +163,13 @@ void addForm(Report& report, const FormArguments& arguments, const engine::Fitte
   report["form"] = arguments.form;
   report["robust"] = arguments.robust;
   report["region"] = arguments.region;
-  const auto degreesOf = [](double radians) { return radians * 180.0 / std::numbers::pi; };
   if (fit.fit) {
     const engine::Shape& shape = fit.fit->shape;
     const auto vector = [](const glm::dvec3& v) { return Report::array({v.x, v.y, v.z}); };
     report["point_mm"] = vector(shape.point);
     if (shape.kind != engine::ShapeKind::kSphere) report["direction"] = vector(shape.direction);
     if (shape.kind == engine::ShapeKind::kCone)
-      report["half_angle_deg"] = degreesOf(shape.half_angle);
+      report["half_angle_deg"] = shape.half_angle * 180.0 / std::numbers::pi;
     else
       report["radius_mm"] = shape.radius;
     report["hollow"] = shape.hollow;
@@ -135,14 +177,17 @@ void addForm(Report& report, const FormArguments& arguments, const engine::Fitte
     report["beyond"] = fit.beyond;
     return;
   }
-  const engine::PolynomialForm& form = *fit.form.polynomial();
-  if (form.degree == 0) return;
-  const engine::PolynomialForm::Gradient gradient = form.gradient();
-  const auto degrees = [&](double per_sample, double spacing_mm) {
-    return degreesOf(std::atan(per_sample * grid.height_unit.mm / spacing_mm));
-  };
-  report["tilt_x"] = degrees(gradient.by_column, grid.spacingXMm());
-  report["tilt_y"] = degrees(gradient.by_row, grid.spacingYMm());
+  const auto tilt = engine::tiltOf(fit, grid);
+  if (!tilt) return;
+  report["tilt_x"] = tilt->x_deg;
+  report["tilt_y"] = tilt->y_deg;
+  if (!fit.through) return;
+  report["tilt_x_error"] = numberOrNull(tilt->x_error_deg);
+  report["tilt_y_error"] = numberOrNull(tilt->y_error_deg);
+  report["through"] = Report::array();
+  for (const engine::ThreePointPlane::Mean& mean : fit.through->means)
+    report["through"].push_back(
+        {{"x", mean.at_mm.x}, {"y", mean.at_mm.y}, {"height", mean.height}, {"samples", mean.samples}});
 }
 
 }  // namespace fettle::app

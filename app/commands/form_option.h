@@ -18,6 +18,9 @@ struct FormArguments {
   bool robust = false;
   std::string region = "all";
   std::string marks;  ///< a picture of marks instead of the scan's own; empty: none
+  std::string through =
+      {};  ///< X,Y:X,Y:X,Y [mm]: a plane through three points; empty: one that is nearest to all samples
+  std::optional<double> probe_mm = {};  ///< around each of these
 };
 
 /// "none", "mean", "plane", "poly2" to "poly5", "sphere", "cylinder", "cone".
@@ -26,11 +29,14 @@ struct FormArguments {
 /// The word of a form.
 [[nodiscard]] std::string formWordOf(const engine::NominalForm& form);
 
-/// --form, --robust, --region, --marks.
+/// --form, --robust, --region, --marks, --through, --probe.
 void addFormOptions(Command command, FormArguments& arguments);
 
-/// What the arguments mean, as typed and checked by their rows.
+/// What the arguments mean, as typed and checked by their rows and by checkForm().
 [[nodiscard]] engine::FormChoice formChoiceOf(const FormArguments& arguments);
+
+/// The same points and radius as arguments.
+void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments& arguments);
 
 /// The field that is measured: with the marks of the arguments, and in the region "measured" with holes in place of the
 /// samples that were filled since `original`, that of a session. `scan` is its path. Errors: as withMarks; the region
@@ -41,7 +47,8 @@ void addFormOptions(Command command, FormArguments& arguments);
                                                         const FormArguments& arguments,
                                                         engine::JobControl& job);
 
-/// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples.
+/// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples, three points of another
+/// form than a plane or of a robust one, a radius without them; and points that are not three.
 [[nodiscard]] engine::Status checkForm(const FormArguments& arguments);
 
 /// The form of a field; of "none" the form whose height is 0 everywhere. Warns of a polynomial that so few samples do not
@@ -53,7 +60,7 @@ void addFormOptions(Command command, FormArguments& arguments);
                                                         engine::JobControl& job);
 
 /// The form as keys of a report: form, robust, region; of a plane and more tilt_x, tilt_y [degrees], tilted up to
-/// higher x and y; of a shape, as `fettle fit` names them, point_mm, direction, radius_mm or half_angle_deg, hollow, left_out, and
+/// higher x and y; of three points their standard errors and through, the mean heights; of a shape, as `fettle fit` names them, point_mm, direction, radius_mm or half_angle_deg, hollow, left_out, and
 /// beyond, samples beyond its outline.
 void addForm(Report& report, const FormArguments& arguments, const engine::FittedForm& fit,
              const engine::Grid& grid);

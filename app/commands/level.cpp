@@ -174,6 +174,8 @@ void addLevel(Command root, Chosen& chosen) {
       {{"fettle level scan.tif level.tif", "The plane that is nearest to all samples becomes level"},
        {"fettle level scan.tif level.tif --form poly2 --robust",
         "A slightly bent plate becomes level, whatever stands on it"},
+       {"fettle level scan.tif level.tif --through 5,5:95,8:50,90 --probe 1",
+        "The plane through three places of a part, each the mean of the samples within 1 mm"},
        {"fettle level scan.tif level.tif --rows median --region unmarked --marks marks.png",
         "Every line of an AFM scan at the same height, then the plane, by what is not marked"},
        {"fettle level scan.tif level.tif --rows matching --keep-form 5 --form none",

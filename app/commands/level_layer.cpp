@@ -93,7 +93,8 @@ engine::Status checkLayer(const std::string& layer, const FormArguments& form,
     for (const auto& [given, option] : {std::pair(form.form != usual.form, "--form"),
                                         {form.robust, "--robust"},
                                         {form.region != usual.region, "--region"},
-                                        {!form.marks.empty(), "--marks"}})
+                                        {!form.marks.empty(), "--marks"},
+                                        {!form.through.empty(), "--through"}})
       if (given)
         return engine::inputError("the session's layer has its form", option, "omit it, or take --layer put");
   if (layer == kLayerBake) return {};

@@ -127,7 +127,8 @@ PlannedOnPieces plannedLevel(const engine::Version& field, const engine::Version
       if (auto fit = engine::fitNominalForm(spread, choice, job); !fit) return taken(fit.error());
       choice.robust = false;
     }
-    auto fit = engine::fitNominalForm(level, choice, job);
+    // Three points may lie elsewhere, and take no time.
+    auto fit = engine::fitNominalForm(choice.through ? counted : level, choice, job);
     if (!fit) return taken(fit.error());
     levelling.fit = *std::move(fit);
     auto result = levelling.takenFrom(piece, job);

@@ -62,7 +62,8 @@ class StepReader {
       return edges(what == kLinesWord ? EdgesBecome::kLines : EdgesBecome::kMarks);
     }
     if (what == kLevelWord) {
-      onlyKeys(what, {"do", "rows", "scan_axis", "keep_form", "form", "robust", "region"});
+      onlyKeys(what,
+               {"do", "rows", "scan_axis", "keep_form", "form", "robust", "region", "through", "probe"});
       return level();
     }
     if (what == kFillWord) {
@@ -78,7 +79,7 @@ class StepReader {
       return transform();
     }
     if (what == kFormWord) {
-      onlyKeys(what, {"do", "layer", "form", "robust", "region"});
+      onlyKeys(what, {"do", "layer", "form", "robust", "region", "through", "probe"});
       return form();
     }
     onlyKeys(what, {"do"});
@@ -262,6 +263,29 @@ class StepReader {
     what.form = word("form", forms, what.form);
     what.region = word("region", {"all", "marked", "unmarked"}, what.region);
     yesOrNo("robust", what.robust);
+    if (const toml::node* node = table_.get("through")) through(*node, what);
+    if (const toml::node* node = table_.get("probe")) {
+      double radius = 0.0;
+      number("probe", radius, 1e-9, 1e9);
+      what.probe_mm = radius;
+      if (what.through.empty()) complain(*node, "probe is that of three points: add through");
+    }
+  }
+
+  // Three points of a plane.
+  void through(const toml::node& node, FormArguments& what) {
+    std::vector<double> numbers;
+    if (const toml::array* list = node.as_array(); list != nullptr && list->size() == 3)
+      for (const toml::node& point : *list)
+        if (const toml::array* xy = point.as_array(); xy != nullptr && xy->size() == 2)
+          for (const toml::node& each : *xy)
+            if (const auto value = each.value<double>(); value && std::isfinite(*value))
+              numbers.push_back(*value);
+    if (numbers.size() != 6) return complain(node, "through is not a list of three points, [x, y] in mm");
+    setThrough(engine::ThreePoints{{glm::dvec2(numbers[0], numbers[1]), glm::dvec2(numbers[2], numbers[3]),
+                                    glm::dvec2(numbers[4], numbers[5])}},
+               what);
+    if (what.form != "plane" || what.robust) complain(node, "through is that of a plane which is not robust");
   }
 
   RecipeForm form() {
@@ -272,7 +296,7 @@ class StepReader {
     if (step.layer == kLayerPut)
       fitted(step.form, false);
     else
-      for (const char* key : {"form", "robust", "region"})
+      for (const char* key : {"form", "robust", "region", "through", "probe"})
         if (const toml::node* node = table_.get(key))
           complain(*node, fmt::format("{} is that of a form that is put, and the field has its own", key));
     return step;
@@ -389,14 +413,25 @@ std::string textOf(const RecipeEdges& step) {
                      step.choice.sensitivity, step.choice.thickness);
 }
 
+std::string textOf(const FormArguments& form) {
+  std::string text =
+      fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", form.form, form.robust, form.region);
+  if (const auto points = formChoiceOf(form).through) {
+    text += "through = [";
+    for (const glm::dvec2& at : points->at_mm) text += fmt::format("[{}, {}], ", at.x, at.y);
+    text.replace(text.size() - 2, 2, "]  # mm\n");
+  }
+  if (form.probe_mm) text += fmt::format("probe = {}  # mm\n", *form.probe_mm);
+  return text;
+}
+
 std::string textOf(const RecipeLevel& step) {
   std::string text = fmt::format("do = \"{}\"\n", kLevelWord);
   if (!step.lines.rows.empty())
     text += fmt::format("rows = \"{}\"\nscan_axis = \"{}\"\n", step.lines.rows, step.lines.scan_axis);
   if (step.lines.keep_form != LineArguments::kNoForm)
     text += fmt::format("keep_form = {}\n", step.lines.keep_form);
-  return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
-                            step.form.region);
+  return text + textOf(step.form);
 }
 
 // A length as typed: one without a unit is a number.
@@ -446,8 +481,7 @@ std::string textOf(const RecipeTransform& step) {
 std::string textOf(const RecipeForm& step) {
   std::string text = fmt::format("do = \"{}\"\nlayer = \"{}\"\n", kFormWord, step.layer);
   if (step.layer != kLayerPut) return text;
-  return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
-                            step.form.region);
+  return text + textOf(step.form);
 }
 
 std::string textOf(const RecipeInvert&) {

@@ -174,6 +174,7 @@ class FormSteps {
       step = RecipeForm{kLayerBake, {}};
     } else if (made->fitted) {
       step = RecipeForm{kLayerPut, {made->fitted->form, made->fitted->robust, made->fitted->region, {}}};
+      setThrough(made->fitted->through, step->form);
     } else if (after.formOver() == nullptr) {
       step = RecipeForm{kLayerRemove, {}};
     }

@@ -365,7 +365,7 @@ bool LoopClient::changeForm(FormChange& change) {
   if (change.choice)
     made.fitted = haptic::journal::FormFitted{std::string(engine::infoOf(change.choice->kind).word),
                                               std::string(engine::wordOf(change.choice->region)),
-                                              change.choice->robust};
+                                              change.choice->robust, change.choice->through};
   const engine::Version after = change.changed;
   steps_.change(change.name, engine::StepKind::kForm, after, place_, std::move(made));
   restore(after);

@@ -93,11 +93,27 @@ std::optional<journal::EdgesSuggested> suggestedOf(const json& in) {
                                  found->at("thickness").get<double>()};
 }
 
+// Three points of a plane, and the radius around each where one was said.
+std::optional<engine::ThreePoints> throughOf(const json& in) {
+  const auto found = in.find("through");
+  if (found == in.end()) return std::nullopt;
+  engine::ThreePoints points;
+  for (std::size_t k = 0; k < points.at_mm.size(); ++k)
+    points.at_mm[k] = {found->at(k).at(0).get<double>(), found->at(k).at(1).get<double>()};
+  points.radius_mm = in.value("probe_mm", 0.0);
+  return points;
+}
+
+void put(json& out, const engine::ThreePoints& points) {
+  for (const glm::dvec2& at : points.at_mm) out["through"].push_back({at.x, at.y});
+  if (points.radius_mm > 0.0) out["probe_mm"] = points.radius_mm;
+}
+
 std::optional<journal::FormFitted> fittedOf(const json& in) {
   const auto found = in.find("fitted");
   if (found == in.end()) return std::nullopt;
   return journal::FormFitted{found->at("form").get<std::string>(), found->at("region").get<std::string>(),
-                             found->at("robust").get<bool>()};
+                             found->at("robust").get<bool>(), throughOf(*found)};
 }
 
 constexpr std::array<std::string_view, 2> kFillMethods = {"membrane", "curvature"};
@@ -230,6 +246,7 @@ std::string journalText(const journal::Entry& entry) {
             if (e.fitted)
               out["fitted"] = {
                   {"form", e.fitted->form}, {"region", e.fitted->region}, {"robust", e.fitted->robust}};
+            if (e.fitted && e.fitted->through) put(out["fitted"], *e.fitted->through);
             put(out, e.at);
           },
           [&](const journal::RestoreRequested& e) {

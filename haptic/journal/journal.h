@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/filter/filter.h"
 #include "engine/history/history.h"
+#include "engine/measure/three_points.h"
 #include "engine/session/session.h"
 #include "haptic/journal/computed_heights.h"
 #include "haptic/scene/scene.h"
@@ -62,6 +63,7 @@ struct FormFitted {
   std::string form;
   std::string region;
   bool robust = false;
+  std::optional<engine::ThreePoints> through = {};
 };
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
 /// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge

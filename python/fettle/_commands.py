@@ -77,12 +77,13 @@ def in_python(text):
 
 
 #: Parameters whose value is a list of points: as a word X,Y:X,Y.
-POLYLINES = {"--line"}
+POLYLINES = {"--line", "--through"}
 
 
 def is_places(row):
     """Whether a row takes points, each of which is one word: X,Y."""
-    return row["kind"] == "text" and row["values"] == "any" and not row["between"] and not row["positional"]
+    several = row["values"] == "any" or row["name"] in POLYLINES
+    return row["kind"] == "text" and several and not row["between"] and not row["positional"]
 
 
 def _places(row, value):
@@ -112,7 +113,7 @@ def type_of(row):
     """The type of a row's values, as it stands in a stub."""
     if is_places(row):
         one = "Sequence[Sequence[float]]" if row["name"] in POLYLINES else "Sequence[float]"
-        return f"str | {one} | Sequence[str | {one}]"
+        return f"str | {one}" if row["values"] == 1 else f"str | {one} | Sequence[str | {one}]"
     if row["kind"] == "text" and row["values"] == "any":
         return "str | float | Sequence[str | float]"
     if row["kind"] == "word":

@@ -564,6 +564,9 @@ SHOWN = {
         >>> level = tilted.level()
         >>> bool(np.abs(np.asarray(level)).max() < 1e-5), round(level.report["tilt_x"], 3)   # degrees
         (True, 45.0)
+        >>> three = tilted.level(through=[(1, 1), (23, 2), (12, 18)], probe=1.0)   # mm: the plane through three means
+        >>> round(three.report["tilt_x"], 3), three.report["through"][0]["samples"]
+        (45.0, 13)
         >>> formed = tilted.level(layer="put")                # the samples stay as they are under the form
         >>> np.array_equal(np.asarray(formed.level(layer="remove")), np.asarray(tilted))
         True

@@ -235,11 +235,14 @@ TEST(Recipe, HasTheFormsThatWerePutRemovedAndMadeHeights) {
   work.filter(specOf(FilterKind::kMedian, 5), "Median 5");
   work.form("Form out: plane", under(work.field(), 2.0), {{"plane", "unmarked", false}});
   work.form("Form back: plane", work.field().withForm(nullptr));
+  const engine::ThreePoints points{{{{0.5, 1.0 / 3.0}, {4.0, 1.0}, {2.0, 5.0}}}, 0.25};
+  work.form("Form out: plane", under(work.field(), 2.5), {{"plane", "all", false, points}});
+  work.form("Form back: plane", work.field().withForm(nullptr));
   work.form("Form out: cone", under(work.field(), 3.0), {{"cone", "all", false}});
   work.form("Heights without cone", work.field().withForm(nullptr), {}, true);
   const Recipe recipe = work.recipe();
   EXPECT_TRUE(recipe.left_out.empty());
-  ASSERT_EQ(recipe.steps.size(), 6U);
+  ASSERT_EQ(recipe.steps.size(), 8U);
   const auto step = [&](std::size_t k) { return std::get<RecipeForm>(recipe.steps[k]); };
   EXPECT_EQ(step(0).layer, "put");
   EXPECT_EQ(step(0).form.form, "sphere");
@@ -247,8 +250,9 @@ TEST(Recipe, HasTheFormsThatWerePutRemovedAndMadeHeights) {
   EXPECT_TRUE(std::holds_alternative<RecipeFilter>(recipe.steps[1]));
   EXPECT_EQ(step(2).form.region, "unmarked");
   EXPECT_EQ(step(3).layer, "remove");
-  EXPECT_EQ(step(4).form.form, "cone");
-  EXPECT_EQ(step(5).layer, "bake");
+  EXPECT_EQ(formChoiceOf(step(4).form).through, points);
+  EXPECT_EQ(step(6).form.form, "cone");
+  EXPECT_EQ(step(7).layer, "bake");
   // What is written is read to the same.
   const auto read = parseRecipe(recipeText(recipe), "a.toml");
   ASSERT_TRUE(read) << read.error().line();

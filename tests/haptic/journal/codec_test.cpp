@@ -256,6 +256,18 @@ TEST(Journal, AFormKeepsHowItWasFound) {
   EXPECT_EQ(read.fitted->form, "sphere");
   EXPECT_EQ(read.fitted->region, "unmarked");
   EXPECT_TRUE(read.fitted->robust);
+  EXPECT_FALSE(read.fitted->through);
+  // Three points to their bits, with a radius that was said and without.
+  for (const double radius : {0.0, 0.1 + 0.2}) {
+    step.fitted = {"plane", "all", false,
+                   engine::ThreePoints{{{{0.1, 2}, {1.0 / 3.0, 5e-7}, {-7, 8}}}, radius}};
+    const auto again = haptic::journalEntry(haptic::journalText(step));
+    ASSERT_TRUE(again) << again.error().line();
+    EXPECT_EQ(std::get<haptic::journal::StepMade>(*again).fitted->through, step.fitted->through);
+  }
+  std::string two = haptic::journalText(step);
+  two.replace(two.find(",[-7.0,8.0]"), std::string(",[-7.0,8.0]").size(), "");
+  EXPECT_FALSE(haptic::journalEntry(two));
   // As programs before wrote it.
   const std::string old =
       R"({"answered":true,"do":"step","form":true,"kind":"form","name":"Form out: plane","state":2,"tick":71})";
