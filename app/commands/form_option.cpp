@@ -7,7 +7,6 @@
 #include <glm/vec3.hpp>
 
 #include "app/commands/scan_files.h"
-#include "app/commands/section_options.h"
 #include "app/terminal.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"

@@ -211,20 +211,4 @@ void addFigureOptions(Command command, SectionArguments& options) {
               kFigureGroup);
 }
 
-engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text, const std::string& option) {
-  std::vector<glm::dvec2> points;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(':', from), text.size());
-    const std::vector<double> xy = numbersOf(std::string_view(text).substr(from, end - from), 2);
-    if (xy.empty())
-      return engine::inputError(fmt::format("'{}' is no polyline", text), option,
-                                "give X,Y:X,Y with as many points as you like, in mm");
-    points.emplace_back(xy[0], xy[1]);
-    from = end + 1;
-  }
-  if (points.size() < 2)
-    return engine::inputError(fmt::format("'{}' is one point", text), option, "give two or more, X,Y:X,Y");
-  return points;
-}
-
 }  // namespace fettle::app

@@ -47,8 +47,4 @@ void addFigureOptions(Command command, SectionArguments& options);
 /// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);
 
-/// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
-[[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
-                                                                 const std::string& option);
-
 }  // namespace fettle::app

@@ -217,6 +217,22 @@ std::vector<double> numbersOf(std::string_view text, std::size_t count) {
   return text.empty() ? numbers : std::vector<double>();
 }
 
+engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text, const std::string& option) {
+  std::vector<glm::dvec2> points;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(':', from), text.size());
+    const std::vector<double> xy = numbersOf(std::string_view(text).substr(from, end - from), 2);
+    if (xy.empty())
+      return engine::inputError(fmt::format("'{}' is no polyline", text), option,
+                                "give X,Y:X,Y with as many points as you like, in mm");
+    points.emplace_back(xy[0], xy[1]);
+    from = end + 1;
+  }
+  if (points.size() < 2)
+    return engine::inputError(fmt::format("'{}' is one point", text), option, "give two or more, X,Y:X,Y");
+  return points;
+}
+
 std::span<const std::string_view> sectionFigureKeys() noexcept {
   return kSectionKeys;
 }

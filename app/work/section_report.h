@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "app/report.h"
 #include "engine/base/error.h"
 #include "engine/measure/section.h"
@@ -47,6 +49,9 @@ struct SectionMark {
 
 /// Numbers with commas between them, exactly so many; none when the text is something else.
 [[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
+/// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
+[[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
+                                                                 const std::string& option);
 
 /// A number of a report; null for NaN.
 [[nodiscard]] Report numberOrNull(double value);
