@@ -48,7 +48,7 @@ class ThreePoints : public testing::Test {
   const std::string scan_ = folder_.file("plate.tif");
 };
 
-double degrees(double slope) {
+double degreesOf(double slope) {
   return std::atan(slope) * 180.0 / std::numbers::pi;
 }
 
@@ -57,7 +57,7 @@ TEST_F(ThreePoints, LevelThePlateUnderABlock) {
   EXPECT_EQ(level["form"], "plane");
   for (const auto& [key, slope] : {std::pair("tilt_x", 0.02), {"tilt_y", -0.01}}) {
     const double error = level[std::string(key) + "_error"];
-    EXPECT_NEAR(level[key].get<double>(), degrees(slope), 4.0 * error) << key;
+    EXPECT_NEAR(level[key].get<double>(), degreesOf(slope), 4.0 * error) << key;
     EXPECT_GT(error, 0.0);
     EXPECT_LT(error, 0.001);
   }
@@ -68,7 +68,7 @@ TEST_F(ThreePoints, LevelThePlateUnderABlock) {
   EXPECT_EQ(level["samples"], 80 + 81 + 81);
   // The plane that is nearest to all samples leans on the block.
   const auto nearest = fettleJson({"level", scan_, file("all.tif")});
-  EXPECT_GT(std::abs(nearest["tilt_y"].get<double>() - degrees(-0.01)), 0.05);
+  EXPECT_GT(std::abs(nearest["tilt_y"].get<double>() - degreesOf(-0.01)), 0.05);
   // What is left is the block on a level plate; parameters about the same plane.
   const auto at = fettleJson({"info", file("level.tif"), "--at", "89,0", "--at", "0,119", "--at", "40,60"});
   EXPECT_NEAR(at["at"][0]["height"].get<double>(), 0.0, 0.002);

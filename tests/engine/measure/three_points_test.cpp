@@ -16,7 +16,7 @@
 namespace fettle::engine {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 // Spacing 1:4 far from the origin, heights in micrometres.
 Version unevenly(const Version& field) {
@@ -51,7 +51,7 @@ TEST(ThreePointPlanes, AreExactOnAPlaneWhateverIsMissingAroundThePoints) {
   const auto z = [](int c, int r) { return 3.0 + 0.25 * c - 0.5 * r; };
   const Version field = unevenly(fieldOf(121, 41, [&](int c, int r) {
     const bool hole = (c == 20 && r == 10) || (c > 97 && r < 12) || (c + 2 * r) % 5 == 0;
-    return hole ? kNone : z(c, r);
+    return hole ? kGap : z(c, r);
   }));
   const FittedForm fit = planeOf(field, {{{{2.0, 4.0}, {9.73, 4.31}, {6.0, 14.2}}}, 1.0});
   for (int r = 0; r < 41; ++r)
@@ -93,7 +93,7 @@ TEST(ThreePointPlanes, CountTheSamplesOfTheirRegionAlone) {
 }
 
 TEST(ThreePointPlanes, ThatSayNothingAreRefused) {
-  const Version field = fieldOf(60, 50, [](int c, int r) { return c > 40 ? kNone : 0.5 * c + r; });
+  const Version field = fieldOf(60, 50, [](int c, int r) { return c > 40 ? kGap : 0.5 * c + r; });
   const auto refusal = [&](std::array<glm::dvec2, 3> at, double radius = 2.0) {
     return refusalOf(field, {.through = ThreePoints{at, radius}});
   };
@@ -102,7 +102,7 @@ TEST(ThreePointPlanes, ThatSayNothingAreRefused) {
   EXPECT_NE(refusal({{{5, 5}, {5, 5}, {35, 35}}}).find("nearly on a line"), std::string::npos);
   EXPECT_EQ(refusal({{{5, 5}, {50, 20}, {35, 35}}}), "no sample counts within 2 mm of 50,20");
   EXPECT_EQ(refusal({{{5, 5}, {-30, 20}, {35, 35}}}), "no sample counts within 2 mm of -30,20");
-  EXPECT_EQ(refusal({{{5, 5}, {kNone, 20}, {35, 35}}}), "there is no such place or radius");
+  EXPECT_EQ(refusal({{{5, 5}, {kGap, 20}, {35, 35}}}), "there is no such place or radius");
   EXPECT_EQ(refusal({{{5, 5}, {30, 5}, {5, 35}}}, 1e9), "there is no such place or radius");
   EXPECT_NE(refusalOf(fieldOf(90, 1, [](int c, int) { return 0.1 * c; }),
                       {.through = ThreePoints{{{{10, 0}, {40, 0}, {80, 0}}}, 2.0}})
@@ -133,7 +133,7 @@ TEST(ThreePointPlanes, AreAsSureAsTheyState) {
     std::normal_distribution<double> noise(0.0, 3.0);
     const Version field = unevenly(fieldOf(60, 40, [&](int c, int r) {
       const double n = noise(random);
-      return (c * 3 + r) % 11 == 0 ? kNone : 2.0 * c - 5.0 * r + n;
+      return (c * 3 + r) % 11 == 0 ? kGap : 2.0 * c - 5.0 * r + n;
     }));
     const auto plane = planeThrough(field, points, Region::kAll);
     ASSERT_TRUE(plane) << plane.error().line();
