@@ -32,6 +32,7 @@
 #include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
 #include "engine/fill/fill.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
@@ -159,6 +160,10 @@ engine::Status take(const RecipeFill& step, Applied& at, engine::JobControl& job
   if (!filled && filled.error().kind == engine::ErrorKind::kInput)
     return engine::inputError(filled.error().what, shownInput(at.task.in), filled.error().remedy);
   if (!filled) return tl::unexpected(filled.error());
+  // As fettle fill has it.
+  auto measured = engine::withoutReplaced(at.original, at.field, filled->field, job);
+  if (!measured) return tl::unexpected(measured.error());
+  at.original = *std::move(measured);
   at.field = std::move(filled->field);
   at.steps.push_back({{"do", "fill"},
                       {"method", step.what.method},

@@ -103,7 +103,11 @@ engine::Result<Report> fillOne(const FillRun& options, const BatchTask& task, en
   sayWhatStays(*done, task.in, *fill);
   sayWhatIsBeyond(*done, imported->field, task.in);
   engine::ExportOptions writing = options.writing;
-  writing.original = imported->original.value_or(imported->field);
+  // A height that was removed and is filled now was not measured: the session's scan loses it.
+  auto measured = engine::withoutReplaced(imported->original.value_or(imported->field), imported->field,
+                                          done->field, job);
+  if (!measured) return tl::unexpected(measured.error());
+  writing.original = *std::move(measured);
   auto known = KnownSteps::of(*imported, task, job);
   if (!known) return tl::unexpected(known.error());
   for (const auto& [file, what] :

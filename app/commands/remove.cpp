@@ -153,8 +153,9 @@ void addRemove(Command root, Chosen& chosen) {
       "For values that stand for no data, the table around a part, dust. Heights are those that fettle info "
       "shows. All other samples keep every bit, marks and edge lines stay. It is refused to remove every "
       "sample.\n"
-      "In a session the scan that it began with keeps these heights: changes are limited from them, and "
-      "holes that are filled afterwards do not count as filled there. Written to another format, what is "
+      "In a session the scan that it began with keeps these heights, and changes are limited from them, "
+      "until "
+      "the holes are filled: a filled sample is no measured one. Written to another format, what is "
       "removed is a hole like any other.");
   command.examples(
       {{"fettle remove scan.tif part.tif --below -0.2mm", "A part without the table it stands on"},

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/work/read_units.h"
+#include "engine/remove/remove_step.h"
 
 namespace fettle::app {
 
@@ -36,7 +37,7 @@ struct MakerName {
                      : between     ? ": between two heights"
                      : low && high ? ": outside two heights"
                                    : ": beyond a height";
-    return fmt::format("Remove {}{}", kOf[static_cast<std::size_t>(remove.region)], by);
+    return fmt::format("{} {}{}", engine::kRemoveStep, kOf[static_cast<std::size_t>(remove.region)], by);
   }
 };
 

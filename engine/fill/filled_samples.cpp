@@ -29,12 +29,14 @@ bool mayHaveFilled(const Tile& tile, const Tile& original) {
   return &tile != &original && original.nan_samples > 0 && tile.nan_samples < kTileSamples;
 }
 
-// A copy of the field with change(tile, row, filled bits) applied to tiles with filled samples; bounds are computed again.
-template <typename Change>
-Result<Version> changed(const Version& field, const Version& original, const char* stage, JobControl& job,
-                        const Change& change) {
-  LiveField live(field, Growth::kAllowed);
-  const FieldReader from = field.reader(), first = original.reader();
+// A copy of `base` with change(tile, row, filled bits) applied to tiles with samples that were filled from `original` to `field`
+// and that `takes` of the tile, row by row; bounds are computed again.
+template <typename Takes, typename Change>
+Result<Version> changed(const Version& base, const Version& field, const Version& original, const char* stage,
+                        JobControl& job, const Takes& takes, const Change& change) {
+  LiveField live(base, Growth::kAllowed);
+  const FieldReader of = base.reader(), from = field.reader(), first = original.reader();
+  bool any = false;
   job.begin(stage, static_cast<std::uint64_t>(from.tileRows()));
   for (std::int32_t tr = 0; tr < from.tileRows(); ++tr) {
     if (job.cancelled()) return cancelled();
@@ -43,16 +45,18 @@ Result<Version> changed(const Version& field, const Version& original, const cha
       if (!mayHaveFilled(now, was)) continue;
       TileRef fresh;
       for (int r = 0; r < kTileSide; ++r) {
-        const std::uint64_t filled = filledOfRow(now, was, r);
+        const Tile& old = of.tile(tc, tr);
+        const std::uint64_t filled = filledOfRow(now, was, r) & takes(old, r);
         if (filled == 0) continue;
         if (!fresh) {
           fresh = live.newTile();
           if (!fresh) return failure("there is not enough memory for the field", stage);
-          *fresh = now;
+          *fresh = old;
         }
         change(*fresh, r, filled);
       }
       if (!fresh) continue;
+      any = true;
       refreshBounds(*fresh, 0, 0, kTileSide, kTileSide);
       refreshMarks(*fresh);
       if (!live.replaceTile(tc, tr, std::move(fresh)))
@@ -60,10 +64,34 @@ Result<Version> changed(const Version& field, const Version& original, const cha
     }
     job.advance();
   }
-  return live.snapshot();
+  return any ? live.snapshot() : base;
+}
+
+// All samples of a row.
+constexpr auto kAny = [](const Tile&, int) { return ~std::uint64_t{0}; };
+
+// Those with a height.
+std::uint64_t heightsOfRow(const Tile& tile, int r) {
+  std::uint64_t bits = 0;
+  for (int c = 0; c < kTileSide; ++c)
+    bits |= std::uint64_t{!std::isnan(tile.samples[static_cast<std::size_t>(r * kTileSide + c)])} << c;
+  return bits;
+}
+
+// Holes in place of these samples, which have a height.
+void takeHeights(Tile& tile, int r, std::uint64_t samples) {
+  for (int c = 0; c < kTileSide; ++c)
+    if ((samples >> c & 1U) != 0)
+      tile.samples[static_cast<std::size_t>(r * kTileSide + c)] = std::numeric_limits<float>::quiet_NaN();
+  tile.nan_samples += static_cast<std::uint32_t>(std::popcount(samples));
 }
 
 }  // namespace
+
+Result<Version> withoutReplaced(const Version& original, const Version& between, const Version& field,
+                                JobControl& job) {
+  return changed(original, field, between, "leaving out replaced samples", job, heightsOfRow, takeHeights);
+}
 
 std::int64_t countFilled(const Version& field, const Version& original) {
   assert(field.grid().width == original.grid().width && field.grid().height == original.grid().height);
@@ -78,14 +106,7 @@ std::int64_t countFilled(const Version& field, const Version& original) {
 }
 
 Result<Version> withoutFilled(const Version& field, const Version& original, JobControl& job) {
-  return changed(field, original, "leaving out filled samples", job,
-                 [](Tile& tile, int r, std::uint64_t filled) {
-                   for (int c = 0; c < kTileSide; ++c)
-                     if ((filled >> c & 1U) != 0)
-                       tile.samples[static_cast<std::size_t>(r * kTileSide + c)] =
-                           std::numeric_limits<float>::quiet_NaN();
-                   tile.nan_samples += static_cast<std::uint32_t>(std::popcount(filled));
-                 });
+  return changed(field, field, original, "leaving out filled samples", job, kAny, takeHeights);
 }
 
 Result<Version> withFilledMarked(const Version& field, const Version& original, OtherMarks others,
@@ -99,9 +120,9 @@ Result<Version> withFilledMarked(const Version& field, const Version& original, 
         return failure("there is not enough memory for the marks", "the field");
     start = setter.result();
   }
-  return changed(start, original, "marking filled samples", job, [](Tile& tile, int r, std::uint64_t filled) {
-    tile.marks[static_cast<std::size_t>(r)] |= filled;
-  });
+  return changed(
+      start, start, original, "marking filled samples", job, kAny,
+      [](Tile& tile, int r, std::uint64_t filled) { tile.marks[static_cast<std::size_t>(r)] |= filled; });
 }
 
 }  // namespace fettle::engine

@@ -1,14 +1,19 @@
 // Sessions as a format of scans: reads the current field of the session as it is seen, marks included.
 
+#include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "engine/field/seen_field.h"
 #include "engine/field/upright.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/io/format.h"
+#include "engine/remove/remove_step.h"
 #include "engine/session/session.h"
+#include "engine/session/session_reader.h"
 #include "engine/session/stored_tiles.h"
 #include "engine/session/tables.h"
 
@@ -36,20 +41,57 @@ std::string stepsOfCommands(const Session& session) {
   return only.kind == StepKind::kImport && only.name == kByCommands ? steps->second : std::string();
 }
 
+// Whether a step before the current state may have removed samples: one of the window, or what commands did before it.
+Result<bool> mayHaveRemoved(const std::string& path) {
+  const Result<ReadingConnection> connection = ReadingConnection::open(path);
+  if (!connection) return tl::unexpected(connection.error());
+  SessionTables tables(connection->database());
+  const auto head = tables.readHead();
+  if (!head) return tl::unexpected(head.error());
+  if (head->state < 2) return false;
+  const auto steps = tables.readSteps(*head);
+  if (!steps) return tl::unexpected(steps.error());
+  return std::any_of(steps->begin() + 1, steps->begin() + head->state, [](const StepRow& step) {
+    return step.info.kind == StepKind::kImport ||
+           (step.info.kind == StepKind::kFilter && step.info.name.starts_with(kRemoveStep));
+  });
+}
+
+// With all its states where what was removed and filled is to be found in them.
+Result<Session> openedForReading(const std::string& path, JobControl& job) {
+  SessionOpenOptions reading;
+  reading.history_bytes = 0;
+  reading.journal = JournalReading::kLeave;
+  Result<Session> session = openSession(path, reading, importField, job);
+  if (!session || session->history.number() < 2) return session;
+  const Result<bool> removed = mayHaveRemoved(path);
+  if (!removed) return tl::unexpected(removed.error());
+  if (!*removed) return session;
+  reading.history_bytes = History::kNoBound;
+  return openSession(path, reading, importField, job);
+}
+
+// The scan without the heights that were removed and filled since: none of these samples is a measured one.
+Result<Version> measuredScan(const Session& session, JobControl& job) {
+  const History& history = session.history;
+  Result<Version> scan = session.original;
+  for (std::int64_t k = std::max<std::int64_t>(history.first(), 1); k < history.number() && scan; ++k)
+    scan = withoutReplaced(*scan, history.state(k), history.current(), job);
+  return scan;
+}
+
 Result<Imported> readSession(const InputFile& file, const ImportOptions& options, JobControl& job) {
   if (options.no_data || options.z_scale)
     return inputError("a session stores heights and holes unchanged",
                       options.no_data ? "--no-data" : "--z-scale", "omit the option");
-  SessionOpenOptions reading;
-  reading.history_bytes = 0;
-  reading.journal = JournalReading::kLeave;
-  Result<Session> session = openSession(file.path(), reading, importField, job);
+  Result<Session> session = openedForReading(file.path(), job);
   if (!session) return tl::unexpected(session.error());
+  const Result<Version> scan = measuredScan(*session, job);
+  if (!scan) return tl::unexpected(scan.error());
   Imported imported;
   imported.field = session->history.current();
-  const bool inverted = imported.field.reader().sign() != session->original.reader().sign();
-  imported.original =
-      (inverted ? session->original.inverted() : session->original).withForm(imported.field.form());
+  const bool inverted = imported.field.reader().sign() != scan->reader().sign();
+  imported.original = (inverted ? scan->inverted() : *scan).withForm(imported.field.form());
   if (const auto recipe = session->notes.find(kRecipeNote); recipe != session->notes.end())
     imported.recipe = recipe->second;
   imported.steps = stepsOfCommands(*session);

@@ -7,8 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include "app/work/height_tool.h"
 #include "engine/field/builder.h"
+#include "engine/fill/fill.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
+#include "engine/remove/remove.h"
+#include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
 #include "tests/support/temp_folder.h"
 
@@ -93,6 +98,73 @@ TEST(RemoveCommand, MarkedSamplesStayUnlessTheyAreNamed) {
   EXPECT_EQ(fettleJson({"fill", out, folder.file("f.tif"), "--border"})["no_data"], 0);
   EXPECT_EQ(run({"--region", "unmarked"})["no_data"], kWide * kHigh - 100) << "all but what is marked";
   EXPECT_EQ(run({"--region", "all", "--below", "0"})["removed"], kTable);
+}
+
+// Wherever a session says what was measured: what was removed and filled was not.
+void expectFilled(const TempFolder& folder, const std::string& session, int filled) {
+  EXPECT_EQ(fettleJson({"info", session})["filled"], filled);
+  const std::string marks = folder.file("filled.png");
+  EXPECT_EQ(fettleJson({"mark", session, marks, "--filled"})["marked"], filled);
+  EXPECT_EQ(fettleJson({"measure", session, "--only", "height", "--noise-trials", "0", "--region",
+                        "measured"})["samples"],
+            kWide * kHigh - filled);
+}
+
+TEST(RemoveCommand, WhatIsFilledAfterwardsCountsAsFilled) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.asc"), removed = folder.file("r.fettle"),
+                    filled = folder.file("f.fettle"), smooth = folder.file("m.fettle");
+  writePartOnTable(scan);
+  ASSERT_EQ(fettleJson({"remove", scan, removed, "--unit", "mm", "--above", "3"})["removed"], kSpikes);
+  EXPECT_EQ(fettleJson({"info", removed})["filled"], 0);
+  ASSERT_EQ(fettleJson({"fill", removed, filled, "--border"})["filled"], kSpikes + kHoles);
+  expectFilled(folder, filled, kSpikes + kHoles);
+  ASSERT_EQ(fettle({"filter", filled, smooth, "--filter", "gaussian", "--sigma", "1"}).status, 0);
+  expectFilled(folder, smooth, kSpikes + kHoles);
+  // A recipe does the same.
+  std::ofstream(folder.file("r.toml")) << fettle({"recipe", filled}).out;
+  ASSERT_EQ(fettle({"apply", folder.file("r.toml"), scan, folder.file("a.fettle"), "--unit", "mm"}).status,
+            0);
+  expectFilled(folder, folder.file("a.fettle"), kSpikes + kHoles);
+}
+
+// The window's session has both as steps, and its scan as it was.
+TEST(RemoveCommand, WhatTheWindowRemovedAndFilledCountsAsFilled) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.asc"), file = folder.file("w.fettle");
+  writePartOnTable(scan);
+  engine::JobControl job;
+  engine::ImportOptions reading;
+  reading.unit = engine::LengthUnit{};
+  const auto imported = engine::importField(scan, reading, job);
+  ASSERT_TRUE(imported);
+  engine::RemoveOptions high;
+  high.heights = engine::RemoveOptions::Heights::kOutside;
+  high.high = 3.0;
+  const auto removed = engine::removeSamples(imported->field, high, job);
+  ASSERT_TRUE(removed);
+  engine::FillOptions fill;
+  fill.at_border = true;
+  const auto filled = engine::fillHoles(removed->field, fill, job);
+  ASSERT_TRUE(filled);
+  for (const bool by_commands : {false, true}) {
+    SCOPED_TRACE(by_commands);
+    engine::Session session;
+    session.original = imported->field;
+    session.history = engine::History(session.original);
+    const auto step = [&](const std::string& name, engine::StepKind kind, const engine::Version& after) {
+      session.history.push({name, kind, engine::stepTimeNow(), {}, 0}, after);
+    };
+    if (by_commands)
+      step(engine::kByCommands, engine::StepKind::kImport, removed->field);
+    else
+      step(app::makerName(high), engine::StepKind::kFilter, removed->field);
+    step(app::makerName(fill), engine::StepKind::kFilter, filled->field);
+    // A later step: the removal is none of the last two.
+    step("Invert", engine::StepKind::kInvert, filled->field.inverted());
+    ASSERT_TRUE(engine::saveSession(session, file, job));
+    expectFilled(folder, file, kSpikes + kHoles);
+  }
 }
 
 TEST(RemoveCommand, SaysWhatItCannotDo) {

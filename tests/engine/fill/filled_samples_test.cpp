@@ -57,5 +57,33 @@ TEST(FilledSamples, AreThoseWithAHeightWhereTheScanHadNone) {
   EXPECT_EQ(summarize(*alone).marked, more);
 }
 
+// 1 to 8, the middle ones removed and filled again, one of them filled only in part: the scan has no height there any more.
+TEST(FilledSamples, RemovedAndFilledAgainAreNotMeasured) {
+  Grid grid;
+  grid.width = 70;
+  grid.height = 3;
+  const std::vector<std::uint8_t> none(210);
+  std::vector<float> z(210, 1.0F);
+  z[5] = std::numeric_limits<float>::quiet_NaN();
+  const Version scan = makeField(grid, z, none);
+  std::vector<float> without = z;
+  for (const std::size_t i : {20U, 21U, 90U}) without[i] = z[5];
+  const Version removed = makeField(grid, without, none);
+  std::vector<float> with = without;
+  for (const std::size_t i : {5U, 20U, 90U}) with[i] = 2.0F;
+  const Version filled = makeField(grid, with, none);
+  JobControl job;
+  EXPECT_EQ(countFilled(filled, scan), 1);
+  const auto measured = withoutReplaced(scan, removed, filled, job);
+  ASSERT_TRUE(measured);
+  EXPECT_EQ(countFilled(filled, *measured), 3);
+  EXPECT_EQ(summarize(*measured).no_data, 3);
+  EXPECT_EQ(measured->reader().heightAt(21, 0), 1.0F) << "removed and still a hole: nothing took its place";
+  EXPECT_EQ(&measured->reader().tile(1, 0), &scan.reader().tile(1, 0)) << "shared";
+  const auto same = withoutReplaced(scan, scan, filled, job);
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(*same == scan);
+}
+
 }  // namespace
 }  // namespace fettle::engine
