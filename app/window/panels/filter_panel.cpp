@@ -40,8 +40,8 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
       field("window",
             "Side of the square of samples around each sample that its new height comes from: a larger "
             "one takes more away.",
-            [&] { return typeCount("##window", spec.window, 1, engine::FilterSpec::kMaxWindow, 2); }))
-    spec.window |= 1;
+            [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
+    spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // As a length across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
   if (window && field("", [&] {
@@ -75,8 +75,9 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
       return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
                         ofMillimetres(units.length, grid.lateral_unit.mm));
     });
-  (void)field("passes", "How often the filter runs, each time over what the last one left.",
-              [&] { return typeCount("##passes", spec.passes, 1, engine::FilterSpec::kMaxPasses, 1); });
+  if (field("passes", "How often the filter runs, each time over what the last one left.",
+            [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
+    spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
 }
 
 void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,

@@ -68,8 +68,6 @@ class MouseStylus final : public Device {
   void wheel(double steps) noexcept;
   /// Window thread: depth the button presses to now [mm].
   [[nodiscard]] double pressMm() const noexcept { return request_.press_mm; }
-  /// The largest of these [mm].
-  [[nodiscard]] double deepestMm() const noexcept { return feel_.deepest_mm; }
   /// Window thread: whether a request sent here is not completed yet; a stroke is completed with its end, the cursor's place
   /// when the tip is over it.
   [[nodiscard]] bool busy() const noexcept { return followed_.load(std::memory_order_acquire) != sent_; }
