@@ -384,7 +384,7 @@ void previewHeights(Parts& p) {
   if (heightsArePreviewed<options>(p)) {
     p.heights.dropPreview();
   } else {
-    if (!p.settings.panels[panel]) enterPanel(p, panel);
+    p.settings.panels[panel] = true;
     p.heights.preview(p.heights.*options, p.picture.seenPart(clientOf(p).field().grid(), p.view));
   }
   p.picture.requestRedraw();

@@ -31,7 +31,8 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
   float drawn = side;
   rate_hz = sidePanel(parts, act, drawn);
   if (said > 0.0F)
-    noticePanel(parts.feedback.notices, act, ImVec2(size.x - side, bar + height), ImVec2(side, said));
+    noticePanel(parts.feedback.notices, act, ImVec2(size.x - side, bar + height), ImVec2(side, said),
+                NoticesLie::kBesideTheRest);
   if (std::abs(drawn - side) > 1.5F && ImGui::IsMouseDown(ImGuiMouseButton_Left)) set = drawn / scale;
   return size.x - side;
 }
@@ -43,7 +44,7 @@ void noticesAlone(Parts& parts, const Act& act, float bar) {
   const float height = noticesHeight(parts.feedback.notices, width);
   if (height <= 0.0F) return;
   noticePanel(parts.feedback.notices, act, ImVec2(screen.x - width, screen.y - bar - height),
-              ImVec2(width, height));
+              ImVec2(width, height), NoticesLie::kOverTheRest);
 }
 
 }  // namespace

@@ -32,14 +32,16 @@ float noticesHeight(const std::vector<Notice>& notices, float width) {
   return std::min(std::ceil(height), kMostOfHeight * ImGui::GetIO().DisplaySize.y);
 }
 
-void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size) {
+void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size,
+                 NoticesLie lie) {
   ImGui::SetNextWindowPos(corner);
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
   ImGui::Begin("Notices", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoFocusOnAppearing |
+                   (lie == NoticesLie::kBesideTheRest ? ImGuiWindowFlags_NoBringToFrontOnFocus : 0));
   ImGui::GetWindowDrawList()->AddLine(corner, ImVec2(corner.x + size.x, corner.y),
                                       colourOf(PanelColour::kWarning), kTopLine);
   for (const Notice& notice : notices) writeIn(PanelColour::kWarning, noticeText(notice));

@@ -74,7 +74,10 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
 
 /// What the notices take of the window's height at its `width` [pixels]; 0: there are none.
 [[nodiscard]] float noticesHeight(const std::vector<Notice>& notices, float width);
-void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size);
+/// Beside all other windows, or over one that fills the picture: the start page.
+enum class NoticesLie : std::uint8_t { kBesideTheRest, kOverTheRest };
+void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size,
+                 NoticesLie lie);
 /// All of the panels in one window at the right; returns the requested rate. `width` is set to
 /// its width [pixels]: the given one, or the one that the user dragged it to.
 [[nodiscard]] std::optional<double> sidePanel(Parts& parts, const Act& act, float& width);

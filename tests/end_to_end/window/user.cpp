@@ -129,6 +129,7 @@ std::optional<User::Place> User::readable(const std::string& text) {
     // A line at the panels' lower edge may show half of itself, with its middle below the edge; a whole one is that of a
     // notice, which stand there.
     const bool whole = box[3].get<int>() >= kWholeLine;
+    if (in_panels && middle.y < picture[1].get<int>() + kLine / 2) continue;  // half of it is above them
     if (in_panels && !whole && middle.y > picture[1].get<int>() + picture[3].get<int>() - kLine) continue;
     return middle;
   }

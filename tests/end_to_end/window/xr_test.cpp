@@ -101,6 +101,7 @@ TEST_F(XrTest, a_headset_lost_before_a_scan_is_open_is_said_beside_the_start_pag
   EXPECT_TRUE(user.reads("A sample part"));
   (void)user.look("start page");
   (void)user.click("Understood");
+  user.at({40, 400});
   EXPECT_FALSE(user.reads("the headset was unplugged"));
   (void)quit(user);
 }
