@@ -176,7 +176,7 @@ void printLoop(const Report& report) {
                row["latency_held"].get<bool>() ? "kept from deep sleep" : "free to sleep deeply");
   if (!report["no_cyclictest"].is_null()) fmt::print("{}\n", report["no_cyclictest"].get<std::string>());
   const auto ratio = [&](const std::string& of) {
-    const std::string value = fmt::format("{:.2f}", report[of].get<double>());
+    std::string value = fmt::format("{:.2f}", report[of].get<double>());
     if (report[of + "_low"].is_null()) return value;
     return fmt::format("{} ({:.2f} to {:.2f})", value, report[of + "_low"].get<double>(),
                        report[of + "_high"].get<double>());
