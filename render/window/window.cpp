@@ -2,31 +2,26 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <utility>
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <imgui.h>
 #include <glm/vec2.hpp>
 
 #include "engine/base/stopwatch.h"
-#include "render/vulkan/barrier.h"
 #include "render/vulkan/live_target.h"
 #include "render/vulkan/memory.h"
+#include "render/window/frame_copy.h"
+#include "render/window/full_screen.h"
+#include "render/window/lost_display.h"
 #include "render/window/ui_layer.h"
 #include "render/window/ui_text.h"
+#include "render/window/window_keys.h"
 #include "render/window/window_swapchain.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-
-// GLFW's own function, declared without a type of Xlib (GLFW/glfw3native.h would include all of Xlib).
-extern "C" void* glfwGetX11Display();
 
 namespace fettle::render {
 namespace {
@@ -40,89 +35,11 @@ void noteGlfwError(int, const char* text) {
   lastGlfwError() = text != nullptr ? text : "";
 }
 
-constexpr std::pair<int, Key> kSpecialKeys[] = {
-    {GLFW_KEY_SPACE, Key::kSpace},
-    {GLFW_KEY_ESCAPE, Key::kEscape},
-    {GLFW_KEY_ENTER, Key::kEnter},
-    {GLFW_KEY_TAB, Key::kTab},
-    {GLFW_KEY_BACKSPACE, Key::kBackspace},
-    {GLFW_KEY_DELETE, Key::kDelete},
-    {GLFW_KEY_INSERT, Key::kInsert},
-    {GLFW_KEY_LEFT, Key::kLeft},
-    {GLFW_KEY_RIGHT, Key::kRight},
-    {GLFW_KEY_UP, Key::kUp},
-    {GLFW_KEY_DOWN, Key::kDown},
-    {GLFW_KEY_HOME, Key::kHome},
-    {GLFW_KEY_END, Key::kEnd},
-    {GLFW_KEY_PAGE_UP, Key::kPageUp},
-    {GLFW_KEY_PAGE_DOWN, Key::kPageDown},
-    {GLFW_KEY_KP_DECIMAL, Key::kKeypadPeriod},
-    {GLFW_KEY_KP_ADD, Key::kKeypadPlus},
-    {GLFW_KEY_KP_SUBTRACT, Key::kKeypadMinus},
-    {GLFW_KEY_KP_ENTER, Key::kKeypadEnter},
-    {GLFW_KEY_PAUSE, Key::kPause},
-};
-
-Key specialKey(int key) {
-  for (const auto& [code, special] : kSpecialKeys)
-    if (code == key) return special;
-  const auto offset = [](Key first, int by) { return static_cast<Key>(static_cast<int>(first) + by); };
-  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return offset(Key::kF1, key - GLFW_KEY_F1);
-  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return offset(Key::kKeypad0, key - GLFW_KEY_KP_0);
-  return Key::kNone;
-}
-
-// The label of the key in the user's layout.
-Key keyOf(int key, int scancode) {
-  if (const Key special = specialKey(key); special != Key::kNone) return special;
-  const char* name = glfwGetKeyName(key, scancode);
-  char c = name != nullptr && name[0] != '\0' && name[1] == '\0' ? name[0] : '\0';
-  // A layout without Latin letters: GLFW's name of the key, which is its position on a US keyboard.
-  if (c == '\0' && key >= 32 && key < 127) c = static_cast<char>(key);
-  if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return static_cast<Key>(static_cast<unsigned char>(c));
-}
-
-Modifiers modifiersOf(int bits) {
-  return {(bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_ALT) != 0};
-}
-
-// Set by Xlib's handler, read by the window: both on the main thread; atomic as for a signal, at no cost.
-std::atomic<bool> display_lost{false};
-
-// By default Xlib ends the program when its server is lost; with this handler its calls do nothing
-// afterwards. GLFW loads the library by itself, so it is loaded here in the same way.
-// (XSetIOErrorExitHandler: libX11 1.7, 2020. With an older one the program ends here, by quick_exit: the
-// threads of device and loop still use what exit() would destroy.)
-int onDisplayLost(void* display) {
-  display_lost.store(true);
-  if (display != nullptr) return 0;
-  std::fputs("fettle: error: the connection to the display was lost, window, open the window again\n",
-             stderr);
-  std::quick_exit(1);
-}
-int onDisplayLostForGood(void* /*display*/) {
-  return onDisplayLost(nullptr);
-}
-void goOnAfterDisplay(void* /*display*/, void* /*data*/) {}
-void sayWhenDisplayIsLost(void* display) {
-  using Handler = int (*)(void*);
-  using ExitHandler = void (*)(void*, void*);
-  void* x11 = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-  if (x11 == nullptr || display == nullptr) return;  // another window system
-  auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler"));
-  auto* set_exit =
-      reinterpret_cast<void (*)(void*, ExitHandler, void*)>(dlsym(x11, "XSetIOErrorExitHandler"));
-  if (set != nullptr) set(set_exit != nullptr ? &onDisplayLost : &onDisplayLostForGood);
-  if (set_exit != nullptr) set_exit(display, &goOnAfterDisplay, nullptr);
-  dlclose(x11);
-}
-
 constexpr const char* kDisplayRemedy =
     "run it in a graphical session, or with a virtual display: xvfb-run fettle view ...";
 
 engine::Error lost(const std::string& device, const char* what) {
-  if (display_lost.load())
+  if (displayIsLost())
     return engine::failure("the connection to the display was lost", "window", "open the window again")
         .value();
   return engine::failure(fmt::format("showing the picture failed ({})", what), device,
@@ -317,8 +234,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
     return engine::failure(fmt::format("there is no display to open a window on ({})", lastGlfwError()),
                            "window", kDisplayRemedy);
   impl->glfw.started = true;
-  display_lost.store(false);
-  sayWhenDisplayIsLost(glfwGetX11Display());
+  watchDisplay();
   if (glfwVulkanSupported() == GLFW_FALSE)
     return engine::failure("no Vulkan driver can show pictures in a window", "window",
                            "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
@@ -355,7 +271,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
 }
 
 bool Window::displayLost() const {
-  return display_lost.load();
+  return displayIsLost();
 }
 
 bool Window::usable() {
@@ -370,12 +286,12 @@ bool Window::usable() {
 
 engine::Status Window::renew() {
   impl_->leaveDevice();
-  if (display_lost.load()) return tl::unexpected(lost(impl_->device_name, ""));
+  if (displayIsLost()) return tl::unexpected(lost(impl_->device_name, ""));
   return impl_->enterDevice();
 }
 
 void Window::poll(double wait_s) {
-  if (display_lost.load()) return;
+  if (displayIsLost()) return;
   if (wait_s > 0.0)
     glfwWaitEventsTimeout(wait_s);
   else
@@ -453,38 +369,14 @@ void Window::setPanelTheme(Theme theme) {
   impl_->ui->setTheme(theme);
 }
 
+void Window::enterFullScreen() {
+  render::enterFullScreen(impl_->glfw.window, impl_->windowed);
+}
+void Window::leaveFullScreen() {
+  render::leaveFullScreen(impl_->glfw.window, impl_->windowed);
+}
 void Window::setTitle(const std::string& title) {
   glfwSetWindowTitle(impl_->glfw.window, title.c_str());
-}
-
-void Window::enterFullScreen() {
-  GLFWwindow* const window = impl_->glfw.window;
-  if (glfwGetWindowMonitor(window) != nullptr) return;
-  Rectangle& place = impl_->windowed;
-  glfwGetWindowPos(window, &place.x, &place.y);
-  glfwGetWindowSize(window, &place.width, &place.height);
-  const int x = place.x + place.width / 2, y = place.y + place.height / 2;
-  int count = 0;
-  GLFWmonitor** const screens = glfwGetMonitors(&count);
-  GLFWmonitor* chosen = glfwGetPrimaryMonitor();
-  for (int i = 0; i < count; ++i) {
-    int left = 0, top = 0;
-    glfwGetMonitorPos(screens[i], &left, &top);
-    const GLFWvidmode* const mode = glfwGetVideoMode(screens[i]);
-    if (mode != nullptr && x >= left && y >= top && x < left + mode->width && y < top + mode->height)
-      chosen = screens[i];
-  }
-  const GLFWvidmode* const mode = chosen != nullptr ? glfwGetVideoMode(chosen) : nullptr;
-  if (mode == nullptr) return;
-  // With the screen's own mode, so that no other window is moved.
-  glfwSetWindowMonitor(window, chosen, 0, 0, mode->width, mode->height, mode->refreshRate);
-}
-
-void Window::leaveFullScreen() {
-  GLFWwindow* const window = impl_->glfw.window;
-  if (glfwGetWindowMonitor(window) == nullptr) return;
-  const Rectangle& place = impl_->windowed;
-  glfwSetWindowMonitor(window, nullptr, place.x, place.y, place.width, place.height, GLFW_DONT_CARE);
 }
 
 Context& Window::context() {
@@ -566,7 +458,7 @@ engine::Result<PresentReport> Window::present() {
   PresentReport report;
   w.ui->endFrame();
   try {
-    if (display_lost.load()) return tl::unexpected(lost(w.device_name, ""));
+    if (displayIsLost()) return tl::unexpected(lost(w.device_name, ""));
     const auto combine = [&w](const vk::raii::CommandBuffer& commands) {
       const vk::Extent2D size = w.picture.extent();
       w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
@@ -583,7 +475,7 @@ engine::Result<PresentReport> Window::present() {
     const auto while_waiting = [&w] {
       if (w.while_waiting) w.while_waiting();
       // A lost display returns no image, and not every driver reports that.
-      if (display_lost.load()) throw vk::SurfaceLostKHRError("display");
+      if (displayIsLost()) throw vk::SurfaceLostKHRError("display");
     };
     // A window that changes its size while it is shown needs another try.
     for (int tries = 0; tries < 3; ++tries) {
@@ -608,31 +500,7 @@ engine::Result<PresentReport> Window::present() {
 engine::Result<Image> Window::capture() {
   Impl& w = *impl_;
   try {
-    const vk::Extent2D extent = w.ui->image().extent();
-    const std::size_t bytes = std::size_t{4} * extent.width * extent.height;
-    const Buffer buffer(*w.context, bytes, vk::BufferUsageFlagBits::eTransferDst);
-    w.context->run([&](const vk::raii::CommandBuffer& commands) {
-      vk::BufferImageCopy copy;
-      copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-          .setImageExtent({extent.width, extent.height, 1});
-      commands.copyImageToBuffer(w.ui->image().image(), ImageLayout::eTransferSrcOptimal, *buffer.handle(),
-                                 copy);
-      vk::MemoryBarrier2 barrier;
-      barrier.setSrcStageMask(Stage::eCopy)
-          .setSrcAccessMask(Access::eTransferWrite)
-          .setDstStageMask(Stage::eHost)
-          .setDstAccessMask(Access::eHostRead);
-      vk::DependencyInfo info;
-      commands.pipelineBarrier2(info.setMemoryBarriers(barrier));
-    });
-    Image image{static_cast<int>(extent.width), static_cast<int>(extent.height), {}};
-    image.rgba.resize(bytes);
-    std::memcpy(image.rgba.data(), buffer.data(), bytes);
-    for (std::size_t i = 0; i < bytes; i += 4) {
-      std::swap(image.rgba[i], image.rgba[i + 2]);
-      image.rgba[i + 3] = 255;
-    }
-    return image;
+    return copyOf(w.ui->image(), *w.context);
   } catch (const std::exception& error) {
     return tl::unexpected(lost(w.device_name, error.what()));
   }
