@@ -33,7 +33,9 @@ void toStylus(const InputEvent& event, Parts& parts) {
                                       (LineDrag::begins(event) && linesAreShown(parts))
                                   ? Stylus::Hands::kOther
                                   : Stylus::Hands::kFree;
-  parts.stylus.handle(event, *client, parts.picture, hands);
+  std::optional<haptic::PenHold> pen;
+  if (event.pen) pen = penHold(*event.pen, parts.settings.pen, render::axesOf(parts.view));
+  parts.stylus.handle(event, *client, parts.picture, hands, pen);
 }
 
 Input::Request handleKey(const InputEvent& event, Parts& parts) {
@@ -99,6 +101,7 @@ void Input::followSurface(Parts& parts) const {
   here.kind = InputKind::kMove;
   here.x = parts.cursor.x;
   here.y = parts.cursor.y;
+  here.pen = parts.window.pen();  // it may press harder without moving
   toStylus(here, parts);
 }
 

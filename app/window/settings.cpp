@@ -145,6 +145,8 @@ std::string Settings::text() const {
               {"side_panel", side_panel},
               {"side_width", side_width},
               {"panels", panels},
+              {"pen_presses", pen.presses},
+              {"pen_firmness", pen.firmness},
               {"edge_lines", draw_lines},
               {"volume", loudness.volume},
               {"muted", loudness.muted},
@@ -197,6 +199,8 @@ Settings Settings::load(const std::string& path) {
   if (const auto it = file.find("panels"); it != file.end() && it->is_object())
     for (const auto& [name, open] : it->items())
       if (open.is_boolean()) settings.panels[name] = open.get<bool>();
+  take(file, "pen_presses", settings.pen.presses);
+  take(file, "pen_firmness", PenUse::kSoftest, PenUse::kFirmest, settings.pen.firmness);
   take(file, "edge_lines", settings.draw_lines);
   take(file, "volume", 0.0F, 1.0F, settings.loudness.volume);
   take(file, "muted", settings.loudness.muted);

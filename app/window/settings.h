@@ -6,6 +6,7 @@
 
 #include "app/sound/loudness.h"
 #include "app/window/mouse_presets.h"
+#include "app/window/pen_hold.h"
 #include "app/work/device_setup.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
@@ -76,6 +77,7 @@ struct Settings {
   bool side_panel = true;
   float side_width = 0.0F;             ///< [pixels at scale 1]; 0: default
   std::map<std::string, bool> panels;  ///< which ones are open, by their names
+  PenUse pen;                          ///< of a tablet
   bool draw_lines = true;              ///< strokes of the mark tool become edge lines
   Loudness loudness;                   ///< of scenes with sound
   DeviceSetups devices;                ///< that were set up on the page of the device

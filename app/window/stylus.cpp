@@ -54,7 +54,7 @@ void Stylus::follow(bool shift, bool touches, LoopClient& client) {
 }
 
 void Stylus::handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture,
-                    Hands hands) {
+                    Hands hands, const std::optional<haptic::PenHold>& pen) {
   if (client.mouse() == nullptr) return;
   haptic::MouseStylus& mouse = *client.mouse();
   if (!on_ || hands == Hands::kNone) {
@@ -83,6 +83,7 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& client, const W
     mouse.leave();
     return;
   }
+  mouse.hold(pen);
   mouse.setCursor(under_cursor_->position_mm);
   if (event.kind == InputKind::kButtonDown && event.button == MouseButton::kLeft && !event.modifiers.alt)
     press(event, client);
@@ -91,7 +92,8 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& client, const W
 void Stylus::press(const render::InputEvent& event, LoopClient& client) {
   held_ = true;
   const Tool chosen = turned_.value_or(client.tool());
-  const Tool tool = event.modifiers.control ? haptic::rowOf(chosen).opposite
+  const bool opposite = event.modifiers.control != (event.pen && event.pen->eraser);
+  const Tool tool = opposite                ? haptic::rowOf(chosen).opposite
                     : event.modifiers.shift ? Tool::kSmooth
                                             : chosen;
   if (tool != client.tool()) {

@@ -21,8 +21,9 @@ class Stylus {
 
   /// `kNone`: a dialog has the input; `kOther`: it turns the view or sets the brush.
   enum class Hands : std::uint8_t { kFree, kOther, kNone };
-  /// Handles input that cannot wait for the next frame.
-  void handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture, Hands hands);
+  /// Handles input that cannot wait for the next frame; `pen`: as it is held, if the event is of one.
+  void handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture, Hands hands,
+              const std::optional<haptic::PenHold>& pen);
   /// With another device than the mouse: a stroke that begins while Shift is held smooths, whatever the tool. `touches`:
   /// the stylus is in contact.
   void follow(bool shift, bool touches, LoopClient& client);

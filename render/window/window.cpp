@@ -15,6 +15,7 @@
 #include "render/window/frame_copy.h"
 #include "render/window/full_screen.h"
 #include "render/window/lost_display.h"
+#include "render/window/tablet.h"
 #include "render/window/ui_layer.h"
 #include "render/window/ui_text.h"
 #include "render/window/window_keys.h"
@@ -22,6 +23,12 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+
+// GLFW's own functions, declared without types of Xlib (GLFW/glfw3native.h would include all of Xlib).
+extern "C" {
+void* glfwGetX11Display();
+unsigned long glfwGetX11Window(GLFWwindow* window);
+}
 
 namespace fettle::render {
 namespace {
@@ -33,6 +40,12 @@ std::string& lastGlfwError() {
 }
 void noteGlfwError(int, const char* text) {
   lastGlfwError() = text != nullptr ? text : "";
+}
+
+// Null where the window system is another one.
+std::unique_ptr<Tablet> tabletOver(GLFWwindow* window) {
+  return glfwGetX11Display() != nullptr ? Tablet::open(static_cast<xcb_window_t>(glfwGetX11Window(window)))
+                                        : nullptr;
 }
 
 constexpr const char* kDisplayRemedy =
@@ -59,6 +72,7 @@ struct Window::Impl {
       if (started) glfwTerminate();
     }
   } glfw;
+  std::unique_ptr<Tablet> tablet;
   double scale_asked = 0.0;  // 0: the display's
   [[nodiscard]] double scale() const {
     if (scale_asked > 0.0) return scale_asked;
@@ -108,6 +122,8 @@ struct Window::Impl {
     const glm::dvec2 scale = framePixels();
     event.x = x * scale.x;
     event.y = y * scale.y;
+    if (tablet && event.kind == InputKind::kButtonDown) event.pen = tablet->penOfPress();
+    if (tablet && event.kind == InputKind::kMove) event.pen = tablet->pen();
     noteAt(event, x, y);
   }
   // `x`, `y`: GLFW's.
@@ -251,6 +267,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
                            kDisplayRemedy);
   glfwSetWindowSizeLimits(impl->glfw.window, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
   impl->listen();
+  impl->tablet = tabletOver(impl->glfw.window);
 
   std::uint32_t count = 0;
   const char** extensions = glfwGetRequiredInstanceExtensions(&count);
@@ -326,6 +343,10 @@ void Window::point(InputEvent event) {
     w.ui->point(pointed);
   }
   w.noteAt(event, at.x, at.y);
+}
+
+std::optional<Pen> Window::pen() {
+  return impl_->tablet ? impl_->tablet->pen() : std::nullopt;
 }
 
 void Window::wake() {

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "render/plan/camera.h"
 #include "render/plan/picture.h"
+#include "render/window/pen.h"
 
 namespace fettle::render {
 
@@ -75,6 +77,8 @@ struct InputEvent {
   /// Whether the panels had the keyboard (a text field) or the mouse when this happened.
   bool panels_key = false;
   bool panels_mouse = false;
+  /// Of mouse events: the tablet's pen that moved or pressed in the mouse's place.
+  std::optional<Pen> pen;
 };
 
 struct WindowOptions {
@@ -126,6 +130,8 @@ class Window {
   /// frame], presses and releases the left button there, turns the wheel, leaves. Panels and takeInput() get it as if the
   /// mouse had done it.
   void point(InputEvent event);
+  /// The tablet's pen whose tip is down over this window, as far as the display has said so.
+  [[nodiscard]] std::optional<Pen> pen();
   /// Any thread: ends the wait of poll().
   static void wake();
   /// Paths dropped on the window since the last call.

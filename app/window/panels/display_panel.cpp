@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -75,6 +76,24 @@ void uiScaleField(double& scale) {
   explain("Of all texts, panels and marks of the window; kept for the next start.");
 }
 
+void penFields(PenUse& pen) {
+  (void)field("pen", [&] { return ImGui::Checkbox("presses as the hand does", &pen.presses); });
+  explain(
+      "A tablet's pen presses as deep as the hand presses it, up to the depth of the brush. Off: always to "
+      "that "
+      "depth. Its other end has the opposite tool.");
+  ImGui::BeginDisabled(!pen.presses);
+  auto firmness = static_cast<float>(pen.firmness);
+  if (field("", [&] {
+        return ImGui::SliderFloat("##firmness", &firmness, static_cast<float>(PenUse::kSoftest),
+                                  static_cast<float>(PenUse::kFirmest), "firmness %.2f",
+                                  ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+      }))
+    pen.firmness = std::round(100.0 * static_cast<double>(firmness)) / 100.0;
+  ImGui::EndDisabled();
+  explain("Above 1 the hand has to press more for the same depth, below 1 less.");
+}
+
 }  // namespace
 
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
@@ -110,6 +129,7 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
       "again.");
   beginFields();
   uiScaleField(settings.ui_scale);
+  penFields(settings.pen);
   detailChooser(context, display, picture, view, costs);
   const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
   int mode = static_cast<int>(display.stereo);

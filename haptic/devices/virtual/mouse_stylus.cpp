@@ -21,13 +21,26 @@ constexpr double kArrived = 0.05;
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
+namespace {
+
+// The turn that brings z there; of half a turn, where that leaves the axis open, about x. Nothing for no direction.
+std::optional<glm::dquat> turnOfZ(const glm::dvec3& direction) noexcept {
+  const glm::dvec3 to = glm::normalize(direction);
+  if (!finite(to)) return std::nullopt;
+  const double w = 1.0 + to.z;
+  if (w < 1e-9) return glm::dquat(0.0, 1.0, 0.0, 0.0);
+  return glm::normalize(glm::dquat(w, -to.y, to.x, 0.0));
+}
+
+}  // namespace
+
 MouseStylus::MouseStylus(const MouseFeel& feel) : feel_(feel), requests_(kRequests) {
   profile_.name = "mouse";
   profile_.space = DeviceSpace::kField;
   profile_.workspace_radius_mm = 1e9;  // the field is its workspace
   profile_.max_force_n = 0.0;
   profile_.gives_force = false;
-  request_.press_mm = std::clamp(feel.press_mm, 0.0, feel.deepest_mm);
+  request_.press_mm = depth_mm_ = std::clamp(feel.press_mm, 0.0, feel.deepest_mm);
 }
 
 void MouseStylus::send() noexcept {
@@ -66,7 +79,18 @@ void MouseStylus::release() noexcept {
 
 void MouseStylus::wheel(double steps) noexcept {
   if (!std::isfinite(steps)) return;
-  request_.press_mm = std::clamp(request_.press_mm - steps * feel_.wheel_step_mm, 0.0, feel_.deepest_mm);
+  depth_mm_ = std::clamp(depth_mm_ - steps * feel_.wheel_step_mm, 0.0, feel_.deepest_mm);
+  request_.press_mm = share_ * depth_mm_;
+  if (requests_.freePlaces() > kButtonPlaces) send();
+}
+
+void MouseStylus::hold(const std::optional<PenHold>& pen) noexcept {
+  const double share = pen && std::isfinite(pen->share) ? std::clamp(pen->share, 0.0, 1.0) : 1.0;
+  const std::optional<glm::dquat> orientation = pen && pen->to_hand ? turnOfZ(*pen->to_hand) : std::nullopt;
+  if (share == share_ && orientation == request_.orientation) return;
+  share_ = share;
+  request_.press_mm = share_ * depth_mm_;
+  request_.orientation = orientation;
   if (requests_.freePlaces() > kButtonPlaces) send();
 }
 
@@ -90,7 +114,7 @@ bool MouseStylus::accept(const Request& request) noexcept {
         stage_ = Stage::kEnding;
         return true;
       }
-      now_ = {request.surface_mm, request.press_mm, now_.tool, request.over, true};
+      now_ = {request.surface_mm, request.press_mm, now_.tool, request.over, true, request.orientation};
       return true;
   }
   return true;
@@ -126,6 +150,7 @@ void MouseStylus::move(double passed_s) noexcept {
   input_.position_mm = tip_mm_;
   input_.buttons = stroke ? kPrimaryButton : 0;
   input_.tool = stroke ? std::optional(now_.tool) : std::nullopt;
+  input_.orientation = now_.orientation;
 
   const glm::dvec3 left = target - tip_mm_;
   if (stage_ == Stage::kLanding && std::abs(left.z) < kArrived * (feel_.hover_mm + now_.press_mm))

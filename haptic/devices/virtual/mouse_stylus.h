@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "haptic/base/rings.h"
@@ -32,6 +34,14 @@ struct MouseRequest {
   Tool tool = Tool::kFeel;
   bool over = false;
   bool held = false;
+  std::optional<glm::dquat> orientation{};  ///< as DeviceInput::orientation
+};
+
+/// How a pen is held that moves in the mouse's place.
+struct PenHold {
+  double share = 1.0;  ///< of the depth the button presses to, 0 .. 1
+  /// Field coordinates: the direction from the tip to the hand, of length 1; nothing where it is not measured.
+  std::optional<glm::dvec3> to_hand;
 };
 
 /// The mouse as a stylus without force: the cursor's point on the surface gives x and y, holding the button
@@ -66,8 +76,12 @@ class MouseStylus final : public Device {
   void release() noexcept;
   /// Window thread: wheel steps, up = less deep.
   void wheel(double steps) noexcept;
-  /// Window thread: depth the button presses to now [mm].
-  [[nodiscard]] double pressMm() const noexcept { return request_.press_mm; }
+  /// Window thread: a pen is held so; without one, the button presses to the whole depth.
+  void hold(const std::optional<PenHold>& pen) noexcept;
+  /// Window thread: depth the button, or the whole pressure of a pen, presses to now [mm].
+  [[nodiscard]] double pressMm() const noexcept { return depth_mm_; }
+  /// The largest of these [mm].
+  [[nodiscard]] double deepestMm() const noexcept { return feel_.deepest_mm; }
   /// Window thread: whether a request sent here is not completed yet; a stroke is completed with its end, the cursor's place
   /// when the tip is over it.
   [[nodiscard]] bool busy() const noexcept { return followed_.load(std::memory_order_acquire) != sent_; }
@@ -96,6 +110,8 @@ class MouseStylus final : public Device {
   SpscRing<Request> requests_;  // window to loop
   // Used by the window's thread only.
   Request request_;
+  double depth_mm_ = 0.0;
+  double share_ = 1.0;      // of it
   std::uint64_t sent_ = 0;  // requests
 
   // Used by the loop's thread only.

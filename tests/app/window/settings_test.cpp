@@ -35,6 +35,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.side_panel = false;
   settings.side_width = 401.0F;
   settings.panels = {{"Tool", false}, {"Haptics", true}};
+  settings.pen = {false, 2.5};
   settings.loudness = {0.25F, true};
   settings.ask_before_quitting = false;
   settings.devices["omega.3, 10406"] = {DeviceReach{{-60.5, -70.0, -50.0}, {61.0, 72.0, 53.0}}, 0.4, 0};
@@ -44,6 +45,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   EXPECT_FALSE(Settings() == settings);
   EXPECT_TRUE(Settings::load(path).display.reduced_motion);
   EXPECT_EQ(Settings::load(path).ui_scale, 1.75);
+  EXPECT_EQ(Settings::load(path).pen.firmness, 2.5);
   EXPECT_EQ(Settings::load(path).devices, settings.devices);
 }
 

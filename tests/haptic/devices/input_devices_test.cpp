@@ -253,6 +253,42 @@ TEST(MouseStylus, APressBetweenTwoTicksIsAStroke) {
   EXPECT_TRUE(loop.stroke().empty());
 }
 
+TEST(MouseStylus, APenPressesAsDeepAsTheHandAndLeansAsItDoes) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  static_cast<void>(loop.tick());
+  EXPECT_FALSE(loop.ticks(10).orientation);
+  const glm::dvec3 to_hand = glm::normalize(glm::dvec3(0.3, -0.4, 1.0));
+  loop.mouse.hold(PenHold{0.5, to_hand});
+  loop.mouse.press(Tool::kSmooth);
+  DeviceInput input = loop.ticks(300);
+  EXPECT_NEAR(input.position_mm.z, -0.15, 1e-6) << "half of 0.3 mm";
+  ASSERT_TRUE(input.orientation);
+  EXPECT_NEAR(glm::distance(*input.orientation * glm::dvec3(0.0, 0.0, 1.0), to_hand), 0.0, 1e-12);
+  loop.mouse.hold(PenHold{1.0, glm::dvec3(0.0, 0.0, -1.0)});
+  input = loop.ticks(300);
+  EXPECT_NEAR(input.position_mm.z, -0.3, 1e-6);
+  EXPECT_NEAR((*input.orientation * glm::dvec3(0.0, 0.0, 1.0)).z, -1.0, 1e-12) << "upside down, too";
+  loop.mouse.wheel(-2.0);
+  EXPECT_NEAR(loop.mouse.pressMm(), 0.4, 1e-12) << "the wheel sets the whole depth";
+  loop.mouse.hold(PenHold{0.25, std::nullopt});
+  input = loop.ticks(300);
+  EXPECT_NEAR(input.position_mm.z, -0.1, 1e-6);
+  EXPECT_FALSE(input.orientation);
+  // Nothing of what a driver may say is believed.
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const PenHold& wrong : {PenHold{kNan, glm::dvec3(kNan)}, PenHold{7.0, glm::dvec3(0.0)}}) {
+    loop.mouse.hold(wrong);
+    input = loop.ticks(300);
+    EXPECT_NEAR(input.position_mm.z, -0.4, 1e-6);
+    EXPECT_FALSE(input.orientation);
+  }
+  loop.mouse.hold(std::nullopt);
+  EXPECT_NEAR(loop.ticks(300).position_mm.z, -0.4, 1e-6) << "a mouse has no pressure";
+  loop.mouse.release();
+  EXPECT_NEAR(loop.ticks(500).position_mm.z, 1.0, 1e-6);
+}
+
 TEST(MouseStylus, OffTheSurfaceTheTipLiftsAndTheStrokeGoesOn) {
   MouseLoop loop;
   loop.mouse.setCursor({0.0, 0.0, 0.0});
