@@ -40,8 +40,8 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
       field("window",
             "Side of the square of samples around each sample that its new height comes from: a larger "
             "one takes more away.",
-            [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
-    spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
+            [&] { return typeCount("##window", spec.window, 1, engine::FilterSpec::kMaxWindow, 2); }))
+    spec.window |= 1;
   // As a length across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
   if (window && field("", [&] {
@@ -75,9 +75,8 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
       return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
                         ofMillimetres(units.length, grid.lateral_unit.mm));
     });
-  if (field("passes", "How often the filter runs, each time over what the last one left.",
-            [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
-    spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
+  (void)field("passes", "How often the filter runs, each time over what the last one left.",
+              [&] { return typeCount("##passes", spec.passes, 1, engine::FilterSpec::kMaxPasses, 1); });
 }
 
 void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
@@ -147,7 +146,10 @@ void previewList(bool anything_marked, FilterPreview& filters) {
     const std::string came = nothing_marked
                                  ? "nothing is marked: with \"only marks\" nothing changes"
                                  : fmt::format("{} change, by up to {:.3g} {}", v.result.report.changed,
-                                               v.result.report.max_change / as.size, as.name);
+                                               v.result.report.max_change / as.size, as.name) +
+                                       (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
+                                            ? ";\nthe limit counts from the scan as it was opened"
+                                            : "");
     ImGui::TextUnformatted(fmt::format("{}\n{}", filterName(v.spec), came).c_str());
     ImGui::PopTextWrapPos();
   }

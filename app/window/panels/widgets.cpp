@@ -1,16 +1,15 @@
 #include "app/window/panels/widgets.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/printf.h>
 #include <imgui_stdlib.h>
 
 #include "app/window/action_tips.h"
-#include "app/work/read_units.h"
+#include "app/work/typed_number.h"
 
 namespace fettle::app {
 
@@ -189,71 +188,122 @@ void noField(const char* says) {
 
 namespace {
 
-struct Typed {
-  double number = 0.0;
-  std::string unit;  // what stands behind it; may be empty
+// What is said of a number that was typed, beside its panel, so that no row moves: until something else is typed or clicked on.
+struct SaidOfField {
+  ImGuiID field = 0;
+  std::string text;
+  int frame = 0;  // the last one in which the field was laid out
 };
 
-std::optional<Typed> numberIn(const std::string& text) {
-  const char *begin = text.data() + std::min(text.find_first_not_of(" +"), text.size()), *const end =
-                                                                                             text.data() +
-                                                                                             text.size();
-  Typed typed;
-  const auto read = std::from_chars(begin, end, typed.number);
-  if (read.ec != std::errc() || !std::isfinite(typed.number)) return std::nullopt;
-  typed.unit = std::string(read.ptr, end);
-  typed.unit.erase(0, typed.unit.find_first_not_of(' '));
-  typed.unit.erase(typed.unit.find_last_not_of(' ') + 1);
-  return typed;
+SaidOfField& saidOfField() {
+  static SaidOfField said;
+  return said;
+}
+
+void sayOfField(const char* id, std::string text) {
+  saidOfField() = {ImGui::GetID(id), std::move(text), ImGui::GetFrameCount()};
+}
+
+// Beside the panel of the last item; where there is no room, below the item, or above it at the end of the window.
+void showSaidOfField() {
+  SaidOfField& said = saidOfField();
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const int frame = ImGui::GetFrameCount();
+  const bool passed = frame - said.frame > 1 || (frame != said.frame && ImGui::IsMouseClicked(0));
+  said.frame = frame;
+  if (passed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) said = {};
+  if (said.field == 0 || !ImGui::IsItemVisible()) return;
+  // Beside the panel, as tips; over it the text would lie on a field that is typed into next.
+  const float beside = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x;
+  const float wide = ImGui::CalcTextSize(said.text.c_str()).x + 2.0F * ImGui::GetFrameHeight();
+  const bool room = beside > wide;
+  const bool below = high.y + 2.0F * ImGui::GetFrameHeight() < ImGui::GetIO().DisplaySize.y;
+  ImGui::SetNextWindowPos(room ? ImVec2(beside, low.y) : ImVec2(high.x, below ? high.y : low.y),
+                          ImGuiCond_Always, ImVec2(1.0F, room || below ? 0.0F : 1.0F));
+  ImGui::Begin("##said of a field", nullptr,
+               ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize);
+  textIn(render::PanelColour::kWarning, said.text);
+  ImGui::End();
 }
 
 // A field for a number and its unit: what was typed when it is left by Enter, Tab or a click elsewhere; nothing by Escape, or
 // where it reads as before: the number has digits that are not shown.
-std::optional<Typed> typedText(const char* id, const std::string& reads) {
+std::optional<std::string> typedText(const char* id, const std::string& reads) {
   static ImGuiID edited = 0;  // one at a time
   static std::string text;
   const ImGuiID self = ImGui::GetID(id);
   std::string now = edited == self ? text : reads;
-  ImGui::InputText(id, &now, ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::InputText(id, &now, ImGuiInputTextFlags_AutoSelectAll)) saidOfField() = {};
   if (ImGui::IsItemActive()) {
     edited = self;
     text = now;
   }
-  if (!ImGui::IsItemDeactivated()) return std::nullopt;
+  const bool left = ImGui::IsItemDeactivated();
+  if (saidOfField().field == self) showSaidOfField();
+  if (!left) return std::nullopt;
   edited = 0;
-  return now == reads ? std::nullopt : numberIn(now);
+  const bool empty = now.find_first_not_of(' ') == std::string::npos;
+  return now == reads || empty ? std::nullopt : std::optional(now);
+}
+
+// Sets it within the range; that it was not is said. Whether it is another.
+bool take(const char* id, double typed, double low, double high, double& value) {
+  if (typed > high) sayOfField(id, "at its largest");
+  if (typed < low) sayOfField(id, "at its smallest");
+  const double before = std::exchange(value, std::clamp(typed, low, high));
+  return value != before;
+}
+
+std::nullopt_t notUnderstood(const char* id, const std::string& text) {
+  sayOfField(id, fmt::format("not understood: {}", text));
+  return std::nullopt;
 }
 
 }  // namespace
 
 std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
   const std::string reads = fmt::sprintf(format, value);
-  const auto typed = typedText(id, reads), before = numberIn(reads);
-  if (!typed || typed->number == value) return std::nullopt;
-  if (!typed->unit.empty() && before && typed->unit != before->unit) return std::nullopt;
-  return typed->number;
+  const auto text = typedText(id, reads);
+  if (!text) return std::nullopt;
+  const auto typed = readTypedNumber(*text), before = readTypedNumber(reads);
+  if (!typed || (!typed->unit.empty() && before && typed->unit != before->unit))
+    return notUnderstood(id, *text);
+  return typed->number == value ? std::nullopt : std::optional(typed->number);
 }
 
 bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
   const auto typed = typedNumber(id, value, format);
-  const double taken = std::clamp(typed.value_or(value), low, high);
-  if (!typed || taken == value) return false;
-  value = taken;
-  return true;
+  if (!typed) return false;
+  return take(id, *typed, low, high, value);
+}
+
+bool typeCount(const char* id, int& value, int low, int high, int step) {
+  const int before = value;
+  const bool edited = ImGui::InputInt(id, &value, step, 5 * step);
+  if (edited) {
+    double within = before;
+    saidOfField() = {};
+    (void)take(id, value, low, high, within);
+    value = static_cast<int>(within);
+  }
+  if (saidOfField().field == ImGui::GetID(id)) showSaidOfField();
+  return edited;
 }
 
 bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit,
                 const std::string& when_zero) {
-  const auto typed = typedText(id, value == 0.0 && !when_zero.empty()
-                                       ? "0: " + when_zero
-                                       : fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
-  if (!typed) return false;
-  const auto ratio = ratioOfUnits(typed->unit.empty() ? unit.name : typed->unit, unit.name);
-  if (!ratio) return false;
-  const double taken = std::clamp(typed->number * *ratio / unit.per_unit, low, high);
-  if (taken == value) return false;
-  value = taken;
-  return true;
+  const auto text = typedText(id, value == 0.0 && !when_zero.empty()
+                                      ? "0: " + when_zero
+                                      : fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
+  if (!text) return false;
+  const auto typed = readTypedLength(*text, unit.name);
+  if (!typed) {
+    (void)notUnderstood(id, *text);
+    return false;
+  }
+  return take(id, *typed / unit.per_unit, low, high, value);
 }
 
 std::string lengthText(double value, const render::ShownUnit& unit, int digits) {

@@ -89,14 +89,17 @@ void restOfLine();
 void noField(const char* says);
 
 /// A typed number with its unit: returns what was typed when the field is left by Enter, Tab or a click elsewhere, any finite
-/// value; nothing while it is unchanged or after Escape. For fields whose range is checked elsewhere and refused with a message.
+/// value; nothing while it is unchanged or after Escape. What is not understood is said beside the panel. For fields whose range is checked elsewhere and refused with a message.
 [[nodiscard]] std::optional<double> typedNumber(const char* id, double value, const std::string& format);
 
-/// The same clamped to a range: true when it was changed and confirmed; never a value that is not finite.
+/// The same clamped to a range, which is said there as well: true when it was changed and confirmed; never a value that is not finite.
 [[nodiscard]] bool typeNumber(const char* id, double& value, double low, double high,
                               const std::string& format);
 
-/// The same for a length that is kept in one unit and shown in another: `value`, `low` and `high` in the unit it is kept
+/// A whole number with buttons for a step and, with Ctrl, five of them: clamped to the range, which is said.
+[[nodiscard]] bool typeCount(const char* id, int& value, int low, int high, int step);
+
+/// The same as typeNumber() for a length that is kept in one unit and shown in another: `value`, `low` and `high` in the unit it is kept
 /// in. What is typed is taken in the unit that stands beside it, or in one that is typed behind the number.
 /// `when_zero`: what stands there in place of a 0, after "0: "; empty: the number.
 [[nodiscard]] bool typeLength(const char* id, double& value, double low, double high,

@@ -287,5 +287,52 @@ TEST_F(SteadyRows, notices_come_and_go_under_the_rows) {
   EXPECT_EQ(again->wait(), 0) << again->err();
 }
 
+TEST_F(SteadyRows, what_is_said_of_a_number_that_was_typed_moves_no_row) {
+  const auto program = start({scan});
+  User user(display, *program, "steady numbers");
+  (void)opened(*program);
+  for (int i = 0; i < 3; ++i) (void)user.key("n");
+  EXPECT_TRUE(user.key("x")["max_change"].is_number());
+  user.at({20, 1290});
+  const std::set<std::string> rows{"radius", "sigma", "max change", "passes", "Preview", "Apply", "Undo"};
+  const auto before = placesOf(user.rest(), rows);
+  EXPECT_EQ(before.size(), rows.size());
+  const auto typed = [&](const char* field, const char* what, const char* said, const char* reads) {
+    const State now = user.enter(field, what);
+    EXPECT_TRUE(user.reads(said)) << what << ": " << now["texts"];
+    EXPECT_TRUE(user.reads(reads)) << what << ": " << now["texts"];
+    EXPECT_EQ(placesOf(now, rows), before) << what;
+    return now;
+  };
+  (void)typed("sigma", "2000", "at its largest", "1000.00 samples");
+  (void)user.look("largest");
+  (void)typed("sigma", "-3", "at its smallest", "0: ");
+  (void)typed("passes", "99999", "at its largest", "1000");
+  (void)typed("sigma", "twelve", "not understood: twelve", "0: ");
+  const State before_length = program->now();
+  const State same = typed("max change", "15 parsecs", "not understood: 15 parsecs", "max change");
+  EXPECT_EQ(same["max_change"], before_length["max_change"]);
+  (void)user.look("not understood");
+  // Taken, and nothing is said any more.
+  EXPECT_EQ(user.enter("max change", "12,5 um")["max_change"], 0.0125);
+  EXPECT_FALSE(user.reads("not understood"));
+  EXPECT_FALSE(user.reads("at its"));
+  // By Tab, with the next field entered, it stays until a click.
+  ASSERT_TRUE(user.typeIn("sigma", "2000"));
+  (void)user.press("Tab");
+  program->until("said", [](const State& s) {
+    return s["texts"].dump().find("\"at its largest\"") != std::string::npos;
+  });
+  user.at({20, 1290});
+  user.down(1);
+  user.up(1);
+  program->until("not said any more", [](const State& s) {
+    return s["texts"].dump().find("\"at its largest\"") == std::string::npos;
+  });
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
 }  // namespace
 }  // namespace fettle::tests
