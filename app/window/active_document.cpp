@@ -41,6 +41,8 @@ haptic::Scene firstScene(const Document& document, const std::optional<haptic::S
     // Wider than the default of one sample: as wide as the displayed brush.
     scene.brush_radius_samples = 6.0;
     scene.mark_radius_samples = 3.0;
+    // Samples are distances: what is near is high.
+    scene.invert = document.scan.import.depth_camera.has_value();
   } else if (const auto kept =
                  haptic::parseScene(noted->second, "the session's scene", contactRevision(document))) {
     scene = *kept;
@@ -168,7 +170,7 @@ bool ActiveDocument::unsaved() const {
   return !(loop_->upright() == saved_);
 }
 
-std::string ActiveDocument::keptText() const {
+std::string ActiveDocument::keptText(const std::string& exported) const {
   if (const auto error = keeper_->error())
     return fmt::format("not stored: {}; the work is in memory, save it elsewhere", error->what);
   const bool waiting = keeper_->waiting() > 0 && std::chrono::steady_clock::now() - kept_ > kSayWaiting;
@@ -176,7 +178,8 @@ std::string ActiveDocument::keptText() const {
   if (keeper_->named())
     return fmt::format("{} {}", waiting ? "writing" : "kept in", fs::path(session).filename().string());
   if (!unsaved()) return {};
-  return session.empty() || waiting ? "changed" : "changed, kept until it is saved";
+  if (!exported.empty()) return fmt::format("exported to {}", fs::path(exported).filename().string());
+  return session.empty() || waiting ? "not saved" : "not saved; kept for the next start";
 }
 
 }  // namespace fettle::app

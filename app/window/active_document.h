@@ -45,8 +45,8 @@ class ActiveDocument {
 
   /// Whether closing would lose something.
   [[nodiscard]] bool unsaved() const;
-  /// How the work is stored, for the status bar.
-  [[nodiscard]] std::string keptText() const;
+  /// How the work is stored, for the status bar. `exported`: a file that holds it as it is now; empty: there is none.
+  [[nodiscard]] std::string keptText(const std::string& exported) const;
   /// A file contains this state, with sign +1.
   void noteSaved(const engine::Version& upright) { saved_ = upright; }
   /// The window's sections (sectionsText), for the session; it is written at most once a second, and at the end.

@@ -218,6 +218,11 @@ std::string Saving::exportText(const ActiveDocument& document) const {
                      same ? "as it is now" : "and changed since");
 }
 
+std::string Saving::exportedTo(const ActiveDocument& document) const {
+  const bool same = exported_ && document.isOpen() && document.client()->upright() == exported_->field;
+  return same ? exported_->path : "";
+}
+
 bool Saving::busy(const ActiveDocument& document) const {
   const SessionKeeper* const keeper = document.keeper();
   return writing_.busy() || waits_for_scan_ || (keeper != nullptr && keeper->saving());

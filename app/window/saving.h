@@ -55,6 +55,9 @@ class Saving {
   /// where nothing was exported since the document was opened.
   [[nodiscard]] std::string exportText(const ActiveDocument& document) const;
 
+  /// The path of the file that was exported last, if it holds the present state; else empty.
+  [[nodiscard]] std::string exportedTo(const ActiveDocument& document) const;
+
   bool embeds = true;  ///< the scan is stored in a session saved as
 
  private:

@@ -461,6 +461,9 @@ void Workstation::startDocument(Document document) {
   p.recent.add(p.document.path());
   noteWarnings(document.warnings);
   if (options_.scene) noteWithoutForce(client, p.feedback.notices);
+  if (document.scan.import.depth_camera && client.scene().invert)
+    p.feedback.notices.push_back({"distances from a camera are shown upside down: what is near is high",
+                                  "I shows them as they are stored"});
   if (document.recovered)
     p.feedback.notices.push_back(
         {fmt::format("{} unsaved steps were restored", client.history().number()), ""});

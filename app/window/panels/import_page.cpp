@@ -86,6 +86,18 @@ void unitChoice(Files& files) {
   choice("--unit", files.form.unit, words);
 }
 
+// What the file's whole numbers are multiplied with; of other numbers none is known.
+std::string foundScale(const Files& files) {
+  if (!files.found_grid || files.found_grid->height_per_count == 0.0) return "as in the file, else 1";
+  return fmt::format("{:.6g} {}", files.found_grid->height_per_count,
+                     isAssumed(files.found_warnings, "--z-scale") ? "guessed" : "in the file");
+}
+
+std::string foundCell(const Files& files) {
+  if (!files.found_grid) return "by the density of the points";
+  return fmt::format("{:.6g} by the points", files.found_grid->spacing_x);
+}
+
 // Lone values of the scan, to be taken as holes by one click.
 void noData(std::string& value, const ScanThumbnail* picture) {
   typed("--no-data", "as in the file", value);
@@ -122,10 +134,10 @@ void fields(Files& files, const ScanThumbnail* picture) {
   beginFields();
   if (files.apply.spacing) spacingFields(files);
   unitChoice(files);
-  typed("--z-scale", "as in the file, else 1", form.z_scale);
+  typed("--z-scale", foundScale(files), form.z_scale);
   noData(form.no_data, picture);
   if (files.apply.cells) {
-    typed("--cell-size", "by the density of the points", form.cell_size);
+    typed("--cell-size", foundCell(files), form.cell_size);
     choice("--cell-rule", form.cell_rule,
            {{"", "median of its points"}, {"mean", "mean"}, {"highest", "highest"}});
   }

@@ -25,12 +25,17 @@ const char* endOfRadius(double samples) {
   return samples >= haptic::kMaxBrushRadius ? " (the largest)" : samples < 1.0 ? " (one sample)" : "";
 }
 
+const char* endOfDepth(const haptic::MouseStylus& mouse) {
+  return mouse.pressMm() >= mouse.deepestMm() ? " (the largest)" : mouse.pressMm() <= 0.0 ? " (none)" : "";
+}
+
 std::string brushText(const BrushAdjustment& brush, LoopClient& client) {
   const std::string now =
       brush.of() == BrushAdjustment::Of::kRadius
           ? fmt::format("brush radius {:.3g} samples{}", brushRadius(client),
                         endOfRadius(brushRadius(client)))
-          : fmt::format("press depth {}", lengthText(client.mouse()->pressMm(), brush.depthUnit()));
+          : fmt::format("press depth {}{}", lengthText(client.mouse()->pressMm(), brush.depthUnit()),
+                        endOfDepth(*client.mouse()));
   const std::string typed = brush.typed().empty() ? ""
                             : brush.understood()  ? " [" + brush.typed() + "]"
                                                   : " [not understood: " + brush.typed() + "]";
@@ -61,7 +66,9 @@ std::string placeText(const Parts& parts) {
 std::string documentText(const Parts& parts) {
   std::string line = parts.feedback.status;
   if (!parts.document.isOpen()) return line;
-  if (const std::string kept = parts.document.keptText(); !kept.empty()) line += "  (" + kept + ")";
+  if (const std::string kept = parts.document.keptText(parts.saving.exportedTo(parts.document));
+      !kept.empty())
+    line += "  (" + kept + ")";
   return line + placeText(parts);
 }
 

@@ -140,6 +140,8 @@ TEST_F(WindowTest, a_depth_camera_is_said_by_one_number) {
   const State read =
       program->until("the scan", [&](const State& s) { return s["path"] == depth && s["settled"] == true; });
   EXPECT_NE(read["notices"].dump().find("perspective"), std::string::npos) << read["notices"].dump();
+  EXPECT_EQ(read["inverted"], true) << "what is near to the camera is high";
+  (void)user.look("near is high");
   quit(user);
 }
 
