@@ -111,6 +111,7 @@ class OperationTimes {
 }  // namespace
 
 std::vector<Operations> operationsOf(const engine::Version& field, const engine::FilterSpec& spec) {
+  if (spec.kind == engine::FilterKind::kBox) return {Operations{}};
   if (spec.kind == engine::FilterKind::kGaussian)
     return {Operations{
         .products = 2.0 * (2.0 * static_cast<double>(engine::gaussianHalfWeights(spec).size()) - 1.0)}};
@@ -154,12 +155,11 @@ engine::Result<FilterBound> filterBound(const engine::Version& field, const engi
     filter.push_back(whole / samples);
     written.push_back(merged / samples);
   }
-  FilterBound bound{median(filter), median(written), 0.0, {}};
-  for (const Operations& way : ways)
-    if (const double seconds = times.of(way); bound.operations == 0.0 || seconds < bound.operations) {
-      bound.operations = seconds;
-      bound.counted = way;
-    }
+  FilterBound bound{median(filter), median(written), 0.0, {}, !ways.empty()};
+  if (bound.whole) {
+    bound.counted = std::ranges::min(ways, {}, [&](const Operations& way) { return times.of(way); });
+    bound.operations = times.of(bound.counted);
+  }
   return bound;
 }
 

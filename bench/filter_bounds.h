@@ -24,12 +24,14 @@ struct FilterBound {
   double filter = 0.0;  ///< all of applyFilter
   double tiles =
       0.0;  ///< every tile read, and a new one written with its marks, bounds and report: results lie ready
-  double operations = 0.0;  ///< `counted` alone; 0: not counted for this filter
+  double operations = 0.0;  ///< `counted` alone
   Operations counted;
+  bool whole =
+      false;  ///< whether that is all it cannot do without; false: nothing was counted for this filter
 };
 
 /// Of a Gaussian's two passes, a median's shared networks, both erosions of an opening or closing by a disk or ball: of each way in
-/// which the results can be had. Empty: not counted. Throws std::bad_alloc.
+/// which the results can be had; of a box nothing, since a sample takes part in four sums whatever its window. Empty: not counted. Throws std::bad_alloc.
 [[nodiscard]] std::vector<Operations> operationsOf(const engine::Version& field,
                                                    const engine::FilterSpec& spec);
 

@@ -104,6 +104,27 @@ TEST(FiltersBench, HasARowWithADeviceBesideEachOfTheProcessorForWhatCanUseIt) {
   EXPECT_GE(device.squares, 3U);
 }
 
+// A large median's walk through its histogram depends on the scan: nothing of it is counted, and nothing is claimed.
+TEST(FiltersBench, SaysWhereNoBoundIsKnown) {
+  FiltersBenchOptions options;
+  options.side = 128;
+  options.kinds = {FilterKind::kBox, FilterKind::kMedian};
+  options.windows = {5, 31};
+  options.grounds = {FilterGround::kPlain};
+  options.threads = {1};
+  options.repeats = 1;
+  options.bounds = true;
+  engine::JobControl job;
+  const auto report = benchFilters(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  ASSERT_EQ(report->rows.size(), 4U);
+  for (const FiltersBenchRow& row : report->rows) {
+    EXPECT_EQ(row.bound.whole, row.kind == FilterKind::kBox || row.window == 5) << row.window;
+    EXPECT_EQ(row.bound.operations > 0.0, row.kind == FilterKind::kMedian && row.window == 5) << row.window;
+    EXPECT_GT(row.bound.tiles, 0.0);
+  }
+}
+
 TEST(FiltersBench, HasTheBoundsOfADiskAndABallBesideTheirRowsOfOneThread) {
   FiltersBenchOptions options;
   options.side = 128;
