@@ -11,10 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/bench_forms.h"
 #include "bench/machine.h"
+#include "bench/render_scenes.h"
 #include "engine/base/stopwatch.h"
-#include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "haptic/loop/loop_bench.h"
 
@@ -32,36 +31,6 @@ std::int64_t peakBytes() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
   return std::int64_t{use.ru_maxrss} * 1024;
-}
-
-double noise(std::int32_t c, std::int32_t r) {
-  auto h = static_cast<std::uint32_t>(c) * 2654435761U ^ static_cast<std::uint32_t>(r) * 2246822519U;
-  h ^= h >> 15U;
-  h *= 2246822519U;
-  return (h >> 8U) / 8388608.0 - 1.0;
-}
-
-// 64 mm wide at any number of samples: a tilted plate with a boss, a groove, a dome and 5 um of noise.
-engine::Result<engine::Version> partOf(std::int32_t side) {
-  engine::Grid grid;
-  grid.width = grid.height = side;
-  grid.spacing_x = grid.spacing_y = 64.0 / side;
-  auto builder = engine::FieldBuilder::create(grid, "benchmark field");
-  if (!builder) return tl::unexpected(builder.error());
-  std::vector<float> row(static_cast<std::size_t>(side));
-  for (std::int32_t r = 0; r < side; ++r) {
-    for (std::int32_t c = 0; c < side; ++c) {
-      const double x = c * grid.spacing_x, y = r * grid.spacing_y;
-      double z = 0.02 * x + 0.005 * noise(c, r);
-      if (std::hypot(x - 18, y - 40) < 9) z += 5;
-      if (y > 8 && y < 12) z -= 3;
-      const double dome = std::hypot(x - 45, y - 35);
-      if (dome < 12) z += 0.5 * std::sqrt(144 - dome * dome);
-      row[static_cast<std::size_t>(c)] = static_cast<float>(z);
-    }
-    builder->writeHeights(0, r, side, 1, row.data(), side);
-  }
-  return (*std::move(builder)).build();
 }
 
 double percentile(std::vector<double> values, double share) {
@@ -101,42 +70,6 @@ engine::Status compareSharp(render::LivePicture& picture, const render::FrameInp
   row.off_share = static_cast<double>(above) / static_cast<double>(pixels);
   row.off_max = worst;
   return {};
-}
-
-enum class Brush { kRests, kWorks };
-// kRests: turns when the picture has come to rest; the frame that follows is not counted.
-enum class Camera { kOrbits, kFixed, kRests };
-
-// A stylus that moves: as lines, as a pen, with its shadow, with the trail of a second.
-enum class Stylus { kNone, kLines, kPen, kPenAndShadow, kTrail };
-
-// One row of the report: what is shown, and what changes.
-struct Scene {
-  std::string name;
-  render::Shown shown;
-  render::FrameInput input;
-  Camera camera = Camera::kOrbits;
-  Brush brush = Brush::kRests;
-  Stylus stylus = Stylus::kNone;
-  std::optional<engine::Version> other = {};  // shown in turn with the field
-};
-
-// The stylus of a frame, `way` 0 .. 1 of its way.
-void putStylus(Stylus stylus, double way, render::Overlays& overlays) {
-  constexpr int kTrailPieces = 60;
-  overlays = {};
-  const auto x = [](double at) { return 16.0 + 32.0 * at; };
-  if (stylus == Stylus::kLines)
-    render::appendStylus({{x(way), 20.0, 8.0}, {x(way), 20.0, 6.0}, {0.0, 0.0, 1.0}, true, 0.0}, 4.0,
-                         overlays.lines);
-  if (stylus == Stylus::kPen || stylus == Stylus::kPenAndShadow)
-    overlays.stylus =
-        render::StylusBody{.tip_mm = {x(way), 20.0, 6.0}, .shadow = stylus == Stylus::kPenAndShadow};
-  for (int i = 0; stylus == Stylus::kTrail && i < kTrailPieces; ++i) {
-    const auto at = [&](int k) { return glm::dvec3(x(way - 0.002 * k), 20.0 + std::sin(0.1 * k), 6.0); };
-    overlays.lines.push_back(
-        {.from_mm = at(i), .to_mm = at(i + 1), .depth = render::OverlayLine::Depth::kInScene});
-  }
 }
 
 engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& scene,
@@ -306,6 +239,9 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   for (const std::int32_t side : options.sides)
     if (side < 64 || side > 32768)
       return engine::inputError("a side is out of range", "bench render", "give 64 to 32768 samples");
+  if (std::min(options.width, options.height) < 64 || std::max(options.width, options.height) > 16384)
+    return engine::inputError("the size of the picture is out of range", "bench render",
+                              "give 64x64 to 16384x16384 pixels");
   if (!(options.loop_seconds >= 0.0 && options.loop_seconds <= 600.0))
     return engine::inputError("the time with the loop is out of range", "bench render", "give 0 to 600 s");
   RenderBenchReport report;
@@ -320,11 +256,11 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (11 * options.sides.size() + 16));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (11 * options.sides.size() + 20));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
-    const auto field = partOf(options.sides[i]);
+    const auto field = benchPart(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
-    Scene all_round{"plain", {{*field}, std::nullopt, render::MarksOverlay::kHide}, plain};
+    Scene all_round = plainScene(*field, plain);
     const engine::Stopwatch watch;
     if (auto ok = (*picture)->update(all_round.shown); !ok) return tl::unexpected(ok.error());
     for (bool first = true, rests = false; !rests; first = false) {
@@ -336,84 +272,11 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     }
     report.rest_ms.push_back(watch.ms());
 
-    std::vector<Scene> scenes(9, all_round);
-    scenes[1].name = "empty";
-    scenes[1].input.view.zoom = 1e-3;
-    scenes[2].name = "brush";
-    scenes[3].name = "brush, still";
-    scenes[4].name = "brush, whole";
-    scenes[4].input.redraw = render::FrameInput::Redraw::kAll;
-    for (const std::size_t k : {2, 3, 4}) scenes[k].brush = Brush::kWorks;
-    scenes[5].name = "stylus, still";
-    scenes[5].stylus = Stylus::kLines;
-    // As the window draws a picture at rest.
-    scenes[6].name = "fine";
-    scenes[7].name = "fine, brush";
-    scenes[8].name = "rest, a band";
-    scenes[8].input.sharpness = render::Sharpness::kRest;
-    for (const std::size_t k : {6, 7, 8}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
-    scenes[7].brush = Brush::kWorks;
-    for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kFixed;
-    scenes[8].camera = Camera::kRests;
-    // Shaded as in the window.
-    for (const std::size_t k : {2, 3, 4, 5, 6, 7, 8}) scenes[k].input.form = render::kShownForm;
-    if (i == 0) {
-      const std::size_t first = scenes.size();
-      scenes.insert(scenes.end(), 8, all_round);
-      scenes[first].name = "contours";
-      scenes[first].input.contours = render::Contours::kShow;
-      scenes[first + 1].name = "deviation";
-      scenes[first + 1].shown.original = *field;
-      scenes[first + 2].name = "marks";
-      scenes[first + 2].shown.marks = render::MarksOverlay::kShow;
-      scenes[first + 3].name = "two eyes";
-      scenes[first + 3].input.stereo.mode = render::StereoMode::kAnaglyph;
-      scenes[first + 4].name = "normals";
-      scenes[first + 4].input.form.filtered_normals = true;
-      scenes[first + 5].name = "occlusion";
-      scenes[first + 5].input.form.occlusion = 0.8;
-      scenes[first + 6].name = "cavity";
-      scenes[first + 6].input.form.cavity = 0.5;
-      scenes[first + 7].name = "material";
-      scenes[first + 7].input.form.material = render::Material::kPorcelain;
-      // What is seen under a form is drawn as any field; when a form comes or goes, all tiles are others.
-      const auto seen = bentAndSeen(*field, benchSphere(field->grid()), job);
-      if (!seen) return tl::unexpected(seen.error());
-      scenes.insert(scenes.end(), 2, all_round);
-      scenes[first + 8].name = "under a sphere";
-      scenes[first + 8].shown.versions = {*seen};
-      scenes[first + 9].name = "sphere in, out";
-      scenes[first + 9].shown.versions = {*seen->seenOf()};
-      scenes[first + 9].other = *seen;
-      for (const auto& [name, stylus] : {std::pair{"pen, still", Stylus::kPen},
-                                         {"pen, shadow, still", Stylus::kPenAndShadow},
-                                         {"trail, still", Stylus::kTrail}}) {
-        scenes.push_back(scenes[5]);
-        scenes.back().name = name;
-        scenes.back().stylus = stylus;
-      }
-    }
-    if (options.in_motion == render::Sharpness::kHalf) {
-      Scene moving = all_round;
-      moving.name = "moving";
-      moving.input.sharpness = render::Sharpness::kHalf;
-      moving.input.form = render::kShownForm;
-      if (i == 0) {
-        scenes.push_back(moving);
-        scenes.back().name = "two, moving";
-        scenes.back().input.stereo.mode = render::StereoMode::kAnaglyph;
-        scenes.push_back(moving);
-        scenes.back().name = "pen, moving";
-        scenes.back().stylus = Stylus::kPenAndShadow;
-      }
-      scenes.insert(scenes.begin() + 1, moving);
-      // As the window draws where these take too long.
-      moving.name = "moving, a quarter";
-      moving.input.sharpness = render::Sharpness::kQuarter;
-      scenes.insert(scenes.begin() + 2, std::move(moving));
-    }
+    const auto scenes =
+        renderScenes(*field, plain, options.in_motion, i == 0 ? SceneSet::kAll : SceneSet::kFrames, job);
+    if (!scenes) return tl::unexpected(scenes.error());
     double plain_cpu_ms = 0.0;
-    for (const Scene& scene : scenes) {
+    for (const Scene& scene : *scenes) {
       if (!options.scenes.empty() &&
           std::find(options.scenes.begin(), options.scenes.end(), scene.name) == options.scenes.end())
         continue;
@@ -430,7 +293,9 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
         return tl::unexpected(ok.error());
   }
   report.peak_bytes = peakBytes();
-  report.targets = targetsOf(report, options.in_motion);
+  // The targets are of the usual size.
+  if (options.width == RenderBenchOptions().width && options.height == RenderBenchOptions().height)
+    report.targets = targetsOf(report, options.in_motion);
   return report;
 }
 

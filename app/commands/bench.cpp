@@ -3,9 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include "app/commands/typed_values.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
@@ -16,6 +18,9 @@
 namespace fettle::app {
 
 namespace {
+
+// Of a picture: what a device may be asked to draw as one.
+constexpr SideRange kBenchSides{64, 16384};
 
 engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::JobControl& job) {
   const auto measured = bench::benchHaptic(options, job);
@@ -217,6 +222,7 @@ engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine:
   const auto result = bench::benchRender(options, job);
   if (!result) return tl::unexpected(result.error());
   Report report{{"machine", result->machine},       {"device", result->device},
+                {"width", options.width},           {"height", options.height},
                 {"first_ms", result->first_ms},     {"rest_ms", result->rest_ms},
                 {"peak_bytes", result->peak_bytes}, {"rows", Report::array()}};
   for (const bench::RenderBenchRow& row : result->rows)
@@ -399,15 +405,28 @@ void addBench(Command root, Chosen& chosen) {
   addBenchPreviews(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
+  auto size =
+      std::make_shared<std::string>(fmt::format("{}x{}", render_options->width, render_options->height));
   Command drawing = addCommand(
       bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
-      [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
+      [render_options, size](engine::JobControl& job) -> engine::Result<Report> {
+        const auto sides = parseSize(*size, "--size", kBenchSides);
+        if (!sides) return tl::unexpected(sides.error());
+        std::tie(render_options->width, render_options->height) = *sides;
+        return picture(*render_options, job);
+      },
+      printPicture);
   drawing.add({
       {.name = "--side",
        .to = &render_options->sides,
        .text = "Lengths of each side, one field each; 10240: 100M, 31623: 1G",
        .range = kSides,
        .unit = "samples"},
+      {.name = "--size",
+       .to = size.get(),
+       .text = "Size of the picture, each side 64 to 16384",
+       .kind = ValueKind::kSize,
+       .unit = "pixels"},
       {.name = "--loop",
        .to = &render_options->loop_seconds,
        .text = "Time of drawing with a haptic loop; 0: none",
