@@ -1,6 +1,7 @@
 #include "app/window/actions.h"
 
 #include "app/window/action_steps.h"
+#include "app/window/view_steps.h"
 #include "engine/base/rows.h"
 
 namespace fettle::app {
