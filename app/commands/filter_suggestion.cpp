@@ -1,6 +1,5 @@
 #include "app/commands/filter_suggestion.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "app/work/suggestion_text.h"
 #include "engine/field/piece.h"
 #include "engine/filter/catalogue.h"
 #include "engine/suggest/filter_suggestion.h"
@@ -52,70 +52,9 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const Batch
   return commands;
 }
 
-// "7.1 um on flats and 12 um near edges".
-std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
-  const auto part = [&](double error, const char* where) {
-    return std::isnan(error) ? std::string() : fmt::format("{:.3g} {} {}", error, unit, where);
-  };
-  const std::string flat = part(c.error_flat, "on flats"), edge = part(c.error_edge, "near edges");
-  return flat.empty() || edge.empty() ? flat + edge : flat + " and " + edge;
-}
-
-// Whatever time it takes; null: none is.
-const engine::FilterCandidate* cheapestWithin(const engine::FilterSuggestion& found, double tolerance) {
-  const engine::FilterCandidate* cheapest = nullptr;
-  for (const engine::FilterCandidate& c : found.candidates)
-    if (c.error() <= tolerance && (cheapest == nullptr || c.betterThan(*cheapest))) cheapest = &c;
-  return cheapest;
-}
-
-// The reason for the choice, from the figures.
-std::string whyOf(const engine::FilterSuggestion& found, const engine::SuggestionRequest& asked,
-                  const std::string& unit) {
-  const engine::FilterCandidate& pick = found.picked();
-  const auto affordable = [&](const engine::FilterCandidate& c) {
-    return !asked.budget_s || c.seconds <= *asked.budget_s;
-  };
-  const engine::FilterCandidate *marked = nullptr, *flattest = nullptr;
-  for (const engine::FilterCandidate& c : found.candidates) {
-    if (!affordable(c)) continue;
-    if (c.around_edges && (marked == nullptr || c.error() < marked->error())) marked = &c;
-    if (flattest == nullptr || c.error_flat < flattest->error_flat) flattest = &c;
-  }
-  std::string why = fmt::format("The noise is {:.3g} {}. ", found.sigma, unit);
-  if (pick.spec.window == 1 && found.met())
-    return why + fmt::format("The unchanged scan stays within {:.3g} {}: no filter is needed.",
-                             asked.tolerance, unit);
-  if (found.met()) {
-    why += fmt::format(
-        "{} leaves {}, in about {:.2g} s; of all tested filters that stay within {:.3g} {}, none needs less "
-        "computing.",
-        engine::methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
-  } else {
-    why +=
-        fmt::format("No tested filter stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
-                    asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
-                    engine::methodOf(pick), leftBy(pick, unit), pick.seconds);
-    const engine::FilterCandidate* slow = cheapestWithin(found, asked.tolerance);
-    if (slow != nullptr)
-      why += fmt::format(" {} does, in about {:.2g} s: give a larger --budget.", engine::methodOf(*slow),
-                         slow->seconds);
-    else if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
-      why += fmt::format(
-          " Only flats: {} leaves {}; edges that need a smaller error must be "
-          "smoothed with the stylus (fettle view) or scanned again.",
-          engine::methodOf(*flattest), leftBy(*flattest, unit));
-    else
-      why += " A scan with less noise is needed, or the mean of several.";
-  }
-  if (marked != nullptr && !pick.around_edges)
-    why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
-                       leftBy(*marked, unit), engine::methodOf(*marked));
-  if (found.outlier_share > 1e-4)
-    why += fmt::format(
-        " {:.2g} % of the samples are single outliers: the filter {} removes these and nothing else.",
-        100.0 * found.outlier_share, engine::name(engine::FilterKind::kOutliers));
-  return why;
+// In the scan's own unit, with the words of the command line.
+SuggestionWords wordsOf(const engine::Version& field) {
+  return {{field.grid().height_unit.name}, engine::methodOf};
 }
 
 Report reportOf(const engine::FilterCandidate& c) {
@@ -130,7 +69,16 @@ Report reportOf(const engine::FilterCandidate& c) {
           {"error_flat", figure(c.error_flat)},
           {"error_edge", figure(c.error_edge)},
           {"seconds", c.seconds},
-          {"within", c.within}};
+          {"within", c.within},
+          {"why", Report()}};
+}
+
+// All that were tried, the listed ones with what they are listed for.
+Report candidatesOf(const engine::FilterSuggestion& found, const std::vector<ListedFilter>& listed) {
+  Report all = Report::array();
+  for (const engine::FilterCandidate& c : found.candidates) all.push_back(reportOf(c));
+  for (const ListedFilter& each : listed) all[each.candidate]["why"] = each.why;
+  return all;
 }
 
 // Refuses what --suggest has no use for.
@@ -209,20 +157,20 @@ engine::Result<Report> suggestOne(const FilterArguments& options, const BatchTas
   if (foreseen->only) return *std::move(foreseen->only);
   const auto found = engine::suggestFilter(field, request, job);
   if (!found) return tl::unexpected(found.error());
-  const std::string& unit = field.grid().height_unit.name;
+  const SuggestionWords words = wordsOf(field);
+  const Report candidates = candidatesOf(*found, listedFilters(*found, request, words.unit));
   report.update({{"met", found->met()},
-                 {"why", whyOf(*found, request, unit)},
+                 {"why", reasonText(*found, request, words)},
                  {"commands", commandsFor(options, task, found->picked())},
-                 {"unit", unit},
+                 {"unit", words.unit.name},
                  {"tolerance", request.tolerance},
                  {"budget", request.budget_s ? Report(*request.budget_s) : Report()},
                  {"noise", found->sigma},
                  {"samples", found->samples},
                  {"outlier_share", found->outlier_share},
                  {"edge_share", found->edge_share},
-                 {"pick", reportOf(found->picked())}});
-  report["candidates"] = Report::array();
-  for (const engine::FilterCandidate& c : found->candidates) report["candidates"].push_back(reportOf(c));
+                 {"pick", candidates[found->pick]},
+                 {"candidates", candidates}});
   return report;
 }
 
@@ -235,8 +183,9 @@ void printFilters(const Report& report) {
     return value.is_null() ? std::string("-") : fmt::format("{:.3g}", value.get<double>());
   };
   for (const Report& c : report["candidates"])
-    fmt::print("{:<48}{:>14}{:>14}{:>10}{}\n", c["method"].get<std::string>(), figure(c["error_flat"]),
-               figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "");
+    fmt::print("{:<48}{:>14}{:>14}{:>10}{}{}\n", c["method"].get<std::string>(), figure(c["error_flat"]),
+               figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "",
+               c["why"].is_null() ? "" : "  " + c["why"].get<std::string>());
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ Keys candidate() {
           {"error_flat", "number", "expected on flats, height unit"},
           {"error_edge", "number", "expected near edges, height unit"},
           {"seconds", "number", "expected"},
-          {"within", "boolean", "within the tolerance"}};
+          {"within", "boolean", "within the tolerance"},
+          {"why", "string?", "what the filter is listed for; null: others are better at everything"}};
 }
 
 Keys places() {

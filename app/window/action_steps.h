@@ -143,6 +143,8 @@ inline void navigate(Parts& p) {
     p.compare.cancel();
   else if (p.measure.busy())
     p.measure.cancel();
+  else if (p.suggester.busy())
+    p.suggester.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
   else
@@ -276,6 +278,16 @@ inline void finerEdges(Parts& p) {
 
 // --- Filter
 
+// What a preview is made with, and what it found, stands in its panel.
+inline void enterPanel(Parts& p, const char* name) {
+  p.settings.panels[name] = true;
+  p.enter_panel = name;
+}
+inline void suggestFilters(Parts& p) {
+  p.settings.side_panel = true;
+  enterPanel(p, "Suggested filters");
+  if (!p.suggester.busy()) p.suggester.search(clientOf(p));
+}
 inline void nextFilter(Parts& p) {
   engine::FilterSpec& spec = p.filters.spec;
   spec.kind = engine::filters()[(static_cast<std::size_t>(spec.kind) + 1) % engine::filters().size()].kind;
@@ -361,11 +373,6 @@ void sectionEnd(Parts& p) {
   (p.section.*set)(*at);
   p.settings.panels["Section"] = true;
   p.picture.requestRedraw();
-}
-// What a preview is made with, and what it found, stands in its panel.
-inline void enterPanel(Parts& p, const char* name) {
-  p.settings.panels[name] = true;
-  p.enter_panel = name;
 }
 template <auto options>
 bool heightsArePreviewed(const Parts& p) {

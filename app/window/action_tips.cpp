@@ -26,6 +26,9 @@ constexpr Tip kTips[] = {
     {Action::kDrawLines,
      "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
     {Action::kEdges, "Shows where the scan has edges; Enter takes them as marks or edge lines."},
+    {Action::kFilterSuggest,
+     "Tries filters on surfaces as this scan has, with noise like its own, and lists the best with what they "
+     "leave of the error, why, and their time. Takes some ten seconds and changes nothing."},
     {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
     {Action::kFilterAdd,
      "Keeps what is shown and puts another beside it, which follows the fields from then on."},

@@ -138,6 +138,8 @@ constexpr ActionRow kRows[] = {
     ActionRow{Action::kEdgesFiner, "Marks", "Look for edges at a smaller scale", Key::kLeftBracket,
               kControlShift, Key::kComma, kSecond, kField, finerEdges},
 
+    ActionRow{Action::kFilterSuggest, "Filter", "Suggest a filter for this scan", letter('F'), kControl,
+              kNoKey, kFirst, kField, suggestFilters},
     ActionRow{Action::kFilterNext, "Filter", "Next filter", letter('N'), kPlain, kNoKey, kFirst, kField,
               nextFilter},
     ActionRow{Action::kFilterPreview, "Filter", "Preview", letter('P'), kPlain, kNoKey, kSecond, kField,

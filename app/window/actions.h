@@ -56,6 +56,7 @@ enum class Action : std::uint8_t {
   kEdgesThinner,
   kEdgesCoarser,
   kEdgesFiner,
+  kFilterSuggest,
   kFilterNext,
   kFilterPreview,
   kFilterAdd,

@@ -128,6 +128,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   flight.stop();
   bookmarks.clear();
   filters.finish(*document.client());
+  suggester.clear();
   form.clear();
   heights.clear();
   removal.clear();

@@ -29,6 +29,7 @@
 #include "app/work/compare_tool.h"
 #include "app/work/device_check.h"
 #include "app/work/filter_preview.h"
+#include "app/work/filter_suggester.h"
 #include "app/work/form_tool.h"
 #include "app/work/height_tool.h"
 #include "app/work/measure_tool.h"
@@ -80,6 +81,7 @@ struct Parts {
   Marking marking;
   LineDrag line_drag;
   FilterPreview filters;
+  FilterSuggester suggester;
   FormTool form;
   HeightTool heights;
   RemovalCount removal;

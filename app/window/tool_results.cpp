@@ -52,6 +52,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
     changed |= p.heights.poll(client, notices);
     p.heights.follow(seen);
   }
+  changed |= p.suggester.poll(client, notices);
   changed |= p.removal.poll(client);
   changed |= p.measure.poll(client, notices);
   if (p.compare.poll(client, notices)) {

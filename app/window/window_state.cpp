@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "app/window/axes_gizmo.h"
+#include "app/work/suggestion_text.h"
 #include "haptic/safety/safety.h"
 
 namespace fettle::app {
@@ -160,6 +161,15 @@ void addFilters(const Parts& p, Report& r) {
   r["preview_is_behind"] = filters.isBehind();
   const engine::FilterView::Picture& so_far = filters.soFar();
   r["preview_so_far"] = so_far.field.empty() ? Report() : Report(previewState(so_far, so_far.field.grid()));
+  Report listed = Report::array();
+  if (const FilterSuggester::Found* const found = p.suggester.found())
+    for (const ListedFilter& each : listedFilters(found->suggestion, found->asked, p.units.change))
+      listed.push_back(
+          {{"method", engine::methodOf(found->suggestion.candidates[each.candidate])}, {"why", each.why}});
+  r["trying_filters"] = p.suggester.busy();
+  r["listed_filters"] = listed;
+  r["no_filter"] = p.suggester.nothing();
+  r["listed_are_outdated"] = p.suggester.outdated();
   r["suggested"] = edges.suggestion() != nullptr ? edges.suggestion()->samples : 0;
   r["looking_for_edges"] = edges.busy();
   const engine::EdgeLines lines = p.document.client()->newest().lines();
@@ -299,6 +309,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("the mouse's stylus", mouse != nullptr && mouse->busy());
   waits("a filter", p.filters.computing() || p.filters.applying() || p.filters.awaitsRest());
   waits("the noise", p.filters.measuresNoise());
+  waits("a suggestion", p.suggester.busy());
   waits("a form", p.form.busy());
   waits("heights", p.heights.busy() || p.heights.awaitsRest());
   waits("a count", p.removal.busy());

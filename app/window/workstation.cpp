@@ -37,9 +37,9 @@ std::string settingsPath(const char* file) {
 bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
          p.saving.busy(p.document) || p.filters.computing() || p.filters.awaitsRest() ||
-         p.filters.measuresNoise() || p.filters.applying() || p.form.busy() || p.measure.busy() ||
-         p.section.busy() || p.heights.busy() || p.heights.awaitsRest() || p.removal.busy() ||
-         p.colours.busy() || p.compare.busy() || p.transform.busy() ||
+         p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.form.busy() ||
+         p.measure.busy() || p.section.busy() || p.heights.busy() || p.heights.awaitsRest() ||
+         p.removal.busy() || p.colours.busy() || p.compare.busy() || p.transform.busy() ||
          (p.document.isOpen() &&
           (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
 }

@@ -21,6 +21,12 @@ bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
          a.scope == b.scope && a.max_change == b.max_change;
 }
 
+// A filter with the limit of change of another.
+engine::FilterSpec limitedAs(const engine::FilterSpec& other, engine::FilterSpec filter) {
+  filter.max_change = other.max_change;
+  return filter;
+}
+
 }  // namespace
 
 bool FilterPreview::Fields::operator==(const Fields& other) const {
@@ -81,6 +87,14 @@ std::optional<double> FilterPreview::rangeOfNoise(const LoopClient& client) {
   of_noise.range_sigma = 0.0;
   const auto ready = engine::withRangeOf(of_noise, *noise);
   return ready ? std::optional(ready->range_sigma) : std::nullopt;
+}
+
+void FilterPreview::choose(const engine::FilterSpec& filter) {
+  spec = limitedAs(spec, filter);
+}
+
+bool FilterPreview::says(const engine::FilterSpec& filter) const {
+  return same(spec, limitedAs(spec, filter));
 }
 
 void FilterPreview::follow(LoopClient& client, const std::function<engine::FieldView()>& view) {

@@ -48,6 +48,11 @@ class FilterPreview {
 
   [[nodiscard]] bool measuresNoise() const noexcept { return noise_.busy(); }
 
+  /// Puts a filter with its numbers into the fields; the limit of change stays as it is.
+  void choose(const engine::FilterSpec& filter);
+  /// Whether the fields say this filter, whatever the limit of change.
+  [[nodiscard]] bool says(const engine::FilterSpec& filter) const;
+
   /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them, or the newest of
   /// them. `view`: what is shown of the field (visiblePart) is filtered first, approximately where that takes long.
   enum class Keep : std::uint8_t { kReplace, kAdd, kRenew };

@@ -104,8 +104,14 @@ std::string methodOf(const FilterCandidate& candidate) {
   std::string words(filter.word);
   if (filter.window.exists()) words += fmt::format(" {}", candidate.spec.window);
   if (candidate.spec.passes > 1) words += fmt::format(", {} passes", candidate.spec.passes);
+  return words + detailsOf(candidate);
+}
+
+std::string detailsOf(const FilterCandidate& candidate) {
+  const Filter& filter = filterOf(candidate.spec.kind);
+  std::string words;
   if (candidate.noises != (hasRange(filter.kind) ? filter.noises : 0.0))
-    words += fmt::format(", range {:g} noises", candidate.noises);
+    words = fmt::format(", range {:g} noises", candidate.noises);
   return words + (candidate.around_edges ? " around suggested edges" : "");
 }
 

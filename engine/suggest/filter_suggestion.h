@@ -59,6 +59,8 @@ struct FilterCandidate {
 /// The candidate in words, another for each that is tried: "tv 31, range 1.5 noises". The range that the filter takes by
 /// itself is not named.
 [[nodiscard]] std::string methodOf(const FilterCandidate& candidate);
+/// What of that FilterSpec does not say: ", range 1.5 noises", " around suggested edges"; may be empty.
+[[nodiscard]] std::string detailsOf(const FilterCandidate& candidate);
 
 struct FilterSuggestion {
   double sigma = 0.0;                       ///< the scan's noise (measureNoise) [height_unit]

@@ -119,6 +119,8 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
   if (ImGui::Button("Apply")) filters.apply(context.client);
   tip(Action::kFilterApply);
   ImGui::EndDisabled();
+  sameLineIfFits("Suggest");
+  actionButton("Suggest", Action::kFilterSuggest, context.act);
   if (workRow(runs ? std::optional(filters.progress()) : std::nullopt,
               filters.applying() ? "applying" : "filtering", "Cancel"))
     filters.cancel(context.client);

@@ -25,10 +25,10 @@ float noticesHeight(const std::vector<Notice>& notices, float width) {
   if (notices.empty()) return 0.0F;
   const ImGuiStyle& style = ImGui::GetStyle();
   float height = 2.0F * style.WindowPadding.y + ImGui::GetTextLineHeight();  // of the buttons
+  const float room = width - 2.0F * style.WindowPadding.x;
   for (const Notice& notice : notices)
-    height += style.ItemSpacing.y + ImGui::CalcTextSize(noticeText(notice).c_str(), nullptr, false,
-                                                        width - 2.0F * style.WindowPadding.x)
-                                        .y;
+    height += style.ItemSpacing.y +
+              ImGui::CalcTextSize(inLines(noticeText(notice), room).c_str(), nullptr, false, room).y;
   return std::min(std::ceil(height), kMostOfHeight * ImGui::GetIO().DisplaySize.y);
 }
 

@@ -29,6 +29,9 @@ void edgePanel(const PanelContext& context, EdgeTool& edges);
 void placePanel(const PanelContext& context, PlaceTool& places);
 /// `draws`: whether strokes of the mark tool become edge lines.
 void linePanel(const PanelContext& context, LineTool& lines, bool draws);
+/// Filters that were tried for the scan as it is seen; one is taken into the fields of `filters` by a click.
+void suggestionPanel(const PanelContext& context, FilterSuggester& suggester, FilterPreview& filters,
+                     EdgeTool& edges);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
 /// The form that lies over the field, and the one that is to.
 void formPanel(const PanelContext& context, FormTool& form);

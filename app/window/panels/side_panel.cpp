@@ -42,6 +42,8 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     placePanel(context, parts.marking.places);
     linePanel(context, parts.marking.lines, settings.draw_lines);
   }
+  if (section(parts, "Suggested filters", false))
+    suggestionPanel(context, parts.suggester, parts.filters, parts.marking.edges);
   if (section(parts, "Filters", true)) filterPanel(context, parts.filters, settings.display);
   if (section(parts, "Remove samples", false))
     removePanel(context, parts.heights, parts.removal, parts.picture);

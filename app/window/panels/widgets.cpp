@@ -9,6 +9,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/window/action_tips.h"
+#include "app/window/broken_text.h"
 #include "app/work/typed_number.h"
 
 namespace fettle::app {
@@ -77,7 +78,9 @@ bool workRow(const std::optional<WorkProgress>& progress, const char* what, cons
 }
 
 void beginPlace(const char* id, int lines) {
-  ImGui::BeginChild(id, ImVec2(0.0F, static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing()));
+  // What can be pressed there is reached by arrow keys as the rest is.
+  ImGui::BeginChild(id, ImVec2(0.0F, static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing()),
+                    false, ImGuiWindowFlags_NavFlattened);
 }
 
 void endPlace() {
@@ -138,9 +141,16 @@ void previewButton(PreviewWord word, const char* id, Action action, const Act& a
   if (behind) ImGui::PopStyleColor();
 }
 
+std::string inLines(const std::string& text, float width) {
+  return brokenText(text, width, [](std::string_view part) {
+    return ImGui::CalcTextSize(part.data(), part.data() + part.size()).x;
+  });
+}
+
 void writeWrapped(const std::string& text) {
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(text.c_str());
+  const std::string lines = inLines(text, ImGui::GetContentRegionAvail().x);
+  ImGui::PushTextWrapPos(0.0F);  // of words that are wider than the panel
+  ImGui::TextUnformatted(lines.c_str());
   ImGui::PopTextWrapPos();
 }
 

@@ -49,7 +49,9 @@ void explain(std::string_view says);
 void valueTip(std::string_view says);
 /// Shows what an action does and its keys as a tip of the last item.
 void tip(Action action);
-/// Text as wide as there is room.
+/// A text in lines of at most `width` [pixels], brokenText().
+[[nodiscard]] std::string inLines(const std::string& text, float width);
+/// Text as wide as there is room; no line ends within a number, or between it and its unit.
 void writeWrapped(const std::string& text);
 /// A button and a tick box for an action, with its tip. `width`: 0: as its name needs.
 void actionButton(const char* name, Action action, const Act& act, float width = 0.0F);

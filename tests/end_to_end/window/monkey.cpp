@@ -86,12 +86,24 @@ const std::vector<std::string>& keysOfActions() {
 }
 
 const std::vector<std::string>& namesOfPanels() {
-  static const std::vector<std::string> names{"Tool",    "Edges",          "Edge lines",
-                                              "Filters", "Remove samples", "Holes and lines",
-                                              "Form",    "Steps",          "Change since the scan",
-                                              "Measure", "Section",        "Transform",
-                                              "Compare", "Colours",        "Display",
-                                              "Status",  "Haptics"};
+  static const std::vector<std::string> names{"Tool",
+                                              "Edges",
+                                              "Edge lines",
+                                              "Suggested filters",
+                                              "Filters",
+                                              "Remove samples",
+                                              "Holes and lines",
+                                              "Form",
+                                              "Steps",
+                                              "Change since the scan",
+                                              "Measure",
+                                              "Section",
+                                              "Transform",
+                                              "Compare",
+                                              "Colours",
+                                              "Display",
+                                              "Status",
+                                              "Haptics"};
   return names;
 }
 

@@ -81,6 +81,8 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
         {"panel " + panel, "panel " + panel, "panel " + panel});
   add("seen", "tools around the cursor",
       [](const State& s) { return s.value("radial", State()).is_string(); }, {"s", "space"});
+  add("seen", "filters that are tried", [](const State& s) { return s.value("trying_filters", false); },
+      {"ctrl+f"});
   add("seen", "full screen", [](const State& s) { return s["full_screen"] == true; }, {"F11"});
   add("seen", "the scan as it was", [](const State& s) { return s.value("shows_before", false); },
       {"hold BackSpace", "release BackSpace"});
