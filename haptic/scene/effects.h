@@ -9,8 +9,8 @@
 
 namespace fettle::haptic {
 
-// All that a scene states of effects: which there are, and their parameters with their ranges. The header of
-// each effect, in haptic/effects, gives its source and stability condition.
+// All that a scene states of effects: which there are, and their parameters, whose ranges are checked by kSceneNumbers
+// (scene_numbers.h). The header of each effect, in haptic/effects, gives its source and stability condition.
 
 /// What a scene may list. What it does not list is not built, not stored and not called.
 enum class EffectKind : std::uint8_t {
@@ -156,60 +156,6 @@ struct EffectParams {
   VelocityParams velocity;
 
   friend bool operator==(const EffectParams&, const EffectParams&) = default;
-};
-
-/// Whether the lower end of a range belongs to it.
-enum class LowEnd : std::uint8_t { kIncluded, kExcluded };
-
-/// One number of a table of the scene file, with its range: sceneProblem and loadScene check it.
-struct EffectNumber {
-  std::string_view table, key;
-  double& (*of)(EffectParams&) noexcept;
-  double low, high;
-  LowEnd low_end = LowEnd::kIncluded;
-
-  [[nodiscard]] constexpr bool holds(double value) const noexcept {
-    return (low_end == LowEnd::kExcluded ? value > low : value >= low) && value <= high;
-  }
-};
-
-inline constexpr std::array kEffectNumbers = {
-    EffectNumber{"friction", "static",
-                 [](EffectParams& p) noexcept -> double& { return p.friction.static_coefficient; }, 0, 2},
-    EffectNumber{"friction", "dynamic",
-                 [](EffectParams& p) noexcept -> double& { return p.friction.dynamic_coefficient; }, 0, 2},
-    EffectNumber{"friction", "stiffness_n_per_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.friction.stiffness_n_per_mm; }, 0, 1000,
-                 LowEnd::kExcluded},
-    EffectNumber{"viscosity", "damping_n_s_per_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.viscosity.damping_n_s_per_mm; }, 0, 1},
-    EffectNumber{"edge_snap", "force_n",
-                 [](EffectParams& p) noexcept -> double& { return p.edge_snap.force_n; }, 0, 20},
-    EffectNumber{"edge_snap", "reach_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.edge_snap.reach_mm; }, 0, 50,
-                 LowEnd::kExcluded},
-    EffectNumber{"texture", "amplitude_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.texture.amplitude_mm; }, 0, 1},
-    EffectNumber{"texture", "wavelength_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.texture.wavelength_mm; }, 0, 100,
-                 LowEnd::kExcluded},
-    EffectNumber{"gravity", "stylus_kg",
-                 [](EffectParams& p) noexcept -> double& { return p.gravity.stylus_kg; }, 0, 2},
-    EffectNumber{"coupling", "damping_n_s_per_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.coupling.damping_n_s_per_mm; }, 0, 1},
-    EffectNumber{"passivity", "max_damping_n_s_per_mm",
-                 [](EffectParams& p) noexcept -> double& { return p.passivity.max_damping_n_s_per_mm; }, 0,
-                 1},
-    EffectNumber{"sound", "profile", [](EffectParams& p) noexcept -> double& { return p.sound.profile; }, 0,
-                 10},
-    EffectNumber{"sound", "knock", [](EffectParams& p) noexcept -> double& { return p.sound.knock; }, 0, 10},
-    EffectNumber{"sound", "slip", [](EffectParams& p) noexcept -> double& { return p.sound.slip; }, 0, 10},
-    EffectNumber{"sound", "body_hz", [](EffectParams& p) noexcept -> double& { return p.sound.body_hz; }, 50,
-                 8000},
-    EffectNumber{"sound", "ring_ms", [](EffectParams& p) noexcept -> double& { return p.sound.ring_ms; }, 1,
-                 2000},
-    EffectNumber{"velocity", "filter_ms",
-                 [](EffectParams& p) noexcept -> double& { return p.velocity.filter_ms; }, 0, 50},
 };
 
 }  // namespace fettle::haptic

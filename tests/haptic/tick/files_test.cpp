@@ -1,13 +1,17 @@
 // Strokes, forces and scene files: round trips and refusals.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "haptic/base/strokes.h"
 #include "haptic/effects/stability.h"
 #include "haptic/scene/scene.h"
+#include "haptic/scene/scene_numbers.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temp_folder.h"
 
@@ -85,6 +89,82 @@ TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
   EXPECT_TRUE(listen->lists(EffectKind::kSound));
   EXPECT_EQ(listen->params.sound.knock, 0.6);
   EXPECT_FALSE(defaultScene().lists(EffectKind::kSound)) << "off unless a scene asks for it";
+}
+
+// A number of a scene, out of its range by a little, in a file and in a scene made by code: one sentence with key and range.
+TEST(SceneNumbers, AreRefusedOutOfRangeByOneLine) {
+  for (const SceneNumber& number : kSceneNumbers) {
+    const std::string key = std::string(number.table) + "." + std::string(number.key);
+    const double step = number.kind == NumberKind::kWhole ? 1.0 : 1e-3;
+    for (const double wrong : {number.low - (number.low_end == LowEnd::kExcluded ? 0.0 : step),
+                               number.high + step, -std::numeric_limits<double>::infinity()}) {
+      EXPECT_FALSE(number.holds(wrong)) << key;
+      Scene scene;
+      number.set(scene, std::isfinite(wrong) ? wrong : number.low - 1.0);
+      const auto problem = sceneProblem(scene);
+      ASSERT_TRUE(problem) << key;
+      EXPECT_EQ(*problem, rangeProblem(number));
+      if (!std::isfinite(wrong)) continue;
+      const std::string line = fmt::format("{} = {}", number.key, wrong);
+      const std::string text = number.table.empty() ? line : fmt::format("[{}]\n{}", number.table, line);
+      const auto read = parseScene(text, "scene.toml");
+      ASSERT_FALSE(read) << text;
+      EXPECT_EQ(read.error().what,
+                fmt::format("line {}: {}", number.table.empty() ? 1 : 2, rangeProblem(number)));
+    }
+    EXPECT_TRUE(number.holds(number.high)) << key;
+    EXPECT_EQ(number.holds(number.low), number.low_end == LowEnd::kIncluded) << key;
+    EXPECT_TRUE(number.holds(number.of(defaultScene()))) << key;
+    EXPECT_FALSE(number.holds(std::nan(""))) << key;
+  }
+}
+
+TEST(SceneNumbers, TheNearestInRangeIsAnEndOrAWholeNumber) {
+  const auto rowOfKey = [](std::string_view key) {
+    return *std::ranges::find(kSceneNumbers, key, &SceneNumber::key);
+  };
+  const SceneNumber grip = rowOfKey("static"), limit = rowOfKey("limit_n"),
+                    rounds = rowOfKey("search_rounds");
+  EXPECT_EQ(nearestInRange(grip, 3.0), 2.0);
+  EXPECT_EQ(nearestInRange(grip, -1.0), 0.0);
+  EXPECT_EQ(nearestInRange(grip, 0.3), 0.3);
+  EXPECT_EQ(nearestInRange(grip, std::numeric_limits<double>::infinity()), 2.0);
+  EXPECT_EQ(nearestInRange(grip, std::nan("")), std::nullopt);
+  EXPECT_EQ(nearestInRange(limit, 0.0), std::nullopt) << "zero does not belong to it";
+  EXPECT_EQ(nearestInRange(limit, 2000.0), 1000.0);
+  EXPECT_EQ(nearestInRange(rounds, 4.4), 4.0);
+  EXPECT_EQ(rangeText(grip), "0 to 2");
+  EXPECT_EQ(rangeText(limit), "above 0, at most 1000 N");
+  EXPECT_EQ(rangeText(rounds), "a whole number from 2 to 2048");
+}
+
+// Both documents have every number and every word: default.toml with its default, docs/scenes.md with its range.
+TEST(SceneNumbers, AreDocumentedWithDefaultAndRange) {
+  const auto textOf = [](const char* path) {
+    std::stringstream text;
+    text << std::ifstream(tests::inSourceTree(path)).rdbuf();
+    return text.str();
+  };
+  const std::string pattern = textOf("assets/scenes/default.toml"), page = textOf("docs/scenes.md");
+  std::string table;
+  const auto placeOf = [&](std::string_view name) {
+    return name.empty() ? "" : fmt::format("`[{}]` ", name);
+  };
+  for (const SceneNumber& number : kSceneNumbers) {
+    EXPECT_NE(pattern.find(fmt::format("\n{} = ", number.key)), std::string::npos) << number.key;
+    const std::string row = fmt::format("| {}`{}` | {} | {} | {} |", placeOf(number.table), number.key,
+                                        number.of(defaultScene()), rangeText(number), number.says);
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
+  for (const SceneWord& word : kSceneWords) {
+    EXPECT_NE(pattern.find(fmt::format("\n{} = \"{}\"", word.key, word.words[word.of(defaultScene())])),
+              std::string::npos)
+        << word.key;
+    const std::string row =
+        fmt::format("| {}`{}` | {} | {} | {} |", placeOf(word.table), word.key,
+                    word.words[word.of(defaultScene())], fmt::join(word.words, ", "), word.says);
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
 }
 
 TEST(SceneFile, SoundIsReadBackAsItWasWritten) {
