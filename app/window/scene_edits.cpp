@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "app/live/placement.h"
 
 namespace fettle::app {
@@ -10,6 +12,73 @@ namespace fettle::app {
 void applyScene(LoopClient& client, const haptic::Scene& scene, std::vector<Notice>& notices) {
   const engine::Status taken = client.setScene(scene);
   if (!taken) notices.push_back({taken.error().what, taken.error().remedy});
+}
+
+namespace {
+
+haptic::Scene with(haptic::Scene scene, const haptic::SceneNumber& number, double value) {
+  number.set(scene, value);
+  return scene;
+}
+
+std::string shown(const haptic::SceneNumber& number, double value) {
+  return fmt::format("{:.4g}{}{}", value, number.unit.empty() ? "" : " ", number.unit);
+}
+
+}  // namespace
+
+std::string numberProblem(const LoopClient& client, const haptic::SceneNumber& number, double typed) {
+  const auto nearest = haptic::nearestInRange(number, typed);
+  if (!nearest) return fmt::format("must be {}", haptic::rangeText(number));
+  // As setNumber(): of a value that is much too large the device's limit is what matters.
+  if (const auto problem = client.stabilityProblem(with(client.scene(), number, typed)))
+    return fmt::format("{}: {}", problem->what, problem->remedy);
+  if (*nearest != typed)
+    return fmt::format("must be {}: {} is taken", haptic::rangeText(number), shown(number, *nearest));
+  const haptic::Scene scene = with(client.scene(), number, typed);
+  if (auto problem = haptic::sceneProblem(scene)) return *std::move(problem);
+  if (client.device().profile().gives_force) return {};
+  const auto problem = problemOnEveryDevice(scene, client.field().grid(), client.rate());
+  return problem ? withoutForceText(*problem) : std::string();
+}
+
+void setNumber(LoopClient& client, const haptic::SceneNumber& number, double typed,
+               std::vector<Notice>& notices) {
+  const auto nearest = haptic::nearestInRange(number, typed);
+  if (!nearest) {
+    notices.push_back({fmt::format("{}: must be {}", number.name, haptic::rangeText(number)),
+                       fmt::format("{} stays", shown(number, number.of(client.scene())))});
+    return;
+  }
+  if (client.stabilityProblem(with(client.scene(), number, typed))) {
+    applyScene(client, with(client.scene(), number, typed), notices);
+    return;
+  }
+  applyScene(client, with(client.scene(), number, *nearest), notices);
+  if (*nearest != typed)
+    notices.push_back({fmt::format("{}: {} is taken, it must be {}", number.name, shown(number, *nearest),
+                                   haptic::rangeText(number)),
+                       "", "", 1, false, true});
+  noteWithoutForce(client, notices);
+}
+
+std::optional<double> largestHeld(const LoopClient& client, const haptic::SceneNumber& number) {
+  const auto problem = client.stabilityProblem(with(client.scene(), number, number.high));
+  if (!problem) return std::nullopt;
+  const double held = number.of(problem->corrected);
+  return held < number.high ? std::optional(held) : std::nullopt;
+}
+
+void listEffect(LoopClient& client, haptic::EffectKind kind, bool on, std::vector<Notice>& notices) {
+  haptic::Scene scene = client.scene();
+  if (scene.lists(kind) == on) return;
+  if (!on)
+    std::erase(scene.effects, kind);
+  else if (kind == haptic::EffectKind::kSpring)
+    scene.effects.insert(scene.effects.begin(), kind);
+  else
+    scene.effects.push_back(kind);
+  applyScene(client, scene, notices);
 }
 
 void noteWithoutForce(const LoopClient& client, std::vector<Notice>& notices) {

@@ -32,14 +32,26 @@ inline constexpr int kEffectKinds = static_cast<int>(EffectKind::kCount);
 struct EffectRow {
   EffectKind kind;
   std::string_view word;      ///< in scene files and reports
+  std::string_view says;      ///< in the window
   bool needs_spring = false;  ///< depends on the force with which the spring presses
 };
 inline constexpr std::array kEffectRows = {
-    EffectRow{EffectKind::kSpring, "spring"},           EffectRow{EffectKind::kSmoothing, "smoothing"},
-    EffectRow{EffectKind::kFriction, "friction", true}, EffectRow{EffectKind::kViscosity, "viscosity"},
-    EffectRow{EffectKind::kEdgeSnap, "edge_snap"},      EffectRow{EffectKind::kTexture, "texture", true},
-    EffectRow{EffectKind::kGravity, "gravity"},         EffectRow{EffectKind::kCoupling, "coupling", true},
-    EffectRow{EffectKind::kPassivity, "passivity"},     EffectRow{EffectKind::kSound, "sound"},
+    EffectRow{EffectKind::kSpring, "spring",
+              "Force against the tip that is pressed in, proportional to how deep."},
+    EffectRow{EffectKind::kSmoothing, "smoothing", "The tool \"smooth\" smooths where it presses."},
+    EffectRow{EffectKind::kFriction, "friction",
+              "The tip sticks to the surface and slips under force, as a pencil does.", true},
+    EffectRow{EffectKind::kViscosity, "viscosity", "Force against the speed of the tip, as in oil."},
+    EffectRow{EffectKind::kEdgeSnap, "edge_snap",
+              "Pulls towards marked samples and edge lines, to trace an edge again."},
+    EffectRow{EffectKind::kTexture, "texture",
+              "Relief finer than the samples, which is felt and not in the data.", true},
+    EffectRow{EffectKind::kGravity, "gravity", "Holds up the stylus, in free space too."},
+    EffectRow{EffectKind::kCoupling, "coupling", "Damping between the tip and the surface.", true},
+    EffectRow{EffectKind::kPassivity, "passivity",
+              "Never gives the hand more energy than it put in: stops buzzing."},
+    EffectRow{EffectKind::kSound, "sound",
+              "The surface, contact and friction to be heard; changes no force."},
 };
 static_assert(engine::inOrder(kEffectRows, &EffectRow::kind, EffectKind::kCount));
 

@@ -226,6 +226,13 @@ inline constexpr std::array kSceneWords = {
         "texture", "pattern", "pattern", kPatternWords, "Noise, even in all directions, or a sine along x."),
 };
 
+/// The row of a key that there is.
+[[nodiscard]] consteval const SceneNumber& sceneNumber(std::string_view table, std::string_view key) {
+  for (const SceneNumber& each : kSceneNumbers)
+    if (each.table == table && each.key == key) return each;
+  throw "no such number";
+}
+
 /// "0 to 2 N", "above 0, at most 1000 N/mm", "a whole number from 1 to 64 cells".
 [[nodiscard]] std::string rangeText(const SceneNumber& number);
 /// A value out of range as one sentence, with the names of the scene file: "limit_n in [force] must be above 0, at most 1000 N".

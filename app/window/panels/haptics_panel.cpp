@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/scene_edits.h"
 
 namespace fettle::app {
 namespace {
@@ -116,42 +115,6 @@ std::optional<double> rateField(double now_hz) {
   return chosen;
 }
 
-// A number of the scene. A typing error can make it a thousand times as stiff: a value that is too large is
-// refused with a message, and the previous value stays. True when it was accepted.
-bool sceneNumber(const PanelContext& context, const char* name, const char* id, double haptic::Scene::*number,
-                 const char* format) {
-  haptic::Scene scene = context.client.scene();
-  fieldName(name);
-  const auto typed = typedNumber(id, scene.*number, format);
-  if (!typed) return false;
-  scene.*number = *typed;
-  applyScene(context.client, scene, context.notices);
-  return context.client.scene() == scene;
-}
-
-void effectTicks(const PanelContext& context) {
-  ImGui::TextDisabled("effects");
-  for (int i = 0; i < haptic::kEffectKinds; ++i) {
-    const auto kind = static_cast<haptic::EffectKind>(i);
-    haptic::Scene scene = context.client.scene();
-    const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
-    bool on = listed != scene.effects.end();
-    std::string name(haptic::effectName(kind));
-    std::replace(name.begin(), name.end(), '_', ' ');
-    // In two columns, or in one where the panels are narrow.
-    const float half = 0.5F * ImGui::GetWindowWidth();
-    if (i % 2 != 0 && half > 8.0F * ImGui::GetFontSize()) ImGui::SameLine(half);
-    if (!ImGui::Checkbox(name.c_str(), &on)) continue;
-    if (!on)
-      scene.effects.erase(listed);
-    else if (kind == haptic::EffectKind::kSpring)
-      scene.effects.insert(scene.effects.begin(), kind);  // before those that depend on it
-    else
-      scene.effects.push_back(kind);
-    applyScene(context.client, scene, context.notices);
-  }
-}
-
 // Of a scene with sound alone.
 void soundControls(LoopClient& client, Loudness& loudness) {
   if (!client.scene().lists(haptic::EffectKind::kSound)) return;
@@ -181,13 +144,13 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
   beginFields();
   const std::optional<double> rate_hz = rateField(client.rate());
   contactChooser(context, costs);
-  if (sceneNumber(context, "stiffness", "##stiffness", &haptic::Scene::stiffness_n_per_mm, "%.4g N/mm"))
-    noteWithoutForce(client, context.notices);
-  (void)sceneNumber(context, "force limit", "##limit", &haptic::Scene::force_limit_n, "%.3g N");
+  sceneNumberField(context, haptic::sceneNumber("force", "stiffness_n_per_mm"));
+  sceneNumberField(context, haptic::sceneNumber("force", "limit_n"));
   endFields();
   if (const auto largest = client.largestStiffness())
     figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
+  effectFields(context);
   soundControls(client, loudness);
   for (const std::string& missing : client.realTime().missing) writeIn(PanelColour::kWarning, missing);
   return rate_hz;

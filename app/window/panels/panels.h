@@ -6,6 +6,7 @@
 #include "app/window/axes_gizmo.h"
 #include "app/window/panels/widgets.h"
 #include "app/window/parts.h"
+#include "haptic/scene/scene_numbers.h"
 
 /// The panels of the window, laid out once per frame between Window::beginFrame() and present(): each
 /// function is in the file of its name, shows the given parts and changes them as the user does. Actions go
@@ -69,6 +70,12 @@ void statusPanel(const PanelContext& context, const WindowPicture& picture, cons
 /// The requested rate of the loop [Hz], if any.
 [[nodiscard]] std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
                                                  Loudness& loudness, ChoiceCosts& costs);
+
+/// A number of the scene: what is wrong with it stands beside it while it is typed.
+void sceneNumberField(const PanelContext& context, const haptic::SceneNumber& number);
+/// Which effects the scene lists, and the numbers and words of those.
+void effectTicks(const PanelContext& context);
+void effectFields(const PanelContext& context);
 
 /// Choice of accuracy, with the cost and the error of each choice on this scan.
 void contactChooser(const PanelContext& context, ChoiceCosts& costs);

@@ -114,6 +114,22 @@ void explain(std::string_view says) {
   writeTip(says, kTip * ImGui::GetFontSize());
 }
 
+void problemBeside(std::string_view says) {
+  const float wrap = kTip * ImGui::GetFontSize();
+  const std::string lines = inLines(std::string(says), wrap);
+  const ImVec2 text = ImGui::CalcTextSize(lines.c_str()), around = ImGui::GetStyle().WindowPadding;
+  const ImVec2 size(std::ceil(text.x) + 2.0F * around.x, std::ceil(text.y) + 2.0F * around.y);
+  const float left = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x - size.x;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImGui::SetNextWindowPos(left > 0.0F ? ImVec2(left, low.y) : ImVec2(ImGui::GetWindowPos().x, high.y));
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("##problem", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
+  textIn(render::PanelColour::kProblem, lines);
+  ImGui::End();
+}
+
 void valueTip(std::string_view says) {
   writeTip(says, 0.0F);
 }
@@ -240,7 +256,8 @@ void showSaidOfField() {
 
 // A field for a number and its unit: what was typed when it is left by Enter, Tab or a click elsewhere; nothing by Escape, or
 // where it reads as before: the number has digits that are not shown.
-std::optional<std::string> typedText(const char* id, const std::string& reads) {
+std::optional<std::string> typedText(const char* id, const std::string& reads,
+                                     std::string* so_far = nullptr) {
   static ImGuiID edited = 0;  // one at a time
   static std::string text;
   const ImGuiID self = ImGui::GetID(id);
@@ -249,6 +266,7 @@ std::optional<std::string> typedText(const char* id, const std::string& reads) {
   if (ImGui::IsItemActive()) {
     edited = self;
     text = now;
+    if (so_far != nullptr && now != reads) *so_far = now;
   }
   const bool left = ImGui::IsItemDeactivated();
   if (saidOfField().field == self) showSaidOfField();
@@ -273,14 +291,27 @@ std::nullopt_t notUnderstood(const char* id, const std::string& text) {
 
 }  // namespace
 
-std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
+NumberInField typingNumber(const char* id, double value, const std::string& format) {
   const std::string reads = fmt::sprintf(format, value);
-  const auto text = typedText(id, reads);
-  if (!text) return std::nullopt;
-  const auto typed = readTypedNumber(*text), before = readTypedNumber(reads);
-  if (!typed || (!typed->unit.empty() && before && typed->unit != before->unit))
-    return notUnderstood(id, *text);
-  return typed->number == value ? std::nullopt : std::optional(typed->number);
+  std::string so_far;
+  const auto text = typedText(id, reads, &so_far);
+  const auto before = readTypedNumber(reads);
+  const auto taken = [&](const std::string& of) -> std::optional<TypedNumber> {
+    auto typed = readTypedNumber(of);
+    if (!typed || (!typed->unit.empty() && before && typed->unit != before->unit)) return std::nullopt;
+    return typed;
+  };
+  const auto other = [&](const std::optional<TypedNumber>& typed) {
+    return typed && typed->number != value ? std::optional(typed->number) : std::nullopt;
+  };
+  if (!text) return {other(taken(so_far)), std::nullopt};
+  const auto done = taken(*text);
+  if (!done) return {std::nullopt, notUnderstood(id, *text)};
+  return {std::nullopt, other(done)};
+}
+
+std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
+  return typingNumber(id, value, format).done;
 }
 
 bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {

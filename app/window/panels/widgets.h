@@ -45,6 +45,9 @@ using Act = std::function<void(Action)>;
 
 /// A tip of the last item: to the left of its panel where there is room, else below it.
 void explain(std::string_view says);
+/// What is wrong with the value of the last item, beside its panel or below it, while it is being edited: over the rows, which
+/// stay where they are.
+void problemBeside(std::string_view says);
 /// A value at the cursor, beside it.
 void valueTip(std::string_view says);
 /// Shows what an action does and its keys as a tip of the last item.
@@ -94,7 +97,14 @@ void noField(const char* says);
 /// value; nothing while it is unchanged or after Escape. What is not understood is said beside the panel. For fields whose range is checked elsewhere and refused with a message.
 [[nodiscard]] std::optional<double> typedNumber(const char* id, double value, const std::string& format);
 
-/// The same clamped to a range, which is said there as well: true when it was changed and confirmed; never a value that is not finite.
+/// The same with what stands in the field while it is being edited, where that is another number.
+struct NumberInField {
+  std::optional<double> so_far;  ///< not confirmed
+  std::optional<double> done;
+};
+[[nodiscard]] NumberInField typingNumber(const char* id, double value, const std::string& format);
+
+/// typedNumber() clamped to a range, which is said there as well: true when it was changed and confirmed; never a value that is not finite.
 [[nodiscard]] bool typeNumber(const char* id, double& value, double low, double high,
                               const std::string& format);
 
