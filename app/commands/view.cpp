@@ -36,6 +36,7 @@ engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job)
     auto scene = haptic::loadScene(given.scene);
     if (!scene) return tl::unexpected(scene.error());
     options.scene = *std::move(scene);
+    options.scene_path = given.scene;
   }
   if (!given.theme.empty())
     options.theme = given.theme == "light" ? render::Theme::kLight : render::Theme::kDark;

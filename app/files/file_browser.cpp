@@ -12,7 +12,8 @@ void FileBrowser::goTo(const std::string& folder, std::string chosen, std::strin
   job_.start([folder](engine::JobControl& job) { return listFolder(folder, job); });
 }
 
-void FileBrowser::begin(const std::string& folder, std::string chosen) {
+void FileBrowser::begin(const std::string& folder, std::string chosen, FilesOf files) {
+  view_.files = files;
   view_.typed.clear();
   goTo(folder, std::move(chosen));
 }

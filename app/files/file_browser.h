@@ -18,7 +18,7 @@ class FileBrowser {
   /// what was typed in another folder.
   void goTo(const std::string& folder, std::string chosen = {}, std::string typed = {});
   /// The same for a dialog that appears: what was typed in one before it does not count.
-  void begin(const std::string& folder, std::string chosen);
+  void begin(const std::string& folder, std::string chosen, FilesOf files = FilesOf::kScans);
   /// To the folder that holds this one, which is then the chosen entry.
   void goUp();
   /// Lists the folder again.

@@ -71,7 +71,9 @@ FolderEntry entryOf(const fs::directory_entry& found) {
   std::error_code unknown;
   entry.folder = found.is_directory(unknown);
   if (!entry.folder) {
-    entry.scan = readsExtension(engine::extensionOf(entry.name));
+    const std::string extension = engine::extensionOf(entry.name);
+    entry.scan = readsExtension(extension);
+    entry.scene = extension == ".toml";
     if (const auto bytes = found.file_size(unknown); !unknown) entry.bytes = bytes;
   }
   if (const auto changed = found.last_write_time(unknown); !unknown)
@@ -107,7 +109,8 @@ std::vector<std::size_t> shownEntries(const FolderListing& listing, const Folder
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const FolderEntry& entry = entries[i];
     if (!view.hidden && entry.name.starts_with('.')) continue;
-    if (!view.all_files && !entry.folder && !entry.scan) continue;
+    const bool sought = view.files == FilesOf::kScenes ? entry.scene : entry.scan;
+    if (!view.all_files && !entry.folder && !sought) continue;
     if (!typed.empty() && lower(entry.name).find(typed) == std::string::npos) continue;
     shown.push_back(i);
   }

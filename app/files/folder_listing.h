@@ -16,6 +16,7 @@ struct FolderEntry {
   std::string name;
   bool folder = false;
   bool scan = false;           ///< by its extension a format that can be read
+  bool scene = false;          ///< by its extension
   std::uint64_t bytes = 0;     ///< 0 for folders, and where the file system does not say
   std::int64_t changed_s = 0;  ///< last change [s since 1970]; 0 where the file system does not say
 };
@@ -31,11 +32,15 @@ struct FolderListing {
 
 enum class FolderOrder : std::uint8_t { kName, kSize, kChanged };
 
+/// Files of which kind are looked for.
+enum class FilesOf : std::uint8_t { kScans, kScenes };
+
 /// Which entries are shown, and in which order.
 struct FolderView {
+  FilesOf files = FilesOf::kScans;
   FolderOrder order = FolderOrder::kName;
   bool descending = false;
-  bool all_files = false;  ///< else folders and scans
+  bool all_files = false;  ///< else folders and those of `files`
   bool hidden = false;     ///< names that begin with a point
   std::string typed = {};  ///< only names that contain it, in any case; empty: every name
 };

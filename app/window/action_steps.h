@@ -40,7 +40,10 @@ inline void ask(Parts& p, Question::Kind kind, std::string path = {}) {
 }
 
 inline void quit(Parts& p) {
-  if (!p.document.unsaved())
+  if (p.document.isOpen() && p.settings.ask_before_quitting && p.scene_files.changed(clientOf(p)))
+    p.feedback.questions.ask(
+        {.kind = Question::Kind::kUnsavedScene, .afterwards = {.what = Afterwards::What::kQuit}});
+  else if (!p.document.unsaved())
     p.quit = Quit::kDone;
   else if (p.settings.ask_before_quitting)
     p.feedback.questions.ask(
@@ -67,6 +70,12 @@ inline void save(Parts& p) {
 }
 inline void saveAs(Parts& p) {
   ask(p, Question::Kind::kSaveAs, p.saving.suggestedPath(p.document, ".fettle"));
+}
+inline void openScene(Parts& p) {
+  ask(p, Question::Kind::kOpenScene, p.scene_files.path());
+}
+inline void saveScene(Parts& p) {
+  ask(p, Question::Kind::kSaveScene, p.scenePathToSave());
 }
 inline void exportField(Parts& p) {
   ask(p, Question::Kind::kExport, p.saving.suggestedPath(p.document, "_fettled.tif"));

@@ -26,6 +26,8 @@ constexpr Tip kTips[] = {
     {Action::kDrawLines,
      "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
     {Action::kEdges, "Shows where the scan has edges; Enter takes them as marks or edge lines."},
+    {Action::kOpenScene, "Tip, force, brushes and effects with their numbers, felt at once."},
+    {Action::kSaveScene, "For other scans, and for --scene of the command line."},
     {Action::kFilterSuggest,
      "Tries filters on surfaces as this scan has, with noise like its own, and lists the best with what they "
      "leave of the error, why, and their time. Takes some ten seconds and changes nothing."},

@@ -65,6 +65,10 @@ constexpr ActionRow kRows[] = {
     ActionRow{Action::kSaveAs, "File", "Save as", letter('S'), kControlShift, kNoKey, kSecond, kField,
               saveAs},
     ActionRow{Action::kExport, "File", "Export", letter('E'), kControl, kNoKey, kSecond, kField, exportField},
+    ActionRow{Action::kOpenScene, "File", "Open a scene: what is felt", letter('O'), kAlt, kNoKey, kSecond,
+              kField, openScene},
+    ActionRow{Action::kSaveScene, "File", "Save the scene", letter('S'), kAlt, kNoKey, kSecond, kField,
+              saveScene},
     ActionRow{Action::kQuit, "File", "Quit", letter('Q'), kControl, kNoKey, kThird, kNothing, quit},
 
     ActionRow{Action::kUndo, "Edit", "Undo", letter('Z'), kControl, kNoKey, kFirst, kField, undo, nullptr,

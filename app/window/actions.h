@@ -21,6 +21,8 @@ enum class Action : std::uint8_t {
   kSave,
   kSaveAs,
   kExport,
+  kOpenScene,
+  kSaveScene,
   kQuit,
   kUndo,
   kRedo,

@@ -19,11 +19,11 @@ std::string folderOf(const std::string& typed) {
 
 }  // namespace
 
-void Files::begin(const std::string& path, const std::vector<std::string>& recent) {
+void Files::begin(const std::string& path, const std::vector<std::string>& recent, FilesOf files) {
   shelf.forget();
   shown_places = places.places(recent);
   followed_ = folderOf(path);
-  browser.begin(followed_, std::filesystem::path(path).filename().string());
+  browser.begin(followed_, std::filesystem::path(path).filename().string(), files);
 }
 
 void Files::begin(const std::string& path, const ScanOptions& as, const ScanThumbnail* known) {

@@ -30,7 +30,8 @@ class Files {
   FieldsThatApply apply;
 
   /// A dialog about paths appears: it begins in the folder of `path`, or in the working folder. `recent`: files opened last.
-  void begin(const std::string& path, const std::vector<std::string>& recent);
+  void begin(const std::string& path, const std::vector<std::string>& recent,
+             FilesOf files = FilesOf::kScans);
   /// The import page appears. `known`: what is known of the file read so; may be null.
   void begin(const std::string& path, const ScanOptions& as, const ScanThumbnail* known);
   /// The import page shows a picture of its file.

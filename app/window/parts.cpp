@@ -114,6 +114,11 @@ void Parts::dropCoarse() {
   line_drag.stop();
 }
 
+std::string Parts::scenePathToSave() const {
+  return scene_files.path().empty() ? saving.suggestedPath(document, SceneFiles::kExtension)
+                                    : scene_files.path();
+}
+
 void Parts::writeTransformed() {
   std::error_code none;
   std::string path = document.suggestedPath("_transformed.fettle");

@@ -20,6 +20,7 @@
 #include "app/window/questions.h"
 #include "app/window/radial_menu.h"
 #include "app/window/saving.h"
+#include "app/window/scene_files.h"
 #include "app/window/settings.h"
 #include "app/window/spared_shadow.h"
 #include "app/window/stylus.h"
@@ -61,6 +62,7 @@ struct Parts {
   ActiveDocument document;
   Opening opening;
   Saving saving;
+  SceneFiles scene_files;
 
   WindowPicture picture;
   render::View view = startView();
@@ -136,6 +138,8 @@ struct Parts {
   void leavePanels();
   /// Removes the coarse picture: it must not stay where the scan could not be read.
   void dropCoarse();
+  /// Of the open scene, else beside the scan.
+  [[nodiscard]] std::string scenePathToSave() const;
   /// Writes what the transform panel says, to a session of a name that is free.
   void writeTransformed();
   /// Closes the document, if one is open, with everything about it.

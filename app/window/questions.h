@@ -33,7 +33,10 @@ struct Question {
     kCompare,
     kSaveAs,
     kExport,
+    kOpenScene,
+    kSaveScene,
     kUnsaved,
+    kUnsavedScene,
     kReplace,
     kRecover,
     kDevice,
@@ -42,13 +45,13 @@ struct Question {
   };
   Kind kind = Kind::kMessage;
   std::string path =
-      {};  ///< kOpen, kCompare, kSaveAs, kExport: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
-  Afterwards afterwards = {};               ///< kSaveAs, kUnsaved, kReplace
+      {};  ///< kOpen, kCompare, kSaveAs, kExport, kOpenScene, kSaveScene: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
+  Afterwards afterwards = {};               ///< kSaveAs, kSaveScene, kUnsaved, kUnsavedScene, kReplace
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.
   std::shared_ptr<const ScanThumbnail> guessed = {};
   std::string sought = {};                 ///< kShortcuts: as typed so far
-  bool stop_asking = false;                ///< kUnsaved: ticked so far
+  bool stop_asking = false;                ///< kUnsaved, kUnsavedScene: ticked so far
   Notice said = {};                        ///< kMessage
   Kind from = Kind::kSaveAs;               ///< kReplace, kImport: the dialog of the path
   bool typed = false;                      ///< the path came from there, and the user can go back to it

@@ -8,6 +8,7 @@
 #include "app/window/axes_gizmo.h"
 #include "app/work/suggestion_text.h"
 #include "haptic/safety/safety.h"
+#include "haptic/scene/scene_numbers.h"
 
 namespace fettle::app {
 namespace {
@@ -260,6 +261,11 @@ void addDevice(const Parts& p, Report& r) {
   for (const haptic::EffectKind effect : scene.effects)
     effects.push_back(std::string(haptic::effectName(effect)));
   r["effects"] = effects;
+  Report numbers = Report::object();
+  for (const haptic::SceneNumber& number : haptic::kSceneNumbers)
+    numbers[std::string(number.table) + "." + std::string(number.key)] = rounded(number.of(scene));
+  r["scene_numbers"] = numbers;
+  r["scene"] = p.scene_files.title(client);
   const SoundPlayer* const sound = client.soundPlayer();
   r["sound"] = sound != nullptr ? sound->driver() : "";
   // Full seconds: what is heard is no state of its own.

@@ -336,7 +336,13 @@ void Workstation::carryOut(Answer answer) {
       else
         resumeAfterSave(question.afterwards);
       break;
+    case Kind::kOpenScene:
+    case Kind::kSaveScene:
+    case Kind::kUnsavedScene:
+      carryOutOfScene(std::move(answer));
+      break;
     case Kind::kReplace:
+      if (question.from == Kind::kSaveScene) return carryOutOfScene(std::move(answer));
       p.saving.start(question.path, Saving::keepingOf(question.from), std::move(question.afterwards),
                      p.document, p.feedback);
       break;
@@ -350,6 +356,41 @@ void Workstation::carryOut(Answer answer) {
     case Kind::kMessage:
       break;
   }
+}
+
+void Workstation::carryOutOfScene(Answer answer) {
+  using Kind = Question::Kind;
+  Parts& p = parts_;
+  Question& question = answer.question;
+  LoopClient& client = *p.document.client();
+  bool felt = false;  // the file is what is felt
+  switch (question.kind) {
+    case Kind::kOpenScene:
+      felt = p.scene_files.open(question.path, client, p.feedback);
+      break;
+    case Kind::kUnsavedScene:
+      if (question.stop_asking) p.settings.ask_before_quitting = false;
+      if (answer.choice == Answer::Choice::kConfirm) {
+        p.feedback.questions.ask({.kind = Kind::kSaveScene,
+                                  .path = p.scenePathToSave(),
+                                  .afterwards = std::move(question.afterwards)});
+        return;
+      }
+      p.scene_files.leave(client);
+      app::carryOut(Action::kQuit, p);
+      return;
+    case Kind::kReplace:
+      felt = p.scene_files.save(question.path, client, p.feedback);
+      break;
+    default:
+      felt = p.scene_files.askToSave(question, client, p.feedback);
+      break;
+  }
+  if (!felt) return;
+  // Of the next scan as well.
+  options_.scene = client.scene();
+  options_.scene_path = p.scene_files.path();
+  if (question.afterwards.what == Afterwards::What::kQuit) app::carryOut(Action::kQuit, p);
 }
 
 void Workstation::askToOpen(const std::string& path, std::optional<ScanOptions> reading) {
@@ -450,6 +491,7 @@ void Workstation::startDocument(Document document) {
   p.settings.display.marks = true;
   p.steps_seen = client.history().number();
   tool_results_.begin(p);
+  p.scene_files.begin(client, options_.scene ? options_.scene_path : std::string());
   // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();

@@ -23,6 +23,7 @@ namespace fettle::app {
 struct ViewOptions {
   std::string scan;  ///< may be empty: a window to drop one on
   std::optional<haptic::Scene> scene;
+  std::string scene_path;  ///< of the file it is from
   LoopClientOptions client;
   ScanOptions reading;
   render::WindowOptions window;
@@ -78,6 +79,7 @@ class Workstation {
 
   void carryOut(PanelRequests requests);
   void carryOut(Answer answer);
+  void carryOutOfScene(Answer answer);
   void setRate(double hz);
   void setUpDevice(const DeviceSetup& setup);
   void releaseHandsWhenAsked();

@@ -20,7 +20,8 @@ using Kind = Question::Kind;
 using render::Key;
 
 bool isPathKind(Kind kind) {
-  return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport;
+  return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport ||
+         kind == Kind::kOpenScene || kind == Kind::kSaveScene;
 }
 
 // A dialog that has just appeared goes aside where the cursor, left where it was, would lie on the last button.
@@ -40,6 +41,11 @@ std::string saveLabel(const Parts& parts) {
                       : fmt::format("Save to {} (Enter)", fs::path(path).filename().string());
 }
 
+void stopAskingTick(Question& question, Questions& questions) {
+  ImGui::Checkbox("Do not ask again (N)", &question.stop_asking);
+  if (questions.take(render::letter('N'))) question.stop_asking = !question.stop_asking;
+}
+
 // Discarding has a key that does nothing to the picture, and no letter.
 std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
   Questions& questions = parts.feedback.questions;
@@ -53,12 +59,30 @@ std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
   const bool drops = dialogButton("Discard the steps (Delete)", questions, Key::kDelete);
   goFromUnderCursor(questions);
   if (question.afterwards.what == Afterwards::What::kQuit) {
-    ImGui::Checkbox("Do not ask again (N)", &question.stop_asking);
-    if (questions.take(render::letter('N'))) question.stop_asking = !question.stop_asking;
+    stopAskingTick(question, questions);
     ImGui::TextDisabled(
         "Unsaved work is then stored at the end, and offered when the scan is opened again.\n"
         "The File menu and the Display panel turn the question on again.");
   }
+  if (stays) return Choice::kBack;
+  if (writes) return Choice::kConfirm;
+  return drops ? std::optional(Choice::kOther) : std::nullopt;
+}
+
+std::optional<Choice> unsavedSceneDialog(Question& question, Parts& parts) {
+  Questions& questions = parts.feedback.questions;
+  const std::string& path = parts.scene_files.path();
+  ImGui::Text("Effects or numbers of the scene were changed, and %s.",
+              path.empty() ? "no file has them"
+                           : fmt::format("{} has others", fs::path(path).filename().string()).c_str());
+  const bool writes = dialogButton("Save scene ... (Enter)", questions, Key::kEnter);
+  ImGui::SameLine();
+  const bool stays = dialogButton("Go back (Esc)", questions, Key::kEscape);
+  ImGui::SameLine(0.0F, 3.0F * ImGui::GetFontSize());
+  const bool drops = dialogButton("Leave it (Delete)", questions, Key::kDelete);
+  goFromUnderCursor(questions);
+  stopAskingTick(question, questions);
+  ImGui::TextDisabled("A session has the scene with the work on its scan, whether it is saved here or not.");
   if (stays) return Choice::kBack;
   if (writes) return Choice::kConfirm;
   return drops ? std::optional(Choice::kOther) : std::nullopt;
@@ -174,11 +198,15 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kCompare:
     case Kind::kSaveAs:
     case Kind::kExport:
+    case Kind::kOpenScene:
+    case Kind::kSaveScene:
       return fileDialog(question, parts);
     case Kind::kImport:
       return importPage(question, parts);
     case Kind::kUnsaved:
       return unsavedDialog(question, parts);
+    case Kind::kUnsavedScene:
+      return unsavedSceneDialog(question, parts);
     case Kind::kReplace:
       return replaceDialog(question, questions, scale);
     case Kind::kRecover:

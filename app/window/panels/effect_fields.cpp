@@ -62,7 +62,7 @@ void sceneNumberField(const PanelContext& context, const haptic::SceneNumber& nu
   const std::string id = fmt::format("##{} {}", number.table, number.key);
   const std::string format = number.unit.empty() ? "%.4g" : fmt::format("%.4g {}", number.unit);
   fieldName(number.name.data(), number.says);
-  const TypedNumber typed = typingNumber(id.c_str(), number.of(client.scene()), format);
+  const NumberInField typed = typingNumber(id.c_str(), number.of(client.scene()), format);
   if (const std::string problem = typed.so_far ? numberProblem(client, number, *typed.so_far) : "";
       !problem.empty())
     problemBeside(problem);

@@ -1,4 +1,4 @@
-// The dialog of a path: to open, to compare with, to save as, to export.
+// The dialog of a path: to open, to compare with, to save as, to export; of a scan or of a scene.
 #include <array>
 #include <ctime>
 #include <filesystem>
@@ -28,8 +28,12 @@ using render::PanelColour;
 constexpr float kPlaces = 150.0F, kPreview = 230.0F, kHeight = 300.0F;  // at scale 1 [pixels]
 constexpr int kPage = 12;                                               // rows of Page up and Page down
 
+bool isScene(const Question& question) {
+  return question.kind == Kind::kOpenScene || question.kind == Kind::kSaveScene;
+}
+
 bool reads(const Question& question) {
-  return question.kind == Kind::kOpen || question.kind == Kind::kCompare;
+  return question.kind == Kind::kOpen || question.kind == Kind::kCompare || question.kind == Kind::kOpenScene;
 }
 
 std::string dateText(std::int64_t changed_s) {
@@ -258,6 +262,10 @@ void formatChooser(Question& question) {
 }
 
 void writingHelp(Question& question, bool& embeds) {
+  if (isScene(question)) {
+    ImGui::TextDisabled("tip, force, brushes and effects with their numbers, as a .toml file");
+    return;
+  }
   formatChooser(question);
   const bool session = isSessionPath(question.path);
   ImGui::PushTextWrapPos(0.0F);
@@ -292,7 +300,7 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const bool appears = ImGui::IsWindowAppearing();
   if (appears) {
     if (question.path.empty()) question.path = firstFolder(parts.recent);
-    files.begin(question.path, parts.recent.paths());
+    files.begin(question.path, parts.recent.paths(), isScene(question) ? FilesOf::kScenes : FilesOf::kScans);
     ImGui::SetKeyboardFocusHere();
   }
   const auto before = files.browser.chosen();

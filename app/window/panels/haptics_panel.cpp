@@ -137,10 +137,14 @@ void soundControls(LoopClient& client, Loudness& loudness) {
 }  // namespace
 
 std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                   Loudness& loudness, ChoiceCosts& costs) {
+                                   const SceneFiles& scene, Loudness& loudness, ChoiceCosts& costs) {
   LoopClient& client = context.client;
   deviceFigures(context);
   loopFigures(client, stylus.forces());
+  figure("scene", scene.title(client));
+  actionButton("Open scene ...", Action::kOpenScene, context.act);
+  sameLineIfFits("Save scene ...");
+  actionButton("Save scene ...", Action::kSaveScene, context.act);
   beginFields();
   const std::optional<double> rate_hz = rateField(client.rate());
   contactChooser(context, costs);

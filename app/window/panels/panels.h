@@ -69,7 +69,8 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times);
 /// The requested rate of the loop [Hz], if any.
 [[nodiscard]] std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                                 Loudness& loudness, ChoiceCosts& costs);
+                                                 const SceneFiles& scene, Loudness& loudness,
+                                                 ChoiceCosts& costs);
 
 /// A number of the scene: what is wrong with it stands beside it while it is typed.
 void sceneNumberField(const PanelContext& context, const haptic::SceneNumber& number);

@@ -62,7 +62,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
   if (section(parts, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
   if (section(parts, "Haptics", false))
-    rate_hz = hapticsPanel(context, parts.stylus_overlay, settings.loudness, parts.costs);
+    rate_hz = hapticsPanel(context, parts.stylus_overlay, parts.scene_files, settings.loudness, parts.costs);
   ImGui::End();
   return rate_hz;
 }

@@ -1,0 +1,83 @@
+#include "app/window/scene_files.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/work/scene_text_file.h"
+#include "app/work/session_guard.h"
+
+namespace fettle::app {
+namespace {
+
+std::string nameIn(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+// All but these.
+haptic::Scene withToolsOf(haptic::Scene scene, const haptic::Scene& other) {
+  const haptic::Scene felt = std::exchange(scene, other);
+  scene.effects = felt.effects;
+  scene.params = felt.params;
+  scene.stiffness_n_per_mm = felt.stiffness_n_per_mm;
+  scene.force_limit_n = felt.force_limit_n;
+  return scene;
+}
+
+}  // namespace
+
+void SceneFiles::begin(const LoopClient& client, std::string path) {
+  path_ = std::move(path);
+  saved_ = client.scene();
+}
+
+bool SceneFiles::open(const std::string& path, LoopClient& client, Feedback& feedback) {
+  const auto scene = readSceneFor(path, client.field().grid());
+  if (!scene) {
+    feedback.notices.push_back(
+        {fmt::format("{}: {}", nameIn(path), scene.error().what), scene.error().remedy});
+    return false;
+  }
+  if (const engine::Status set = client.setScene(*scene); !set) {
+    feedback.notices.push_back({fmt::format("{}: {}", nameIn(path), set.error().what), set.error().remedy});
+    return false;
+  }
+  begin(client, path);
+  feedback.status = fmt::format("the scene is {}", nameIn(path));
+  return true;
+}
+
+bool SceneFiles::askToSave(Question from, const LoopClient& client, Feedback& feedback) {
+  if (std::filesystem::path(from.path).extension() != kExtension) from.path += kExtension;
+  ReplacedFiles files = replacedFiles({from.path}, {});
+  if (files.texts.empty()) return save(from.path, client, feedback);
+  files.texts.push_back("Comments in it are not kept.");
+  feedback.questions.ask({.kind = Question::Kind::kReplace,
+                          .path = std::move(from.path),
+                          .afterwards = std::move(from.afterwards),
+                          .from = from.kind,
+                          .typed = true,
+                          .replaced = std::move(files.texts)});
+  return false;
+}
+
+bool SceneFiles::save(const std::string& path, const LoopClient& client, Feedback& feedback) {
+  if (const engine::Status written = writeScene(path, client.scene()); !written) {
+    feedback.message(written.error().line(), "the scene stays as it is here; save it elsewhere");
+    return false;
+  }
+  begin(client, path);
+  feedback.status = fmt::format("written: {}", path);
+  return true;
+}
+
+std::string SceneFiles::title(const LoopClient& client) const {
+  return (path_.empty() ? "no file" : nameIn(path_)) + (changed(client) ? ", changed" : "");
+}
+
+bool SceneFiles::changed(const LoopClient& client) const {
+  return withToolsOf(client.scene(), saved_) != saved_;
+}
+
+}  // namespace fettle::app
