@@ -64,6 +64,8 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
             {"compare", {"alt+b"}},
             {"save as", {"ctrl+shift+s"}},
             {"export", {"ctrl+e"}},
+            {"open scene", {"alt+o"}},
+            {"save scene", {"alt+s"}},
             {"unsaved", {"ctrl+i", "drop " + folder.file("second.tif")}},
             {"replace", {"ctrl+e", "ctrl+a", "type " + folder.file("there.tif"), "Return"}},
             {"recover", {"drop " + folder.file("left.tif"), "d"}},
