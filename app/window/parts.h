@@ -29,6 +29,7 @@
 #include "app/work/choice_costs.h"
 #include "app/work/compare_tool.h"
 #include "app/work/device_check.h"
+#include "app/work/device_lister.h"
 #include "app/work/filter_preview.h"
 #include "app/work/filter_suggester.h"
 #include "app/work/form_tool.h"
@@ -95,6 +96,7 @@ struct Parts {
   ColourRange colours;
   ChoiceCosts costs;
   DeviceCheck device_check;  ///< of the page of the device
+  DeviceLister devices;      ///< that can be chosen
   DeviceSetup device_setup;  ///< as chosen there so far
   render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again

@@ -54,6 +54,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   }
   changed |= p.suggester.poll(client, notices);
   changed |= p.removal.poll(client);
+  changed |= p.devices.poll();
   changed |= p.measure.poll(client, notices);
   if (p.compare.poll(client, notices)) {
     p.picture.refreshRanges();

@@ -316,6 +316,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("a filter", p.filters.computing() || p.filters.applying() || p.filters.awaitsRest());
   waits("the noise", p.filters.measuresNoise());
   waits("a suggestion", p.suggester.busy());
+  waits("devices", p.devices.busy());
   waits("a form", p.form.busy());
   waits("heights", p.heights.busy() || p.heights.awaitsRest());
   waits("a count", p.removal.busy());

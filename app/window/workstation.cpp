@@ -37,9 +37,10 @@ std::string settingsPath(const char* file) {
 bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
          p.saving.busy(p.document) || p.filters.computing() || p.filters.awaitsRest() ||
-         p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.form.busy() ||
-         p.measure.busy() || p.section.busy() || p.heights.busy() || p.heights.awaitsRest() ||
-         p.removal.busy() || p.colours.busy() || p.compare.busy() || p.transform.busy() ||
+         p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.devices.busy() ||
+         p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
+         p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() ||
+         p.transform.busy() ||
          (p.document.isOpen() &&
           (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
 }
@@ -280,7 +281,8 @@ void Workstation::saveSettingsNow() {
 void Workstation::carryOut(PanelRequests requests) {
   if (requests.open) askToOpen(*requests.open);
   if (requests.sample) parts_.files.makeSample();
-  if (requests.rate_hz) setRate(*requests.rate_hz);
+  if (requests.loop.rate_hz) setRate(*requests.loop.rate_hz);
+  if (requests.loop.device) setDevice(*requests.loop.device);
   if (requests.answer) carryOut(*std::move(requests.answer));
 }
 
@@ -571,6 +573,20 @@ void Workstation::setRate(double hz) {
     end_ = set;
   else if (!set)
     parts_.feedback.message(set.error().line(), "the loop continues as before");
+  parts_.picture.requestRedraw();
+}
+
+// As setRate(); for the next scan as well.
+void Workstation::setDevice(const std::string& words) {
+  LoopClient& client = *parts_.document.client();
+  parts_.releaseHands();
+  parts_.filters.cancel(client);
+  const engine::Status set = client.setDevice(words);
+  options_.client.device = client.deviceWords();
+  if (client.finished())
+    end_ = set;
+  else if (!set)
+    parts_.feedback.message(set.error().line(), "the device is used as before");
   parts_.picture.requestRedraw();
 }
 

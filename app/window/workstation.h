@@ -81,6 +81,7 @@ class Workstation {
   void carryOut(Answer answer);
   void carryOutOfScene(Answer answer);
   void setRate(double hz);
+  void setDevice(const std::string& words);
   void setUpDevice(const DeviceSetup& setup);
   void releaseHandsWhenAsked();
   void losePicture(const engine::Error& why);

@@ -136,6 +136,32 @@ engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notice
   return status;
 }
 
+engine::Status DeviceLoop::startOn(const std::string& device, const Start& start,
+                                   std::vector<Notice>& notices) {
+  const LoopClientOptions options_before = options_;
+  const haptic::KnownDriver* const driver_before = driver_;
+  const DeviceSetup setup_before = setup_;
+  haptic::MouseStylus* const mouse_before = mouse_;
+  // Outlives the loop that reads it, which startLoop() replaces.
+  std::unique_ptr<haptic::Device> device_before = std::move(device_);
+  options_.device = device;
+  options_.fit_spring = false;
+  options_.lower_scene = true;
+  options_.controllers.reset();  // of a headset: they are beside the mouse of the start alone
+  driver_ = haptic::driverNamed(device).driver;
+  setup_ = {};
+  mouse_ = nullptr;
+  engine::Status status = openDevice(*start.scene);
+  if (status) status = this->start(start, notices);
+  if (status) return status;
+  device_ = std::move(device_before);
+  options_ = options_before;
+  driver_ = driver_before;
+  setup_ = setup_before;
+  mouse_ = mouse_before;
+  return status;
+}
+
 engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& notices) {
   const engine::Grid& grid = grid_;
   const haptic::DeviceProfile& profile = device_->profile();

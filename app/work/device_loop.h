@@ -85,6 +85,12 @@ class DeviceLoop {
     std::shared_ptr<haptic::SoundRing> sounds;  ///< see haptic::PreparedScene
   };
   [[nodiscard]] engine::Status start(const Start& start, std::vector<Notice>& notices);
+  /// The same with another device, by the words of haptic::openDevice, after stop(): its scene is lowered to what it holds
+  /// stably, with a notice. Errors: those of openDevice() and start(); the device before is there then, as after stop().
+  [[nodiscard]] engine::Status startOn(const std::string& device, const Start& start,
+                                       std::vector<Notice>& notices);
+  /// The words of the device.
+  [[nodiscard]] const std::string& deviceWords() const noexcept { return options_.device; }
   /// Ends the loop with a last tick of zero force; its events and records can still be polled.
   void stop();
   [[nodiscard]] bool running() const noexcept { return running_; }

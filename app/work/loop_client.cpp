@@ -65,7 +65,7 @@ LoopClient::~LoopClient() {
 }
 
 // Starts from the history's state. The data of the previous loop is reset.
-engine::Status LoopClient::startLoop(double rate_hz) {
+engine::Status LoopClient::startLoop(double rate_hz, const std::string& device) {
   field_ = scene_.invert ? history().current().inverted() : history().current();
   path_ = StrokePath(field_.grid());
   place_ = {};
@@ -82,7 +82,9 @@ engine::Status LoopClient::startLoop(double rate_hz) {
   start.rate_hz = rate_hz;
   hear();
   start.sounds = sound_.ring();
-  if (engine::Status status = loop_.start(start, notices_); !status) return status;
+  engine::Status status =
+      device.empty() ? loop_.start(start, notices_) : loop_.startOn(device, start, notices_);
+  if (!status) return status;
   steps_.begin(scene_);
   return {};
 }
@@ -122,6 +124,23 @@ engine::Status LoopClient::setDeviceSetup(const DeviceSetup& setup) {
   }
   loop_.setDisarmed(disarmed);
   if (status) noteDisarmed("the device is used as you said");
+  return status;
+}
+
+engine::Status LoopClient::setDevice(const std::string& words) {
+  if (finished() || words == deviceWords()) return {};
+  const bool disarmed = loop_.disarmed();
+  const haptic::Scene before = scene_;
+  const double same_hz = rate();
+  endForAnother();
+  engine::Status status = startLoop(same_hz, words);
+  if (!status) {
+    scene_ = before;
+    static_cast<void>(startLoop(same_hz));
+  }
+  // What armed itself does so again; whoever holds another device has not disarmed it.
+  loop_.setDisarmed(!status && disarmed);
+  if (status) noteDisarmed(fmt::format("the device is the {} now", device().profile().name));
   return status;
 }
 

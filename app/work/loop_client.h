@@ -143,6 +143,12 @@ class LoopClient final {
   /// Uses the device so from now on: ends the loop and starts another, as setRate() does. Errors: those of start(), after which the
   /// device is used as before, or the loop is finished(); a scene that is not stable so, likewise.
   [[nodiscard]] engine::Status setDeviceSetup(const DeviceSetup& setup);
+  /// The words of the device (haptic::openDevice).
+  [[nodiscard]] const std::string& deviceWords() const noexcept { return loop_.deviceWords(); }
+  /// Uses another device from now on: lets the force fade and ends the loop as setRate() does, and starts another with that
+  /// device, without force until its user arms it. Values of the scene that it does not hold are lowered, with a notice.
+  /// Errors: those of openDevice and start(), after which the device is used as before, or the loop is finished().
+  [[nodiscard]] engine::Status setDevice(const std::string& words);
   [[nodiscard]] DeviceChoices takeDeviceChoices() noexcept { return loop_.takeChoices(); }
   void setView(double azimuth_deg, double zoom) { loop_.setView(azimuth_deg, zoom); }
   /// At once; a device is open only while the scene lists sound.
@@ -178,7 +184,8 @@ class LoopClient final {
  private:
   LoopClient(engine::History history, FormOriginals originals, const haptic::Scene& scene,
              const LoopClientOptions& options, haptic::SessionSink* sink);
-  [[nodiscard]] engine::Status startLoop(double rate_hz);
+  // `device`: another one, by its words; empty: the same.
+  [[nodiscard]] engine::Status startLoop(double rate_hz, const std::string& device = {});
   // Where no audio device answers, a notice.
   void hear();
   void endForAnother();

@@ -65,10 +65,39 @@ std::string heldButtons(std::uint32_t buttons) {
   return text.empty() ? "none" : text;
 }
 
+// The device in a list of those there are; returns the words of another one that was chosen.
+std::optional<std::string> deviceField(const LoopClient& client, DeviceLister& devices) {
+  constexpr const char* kSays =
+      "Another device takes the place of this one: the force fades first, and it gives none until A is "
+      "pressed.";
+  const haptic::DeviceProfile& profile = client.device().profile();
+  std::optional<std::string> chosen;
+  beginFields();
+  fieldName("device", kSays);
+  if (ImGui::BeginCombo("##device", (profile.name + (profile.gives_force ? "" : ", no force")).c_str(),
+                        ImGuiComboFlags_HeightLargest)) {
+    if (ImGui::IsWindowAppearing()) devices.list(client.deviceWords());
+    for (const DeviceChoice& each : devices.all()) {
+      const std::string text =
+          each.problem.empty() ? each.title : fmt::format("{}: {}", each.title, each.problem);
+      ImGui::BeginDisabled(!each.problem.empty());
+      if (ImGui::Selectable(fmt::format("{}##{}", text, each.words).c_str(),
+                            each.words == client.deviceWords()))
+        chosen = each.words;
+      ImGui::EndDisabled();
+      explain(each.remedy);
+    }
+    if (devices.busy()) ImGui::TextDisabled("looking for devices");
+    ImGui::EndCombo();
+  } else {
+    explain(kSays);
+  }
+  endFields();
+  return chosen;
+}
+
 void deviceFigures(const PanelContext& context) {
   const haptic::LoopState state = context.client.state();
-  const haptic::DeviceProfile& profile = context.client.device().profile();
-  figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
   // A mouse cannot be unplugged and gives no force.
   const bool mouse = context.client.mouse() != nullptr;
   figure("link",
@@ -136,18 +165,19 @@ void soundControls(LoopClient& client, Loudness& loudness) {
 
 }  // namespace
 
-std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                   const SceneFiles& scene, Loudness& loudness, ChoiceCosts& costs) {
+LoopRequests hapticsPanel(const PanelContext& context, Parts& parts) {
   LoopClient& client = context.client;
+  LoopRequests requests;
+  requests.device = deviceField(client, parts.devices);
   deviceFigures(context);
-  loopFigures(client, stylus.forces());
-  figure("scene", scene.title(client));
+  loopFigures(client, parts.stylus_overlay.forces());
+  figure("scene", parts.scene_files.title(client));
   actionButton("Open scene ...", Action::kOpenScene, context.act);
   sameLineIfFits("Save scene ...");
   actionButton("Save scene ...", Action::kSaveScene, context.act);
   beginFields();
-  const std::optional<double> rate_hz = rateField(client.rate());
-  contactChooser(context, costs);
+  requests.rate_hz = rateField(client.rate());
+  contactChooser(context, parts.costs);
   sceneNumberField(context, haptic::sceneNumber("force", "stiffness_n_per_mm"));
   sceneNumberField(context, haptic::sceneNumber("force", "limit_n"));
   endFields();
@@ -155,9 +185,9 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
     figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
   effectFields(context);
-  soundControls(client, loudness);
+  soundControls(client, parts.settings.loudness);
   for (const std::string& missing : client.realTime().missing) writeIn(PanelColour::kWarning, missing);
-  return rate_hz;
+  return requests;
 }
 
 }  // namespace fettle::app

@@ -14,7 +14,7 @@ constexpr float kSide = 320.0F;  // of the side panel, at scale 1 [pixels]
 constexpr float kNarrowest = 160.0F;
 
 // The side panel with the menus above and the status bar below, both `bar` high; returns the remaining width.
-float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rate_hz) {
+float sideOf(Parts& parts, const Act& act, float bar, LoopRequests& requests) {
   const auto scale = static_cast<float>(parts.window.scale());
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   if (!parts.settings.side_panel || !parts.document.isOpen()) return size.x;
@@ -29,7 +29,7 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
   ImGui::SetNextWindowSizeConstraints(ImVec2(kNarrowest * scale, 0.0F), size);
   // ImGui rounds sizes, and changes those of a window without size: only the user sets the width.
   float drawn = side;
-  rate_hz = sidePanel(parts, act, drawn);
+  requests = sidePanel(parts, act, drawn);
   if (said > 0.0F)
     noticePanel(parts.feedback.notices, act, ImVec2(size.x - side, bar + height), ImVec2(side, said),
                 NoticesLie::kBesideTheRest);
@@ -60,7 +60,7 @@ PanelRequests layOutPanels(Parts& parts) {
   const float bar = ImGui::GetFrameHeight();
   const float top = alone ? 0.0F : bar;
   const float screen = ImGui::GetIO().DisplaySize.x;
-  const float width = alone ? screen : sideOf(parts, act, bar, requests.rate_hz);
+  const float width = alone ? screen : sideOf(parts, act, bar, requests.loop);
   if (width >= screen) noticesAlone(parts, act, bar);
   statusBar(parts);
   parts.window.setPictureArea({0, static_cast<int>(top), static_cast<int>(width),

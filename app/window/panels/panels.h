@@ -67,11 +67,12 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs);
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times);
-/// The requested rate of the loop [Hz], if any.
-[[nodiscard]] std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                                 const SceneFiles& scene, Loudness& loudness,
-                                                 ChoiceCosts& costs);
-
+/// What is asked of the loop, if anything.
+struct LoopRequests {
+  std::optional<double> rate_hz;
+  std::optional<std::string> device;  ///< words of haptic::openDevice
+};
+[[nodiscard]] LoopRequests hapticsPanel(const PanelContext& context, Parts& parts);
 /// A number of the scene: what is wrong with it stands beside it while it is typed.
 void sceneNumberField(const PanelContext& context, const haptic::SceneNumber& number);
 /// Which effects the scene lists, and the numbers and words of those.
@@ -89,9 +90,9 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
 enum class NoticesLie : std::uint8_t { kBesideTheRest, kOverTheRest };
 void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corner, ImVec2 size,
                  NoticesLie lie);
-/// All of the panels in one window at the right; returns the requested rate. `width` is set to
+/// All of the panels in one window at the right. `width` is set to
 /// its width [pixels]: the given one, or the one that the user dragged it to.
-[[nodiscard]] std::optional<double> sidePanel(Parts& parts, const Act& act, float& width);
+[[nodiscard]] LoopRequests sidePanel(Parts& parts, const Act& act, float& width);
 /// The chosen recent file, if any.
 [[nodiscard]] std::optional<std::string> menuBar(Parts& parts, const Act& act);
 void statusBar(Parts& parts);
@@ -125,7 +126,7 @@ struct Answer {
 struct PanelRequests {
   std::optional<std::string> open;  ///< a recent file
   bool sample = false;              ///< the sample part
-  std::optional<double> rate_hz;
+  LoopRequests loop;
   std::optional<Answer> answer;
 };
 /// In the middle of `width` pixels while there is no picture: the reason, or the start page.

@@ -24,8 +24,8 @@ bool section(Parts& parts, const char* name, bool open_at_first) {
 
 }  // namespace
 
-std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
-  std::optional<double> rate_hz;
+LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
+  LoopRequests requests;
   Settings& settings = parts.settings;
   ImGui::Begin("Panels", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
@@ -61,10 +61,9 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(parts, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);
   if (section(parts, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
-  if (section(parts, "Haptics", false))
-    rate_hz = hapticsPanel(context, parts.stylus_overlay, parts.scene_files, settings.loudness, parts.costs);
+  if (section(parts, "Haptics", false)) requests = hapticsPanel(context, parts);
   ImGui::End();
-  return rate_hz;
+  return requests;
 }
 
 }  // namespace fettle::app

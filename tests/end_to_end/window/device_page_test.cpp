@@ -205,6 +205,45 @@ TEST_F(DevicePage, an_unplugged_device_is_said_with_and_without_panels) {
   endWithoutABrokenRule(*program);
 }
 
+// The mouse, a device of a maker, and the mouse again, in one start of the program.
+TEST_F(DevicePage, another_device_is_chosen_in_the_panel_and_gives_no_force_until_it_is_armed) {
+  const std::string page = folder.file("page");
+  page_ = fake::SharedPage::map(page.c_str());
+  const auto program = start({scan}, {{"FETTLE_LIBDHD", FETTLE_FAKE_DHD},
+                                      {"FAKE_VENDOR_PAGE", page},
+                                      {"FAKE_VENDOR_LOG", folder.file("broken")}});
+  const std::string mouse = opened(*program)["device"];
+  User user(display, *program, "devices");
+  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
+  (void)user.click("Haptics");
+  const auto choose = [&](const std::string& now, const std::string& wanted) {
+    (void)user.click(now);
+    std::string title;
+    program->until("devices", [&](const State& s) {
+      for (const State& text : s["texts"])
+        if (text["text"].get<std::string>().find(wanted) == 0) title = text["text"];
+      return !title.empty() && s["settled"] == true;
+    });
+    (void)user.look("list");
+    user.tap(title);
+  };
+  choose(mouse + ", no force", "Force Dimension");
+  const State other = program->until("the other device", [&](const State& s) {
+    return s["device"] != mouse && s["connected"] == true && s["settled"] == true;
+  });
+  EXPECT_EQ(other["safety"], "uncalibrated") << "nobody has armed it";
+  EXPECT_NE(other["notices"].dump().find("is the"), std::string::npos) << other["notices"];
+  (void)user.look("another device");
+  (void)user.press("a");
+  program->until("armed", [](const State& s) { return s["safety"] == "active" || s["safety"] == "ramping"; });
+  choose(other["device"], "mouse as a stylus");
+  program->until("the mouse", [&](const State& s) { return s["device"] == mouse && s["settled"] == true; });
+  (void)user.key("7");
+  (void)user.key("s");
+  EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 3)["steps"], 1) << "and it works as before";
+  endWithoutABrokenRule(*program);
+}
+
 TEST_F(DevicePage, a_mouse_has_nothing_to_measure) {
   const auto program = start({scan});
   (void)opened(*program);
