@@ -164,9 +164,13 @@ void addFilters(const Parts& p, Report& r) {
   r["preview_so_far"] = so_far.field.empty() ? Report() : Report(previewState(so_far, so_far.field.grid()));
   Report listed = Report::array();
   if (const FilterSuggester::Found* const found = p.suggester.found())
-    for (const ListedFilter& each : listedFilters(found->suggestion, found->asked, p.units.change))
-      listed.push_back(
-          {{"method", engine::methodOf(found->suggestion.candidates[each.candidate])}, {"why", each.why}});
+    for (const ListedFilter& each : listedFilters(found->suggestion, found->asked, p.units.change)) {
+      const engine::FilterCandidate& candidate = found->suggestion.candidates[each.candidate];
+      listed.push_back({{"method", engine::methodOf(candidate)},
+                        {"name", candidateName(candidate)},
+                        {"filter", filterName(candidate.spec)},
+                        {"why", each.why}});
+    }
   r["trying_filters"] = p.suggester.busy();
   r["listed_filters"] = listed;
   r["no_filter"] = p.suggester.nothing();

@@ -46,7 +46,7 @@ void tableFields(const PanelContext& context, std::string_view table, const std:
   const auto isOf = [&](const auto& row) { return row.table == table; };
   if (std::ranges::none_of(haptic::kSceneNumbers, isOf) && std::ranges::none_of(haptic::kSceneWords, isOf))
     return;
-  ImGui::TextUnformatted(title.c_str());
+  ImGui::TextUnformatted((title + ":").c_str());
   beginFields();
   for (const haptic::SceneWord& word : haptic::kSceneWords)
     if (isOf(word)) wordField(context, word);

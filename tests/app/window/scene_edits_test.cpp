@@ -58,12 +58,12 @@ TEST_F(SceneEdits, numbers_at_odds_with_each_other_are_said_and_refused) {
 }
 
 TEST_F(SceneEdits, what_no_known_device_holds_is_said_and_taken_by_the_mouse) {
-  listEffect(client(), EffectKind::kViscosity, true, notices());
-  constexpr const haptic::SceneNumber& number = sceneNumber("viscosity", "damping_n_s_per_mm");
-  EXPECT_EQ(numberProblem(client(), number, 0.001), "");
-  EXPECT_NE(numberProblem(client(), number, 1.0), "");
-  setNumber(client(), number, 1.0, notices());
-  EXPECT_EQ(number.of(client().scene()), 1.0);
+  listEffect(client(), EffectKind::kFriction, true, notices());
+  constexpr const haptic::SceneNumber& number = sceneNumber("friction", "stiffness_n_per_mm");
+  EXPECT_EQ(numberProblem(client(), number, 0.5), "");
+  EXPECT_NE(numberProblem(client(), number, 900.0), "");
+  setNumber(client(), number, 900.0, notices());
+  EXPECT_EQ(number.of(client().scene()), 900.0);
   EXPECT_EQ(notices().size(), 1U);
   EXPECT_EQ(largestHeld(client(), number), std::nullopt) << "a mouse holds all of it";
 }
