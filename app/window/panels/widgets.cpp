@@ -239,13 +239,13 @@ void showSaidOfField() {
   said.frame = frame;
   if (passed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) said = {};
   if (said.field == 0 || !ImGui::IsItemVisible()) return;
-  // Beside the panel, as tips; over it the text would lie on a field that is typed into next.
+  // Beside the panel, above a tip; over it the text would lie on a field that is typed into next.
   const float beside = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x;
   const float wide = ImGui::CalcTextSize(said.text.c_str()).x + 2.0F * ImGui::GetFrameHeight();
   const bool room = beside > wide;
   const bool below = high.y + 2.0F * ImGui::GetFrameHeight() < ImGui::GetIO().DisplaySize.y;
   ImGui::SetNextWindowPos(room ? ImVec2(beside, low.y) : ImVec2(high.x, below ? high.y : low.y),
-                          ImGuiCond_Always, ImVec2(1.0F, room || below ? 0.0F : 1.0F));
+                          ImGuiCond_Always, ImVec2(1.0F, below && !room ? 0.0F : 1.0F));
   ImGui::Begin("##said of a field", nullptr,
                ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |

@@ -294,7 +294,7 @@ TEST_F(SteadyRows, what_is_said_of_a_number_that_was_typed_moves_no_row) {
   for (int i = 0; i < 3; ++i) (void)user.key("n");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
   user.at({20, 1290});
-  const std::set<std::string> rows{"radius", "sigma", "max change", "passes", "Preview", "Apply", "Undo"};
+  const std::set<std::string> rows{"radius", "sigma", "keep within", "passes", "Preview", "Apply", "Undo"};
   const auto before = placesOf(user.rest(), rows);
   EXPECT_EQ(before.size(), rows.size());
   const auto typed = [&](const char* field, const char* what, const char* said, const char* reads) {
@@ -310,11 +310,11 @@ TEST_F(SteadyRows, what_is_said_of_a_number_that_was_typed_moves_no_row) {
   (void)typed("passes", "99999", "at its largest", "1000");
   (void)typed("sigma", "twelve", "not understood: twelve", "0: ");
   const State before_length = program->now();
-  const State same = typed("max change", "15 parsecs", "not understood: 15 parsecs", "max change");
+  const State same = typed("keep within", "15 parsecs", "not understood: 15 parsecs", "keep within");
   EXPECT_EQ(same["max_change"], before_length["max_change"]);
   (void)user.look("not understood");
   // Taken, and nothing is said any more.
-  EXPECT_EQ(user.enter("max change", "12,5 um")["max_change"], 0.0125);
+  EXPECT_EQ(user.enter("keep within", "12,5 um")["max_change"], 0.0125);
   EXPECT_FALSE(user.reads("not understood"));
   EXPECT_FALSE(user.reads("at its"));
   // By Tab, with the next field entered, it stays until a click.
