@@ -55,8 +55,8 @@ void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valle
 }
 
 // All minima of a cell that is steep(). Pieces are in proportion to the scale of g; where its slope has the same sign at
-// both ends of one and turns between them, the place where it turns decides whether there are two roots. Bounded, a cell
-// that holds no minimum within reach is left out and several pieces are looked at at a time: the same bits.
+// both ends of one and turns between them, the place where it turns decides whether there are two roots. Bounded, what
+// holds no minimum within reach is left out and several pieces are looked at at a time: the same bits.
 //
 // A valley is some spacing / twist of a cell wide. Where that is less than the places along a cell differ by, no number of
 // pieces finds it, and some 250 pieces of every cell around the ball would be searched for minima among roundings, 20 ms a
@@ -64,34 +64,43 @@ void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valle
 void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g, SphereSearch search) noexcept {
   constexpr double kNarrowest = 4e-16;
   if (std::min(g.sx, g.sy) < kNarrowest * std::abs(g.d)) return;
-  if (search == SphereSearch::kBounded && !g.mayHold(0.0, 1.0, reach2_)) return;
   constexpr int kPieces = kSphereContactLanes;
+  constexpr int kBlock = 4 * kPieces;
   const Valley::Pieces pieces(g);
   const SphereContactKernels& kernels = sphereContactKernels();
   const LaneValley lanes = g.lanes();
-  std::array<double, kPieces> v;
+  const bool bounded = search == SphereSearch::kBounded;
+  const auto mayHold = [&](double v0, double v1) { return !bounded || g.mayHold(v0, v1, reach2_); };
+  const auto endAt = [&](double v) { return PieceEnd{v, g.steepSlopeAt(v), g.bend}; };
+  std::array<double, kBlock + kPieces> v;
   std::array<double, kPieces> slope;
   std::array<double, kPieces> bend;
-  PieceEnd from{0.0, g.steepSlopeAt(0.0), g.bend};
-  while (from.v < 1.0) {
+  // Slopes are taken where a minimum within reach may be: most pieces of a needle are out of it.
+  PieceEnd from{0.0, 0.0, 0.0};
+  bool known = false;  // its slope and bend
+  while (from.v < 1.0 && mayHold(from.v, 1.0)) {
     int count = 0;
-    for (double at = from.v; count < kPieces && at < 1.0; ++count) {
-      at = pieces.end(at);
-      v[static_cast<std::size_t>(count)] = at;
-    }
-    if (search == SphereSearch::kBounded) {
-      std::fill(v.begin() + count, v.end(), 1.0);
-      kernels.steepSlopes(lanes, v.data(), slope.data(), bend.data());
-    }
-    for (int n = 0; n < count; ++n) {
-      const auto k = static_cast<std::size_t>(n);
-      PieceEnd to{v[k], slope[k], bend[k]};
-      if (search == SphereSearch::kCellByCell) {
-        to.slope = g.steepSlopeAt(v[k]);
-        to.bend = g.bend;
+    for (double end = from.v; count < kBlock && end < 1.0; ++count)
+      v[static_cast<std::size_t>(count)] = end = pieces.end(end);
+    std::fill_n(v.begin() + count, kPieces, 1.0);
+    const bool block_holds = mayHold(from.v, v[static_cast<std::size_t>(count - 1)]);
+    for (int at = 0; at < count; at += kPieces) {
+      const auto first = static_cast<std::size_t>(at);
+      const auto some = static_cast<std::size_t>(std::min(kPieces, count - at));
+      const double last = v[first + some - 1];
+      if (!block_holds || !mayHold(from.v, last)) {
+        from.v = last;
+        known = false;
+        continue;
       }
-      steepPiece(i, j, g, from, to, search);
-      from = to;
+      if (!known) from = endAt(from.v);
+      known = true;
+      if (bounded) kernels.steepSlopes(lanes, v.data() + first, slope.data(), bend.data());
+      for (std::size_t k = 0; k < some; ++k) {
+        const PieceEnd to = bounded ? PieceEnd{v[first + k], slope[k], bend[k]} : endAt(v[first + k]);
+        steepPiece(i, j, g, from, to, search);
+        from = to;
+      }
     }
   }
 }

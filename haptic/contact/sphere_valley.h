@@ -99,23 +99,23 @@ class SphereWindow::Valley {
     return std::max(std::min(to_p, to_w), least);
   }
 
-  // Where a piece of a steep cell ends that begins at v < 1: at least some roundings of v farther, for any twist.
+  // Where a piece of a steep cell ends that begins at v < 1: half of the scale there farther, at most 1 / kTwistPieces and at
+  // least some roundings of v, for any twist. Each end waits for the one before, so halves are taken beforehand, exactly, and
+  // the bounds of the scale with those of the piece: half the least scale of a steep cell is below 1 / kTwistPieces.
   class Pieces {
    public:
     explicit Pieces(const Valley& g) noexcept
-        : least_(0.5 * std::min(g.sx, g.sy) / std::abs(g.d)),
-          p_(g.b / g.d),
-          w_(g.c != 0.0 ? g.w0 / g.c : HUGE_VAL) {}
+        : least_(std::max(0.25 * std::min(g.sx, g.sy) / std::abs(g.d), 4e-16)),
+          p_(0.5 * (g.b / g.d)),
+          w_(g.c != 0.0 ? 0.5 * (g.w0 / g.c) : HUGE_VAL) {}
     [[nodiscard]] double end(double v) const noexcept {
-      constexpr double kLeast = 4e-16;
-      const double to_p = std::abs(v + p_);
-      const double to_w = std::min(std::abs(v + w_), 1.0);
-      const double scale = std::max(std::min(to_p, to_w), least_);
-      return std::min(v + std::max(std::min(0.5 * scale, 1.0 / kTwistPieces), kLeast), 1.0);
+      const double half = 0.5 * v;
+      const double to = std::min(std::abs(half + p_), std::abs(half + w_));
+      return std::min(v + std::max(std::min(to, 1.0 / kTwistPieces), least_), 1.0);
     }
 
    private:
-    double least_, p_, w_;
+    double least_, p_, w_;  // halves of the least scale, and of where p or w is 0
   };
 
   [[nodiscard]] LaneValley lanes() const noexcept { return {b, c, d, ex, ey, w0, sx, sy}; }

@@ -93,14 +93,32 @@ void SphereWindow::markRims() noexcept {
     for (std::int32_t j = 0; j + 1 < rows_; ++j) rim(0, j) = rim(columns_ - 2, j) = 1;
     return;
   }
-  for (std::int32_t j = 0; j + 1 < rows_; ++j)
+  // A bit per column: samples that are there, cells without a hole, and those among them without one around them.
+  static_assert(kMostSide <= 64);
+  const auto samplesOf = [&](std::int32_t j) {
+    const double* z = z_.data() + j * columns_;
+    std::uint64_t there = 0;
+    for (std::int32_t i = 0; i < columns_; ++i) there |= std::uint64_t{std::isnan(z[i]) ? 0U : 1U} << i;
+    return there;
+  };
+  std::array<std::uint64_t, kMostSide + 2> whole{};  // cells of row j at j + 1; none beyond the window
+  for (std::uint64_t j = 0, before = samplesOf(0); j + 1 < static_cast<std::uint64_t>(rows_); ++j) {
+    const std::uint64_t after = samplesOf(static_cast<std::int32_t>(j) + 1);
+    whole[j + 1] = before & before >> 1 & after & after >> 1;
+    before = after;
+  }
+  for (std::int32_t j = 0; j + 1 < rows_; ++j) {
+    const auto at = static_cast<std::size_t>(j) + 1;
+    const std::uint64_t column = whole[at - 1] & whole[at] & whole[at + 1];
+    const std::uint64_t inner = column & column << 1 & column >> 1;
     for (std::int32_t i = 0; i + 1 < columns_; ++i) {
-      bool inner = true;
-      for (std::int32_t k = 0; k < 9 && inner; ++k) inner = valid(i + k % 3 - 1, j + k / 3 - 1);
-      rim(i, j) = inner ? 0 : 1;
+      const bool is_inner = (inner >> i & 1U) != 0;
+      rim(i, j) = is_inner ? 0 : 1;
       // It has walls below its plane; only its highest sample bounds them.
-      if (!inner && valid(i, j)) bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
+      if (!is_inner && (whole[at] >> i & 1U) != 0)
+        bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
     }
+  }
 }
 
 bool SphereWindow::holds(const glm::dvec3& centre) const noexcept {
