@@ -7,11 +7,9 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
-#include "engine/formats/formats.h"
 #include "engine/session/line_codec.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/mark_codec.h"
-#include "haptic/journal/session_player.h"
 #include "haptic/journal/tick_codec.h"
 #include "tests/haptic/support/fields.h"
 
@@ -328,27 +326,6 @@ TEST(Journal, ABallTakesTheStepsAndMinimaThatItHadWhenItWasWritten) {
   const haptic::Scene now = sceneOf(R"({"do":"begin","state":0,"contact":4,"scene":"tip = \"sphere\""})");
   EXPECT_EQ(now.ball_steps, haptic::BallSteps::kInPlan);
   EXPECT_EQ(now.ball_minima, haptic::BallMinima::kAll);
-}
-
-// Recorded on 2026-11-23 with a mouse, before "paper" named another search: two strokes that smooth, the second with
-// two steps per tick. Any other search leaves another field.
-TEST(Journal, ASessionOfTheFirstContactRevisionReplaysToTheBitsThatItHad) {
-  constexpr std::uint64_t kThen = 0x5f5ebd78124849eeU;
-  engine::JobControl job;
-  auto session = engine::openSession(FETTLE_OLD_SESSION, {}, engine::importField, job);
-  ASSERT_TRUE(session) << session.error().line();
-  EXPECT_EQ(engine::contentHash(session->history.current()), kThen);
-  const auto played = haptic::playSession(*session, job);
-  ASSERT_TRUE(played) << played.error().line();
-  EXPECT_EQ(played->ticks, 336);
-  EXPECT_EQ(played->steps, 2);
-  EXPECT_EQ(engine::contentHash(played->field), kThen);
-  for (engine::JournalEntry& entry : session->journal)
-    if (entry.action.find("\"scene\"") != std::string::npos)
-      entry.action.replace(entry.action.find("search_rounds = "), 16, "search_rounds = 2048 #");
-  const auto other = haptic::playSession(*session, job);
-  ASSERT_TRUE(other) << other.error().line();
-  EXPECT_NE(engine::contentHash(other->field), kThen);
 }
 
 TEST(Journal, WhatIsNoEntryIsRefusedByName) {
