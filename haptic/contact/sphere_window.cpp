@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -107,16 +108,17 @@ void SphereWindow::markRims() noexcept {
     whole[j + 1] = before & before >> 1 & after & after >> 1;
     before = after;
   }
+  std::fill_n(bounds_.rim.begin(), columns_ * rows_, std::uint8_t{0});
+  const std::uint64_t all = (std::uint64_t{1} << (columns_ - 1)) - 1;
   for (std::int32_t j = 0; j + 1 < rows_; ++j) {
     const auto at = static_cast<std::size_t>(j) + 1;
     const std::uint64_t column = whole[at - 1] & whole[at] & whole[at + 1];
     const std::uint64_t inner = column & column << 1 & column >> 1;
-    for (std::int32_t i = 0; i + 1 < columns_; ++i) {
-      const bool is_inner = (inner >> i & 1U) != 0;
-      rim(i, j) = is_inner ? 0 : 1;
+    for (std::uint64_t left = all & ~inner; left != 0; left &= left - 1) {
+      const std::int32_t i = std::countr_zero(left);
+      rim(i, j) = 1;
       // It has walls below its plane; only its highest sample bounds them.
-      if (!is_inner && (whole[at] >> i & 1U) != 0)
-        bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
+      if ((whole[at] >> i & 1U) != 0) bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
     }
   }
 }
