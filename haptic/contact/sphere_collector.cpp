@@ -133,7 +133,8 @@ void SphereWindow::Collector::steepPiece(std::int32_t i, std::int32_t j, Valley&
   }
 }
 
-void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept {
+void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corners& z,
+                                     SphereSearch search) noexcept {
   Valley g(w_, c_, i, j, z);
   const double sx = g.sx;
   const double sy = g.sy;
@@ -153,6 +154,10 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
   // Twisted so much that the ball bridges it: no minimum inside, only saddles.
   const double bridge = std::abs(g.d) * std::max(0.0, c_.z - high) - p * q;
   if (bridge > 0.0 && bridge * bridge > (sx * sx + p * p) * (sy * sy + q * q)) return;
+  if (search == SphereSearch::kBounded) {
+    twisted(i, j);
+    return;
+  }
   if (w_.steep(g.d)) {
     steep(i, j, g, SphereSearch::kCellByCell);
     return;
@@ -209,7 +214,7 @@ void SphereWindow::Collector::rims(std::int32_t i, std::int32_t j) noexcept {
   if (!w_.valid(i, j + 1)) wall(i, j, i, j + 1, true, 1.0, c_.y - (y0 + w_.sy_));
 }
 
-void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
+void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j, SphereSearch search) noexcept {
   if (!w_.valid(i, j)) return;
   const Corners z = w_.corners(i, j);
   if (!w_.whole_) [[unlikely]]
@@ -228,7 +233,7 @@ void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
   sample(i + 1, j + 1, i, j, 1.0, 1.0);
   edgeX(i, j + 1, i, j, 1.0, true, w_.valid(i, j + 1));
   edgeY(i + 1, j, i, j, 1.0, true, w_.valid(i + 1, j));
-  inside(i, j, z);
+  inside(i, j, z, search);
 }
 
 // What cell() does for every cell within reach.
@@ -270,7 +275,7 @@ void SphereWindow::Collector::vectorised(std::int32_t i0, std::int32_t i1, std::
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const LaneCell at = cells[static_cast<std::size_t>(from) + k];
       if (lane[k] < 0) {
-        cell(at.i, at.j);
+        cell(at.i, at.j, SphereSearch::kBounded);
         continue;
       }
       const auto n = static_cast<std::size_t>(static_cast<unsigned char>(lane[k]));
@@ -297,7 +302,7 @@ void SphereWindow::Collector::candidates(const LaneCandidates& some) noexcept {
     const std::int32_t i = at.i;
     const std::int32_t j = at.j;
     if ((at.features & kRimFeature) != 0) {
-      cell(i, j);
+      cell(i, j, SphereSearch::kBounded);
       continue;
     }
     if ((at.features & kSampleFeature) != 0) sample(i + 1, j + 1, i, j, 1.0, 1.0);

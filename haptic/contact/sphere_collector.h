@@ -40,7 +40,7 @@ class SphereWindow::Collector {
     out.nearest_mm = HUGE_VAL;
   }
 
-  void cell(std::int32_t i, std::int32_t j) noexcept;
+  void cell(std::int32_t i, std::int32_t j, SphereSearch search) noexcept;
   void vectorised(std::int32_t i0, std::int32_t i1, std::int32_t j0, std::int32_t j1) noexcept;
   void candidates(const LaneCandidates& some) noexcept;
 
@@ -157,7 +157,7 @@ class SphereWindow::Collector {
   void steepPiece(std::int32_t i, std::int32_t j, Valley& g, const PieceEnd& from, const PieceEnd& to,
                   SphereSearch search) noexcept;
   void minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept;
-  void inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept;
+  void inside(std::int32_t i, std::int32_t j, const Corners& z, SphereSearch search) noexcept;
   void twisted(std::int32_t i, std::int32_t j) noexcept;
   void rims(std::int32_t i, std::int32_t j) noexcept;
 

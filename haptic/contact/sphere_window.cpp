@@ -102,23 +102,23 @@ void SphereWindow::markRims() noexcept {
     for (std::int32_t i = 0; i < columns_; ++i) there |= std::uint64_t{std::isnan(z[i]) ? 0U : 1U} << i;
     return there;
   };
-  std::array<std::uint64_t, kMostSide + 2> whole{};  // cells of row j at j + 1; none beyond the window
+  cells_.fill(0);
   for (std::uint64_t j = 0, before = samplesOf(0); j + 1 < static_cast<std::uint64_t>(rows_); ++j) {
     const std::uint64_t after = samplesOf(static_cast<std::int32_t>(j) + 1);
-    whole[j + 1] = before & before >> 1 & after & after >> 1;
+    cells_[j + 1] = before & before >> 1 & after & after >> 1;
     before = after;
   }
   std::fill_n(bounds_.rim.begin(), columns_ * rows_, std::uint8_t{0});
   const std::uint64_t all = (std::uint64_t{1} << (columns_ - 1)) - 1;
   for (std::int32_t j = 0; j + 1 < rows_; ++j) {
     const auto at = static_cast<std::size_t>(j) + 1;
-    const std::uint64_t column = whole[at - 1] & whole[at] & whole[at + 1];
+    const std::uint64_t column = cells_[at - 1] & cells_[at] & cells_[at + 1];
     const std::uint64_t inner = column & column << 1 & column >> 1;
     for (std::uint64_t left = all & ~inner; left != 0; left &= left - 1) {
       const std::int32_t i = std::countr_zero(left);
       rim(i, j) = 1;
       // It has walls below its plane; only its highest sample bounds them.
-      if ((whole[at] >> i & 1U) != 0) bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
+      if ((cells_[at] >> i & 1U) != 0) bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
     }
   }
 }
@@ -129,9 +129,7 @@ bool SphereWindow::holds(const glm::dvec3& centre) const noexcept {
 
 bool SphereWindow::valid(std::int32_t i, std::int32_t j) const noexcept {
   if (i < 0 || j < 0 || i + 1 >= columns_ || j + 1 >= rows_) return false;
-  if (whole_) return true;
-  const Corners z = corners(i, j);
-  return !std::isnan(z.z00 + z.z10 + z.z01 + z.z11);
+  return whole_ || (cells_[static_cast<std::size_t>(j) + 1] >> i & 1U) != 0;
 }
 
 bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcept {
@@ -319,7 +317,8 @@ void SphereWindow::contactsCellByCell(const glm::dvec3& centre, double reach_mm,
       const double after = std::max(low[i + 1], high[i + 1]);
       const double gap = std::max(centre.z - std::max(before, after), 0.0);
       before = after;
-      if (gap * gap + dx2[static_cast<std::size_t>(i)] < left) collector.cell(i, j);
+      if (gap * gap + dx2[static_cast<std::size_t>(i)] < left)
+        collector.cell(i, j, SphereSearch::kCellByCell);
     }
   }
 }

@@ -147,6 +147,8 @@ class SphereWindow {
   double low_x_ = 0.0, high_x_ = 0.0, low_y_ = 0.0, high_y_ = 0.0;  // centres it holds [mm]
   double highest_ = 0.0;
   bool whole_ = false;  // no NaN in it
+  // Otherwise its cells without a hole, a bit per column: row j at j + 1, and none beyond the window.
+  std::array<std::uint64_t, kMostSide + 2> cells_{};
   bool boundable_ = false;
   bool has_steep_cells_ = false;
   LaneBounds bounds_;
