@@ -228,15 +228,15 @@ TEST_F(DevicePage, another_device_is_chosen_in_the_panel_and_gives_no_force_unti
     user.tap(title);
   };
   choose(mouse + ", no force", "Force Dimension");
-  const State chosen = program->until("the other device", [&](const State& s) {
+  const State omega = program->until("the other device", [&](const State& s) {
     return s["device"] != mouse && s["connected"] == true && s["settled"] == true;
   });
-  EXPECT_EQ(chosen["safety"], "uncalibrated") << "nobody has armed it";
-  EXPECT_NE(chosen["notices"].dump().find("is the"), std::string::npos) << chosen["notices"];
+  EXPECT_EQ(omega["safety"], "uncalibrated") << "nobody has armed it";
+  EXPECT_NE(omega["notices"].dump().find("is the"), std::string::npos) << omega["notices"];
   (void)user.look("another device");
   (void)user.press("a");
   program->until("armed", [](const State& s) { return s["safety"] == "active" || s["safety"] == "ramping"; });
-  choose(chosen["device"], "mouse as a stylus");
+  choose(omega["device"], "mouse as a stylus");
   program->until("the mouse", [&](const State& s) { return s["device"] == mouse && s["settled"] == true; });
   (void)user.key("7");
   (void)user.key("s");

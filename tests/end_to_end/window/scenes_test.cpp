@@ -86,13 +86,6 @@ TEST_F(ScenesTest, effects_show_their_numbers_and_a_problem_stands_beside_the_va
   });
   EXPECT_EQ(refused["scene_numbers"]["friction.stiffness_n_per_mm"], 1.0) << "what was there stays";
   EXPECT_EQ(user.enter("grip", "6")["scene_numbers"]["friction.stiffness_n_per_mm"], 6.0);
-  // Words are chosen from a list.
-  (void)user.click("texture");
-  user.tap("noise");
-  program->until("the list",
-                 [](const State& s) { return s["texts"].dump().find("\"grating\"") != std::string::npos; });
-  (void)user.click("grating");
-  EXPECT_FALSE(user.readsScrolled("noise"));
   (void)user.click("viscosity");
   EXPECT_TRUE(user.readsScrolled("speed filter"));
   (void)user.look("viscosity");
