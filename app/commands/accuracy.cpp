@@ -9,10 +9,10 @@
 
 #include "app/commands/accuracy_page/page.h"
 #include "app/commands/command.h"
-#include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
+#include "app/plots/gnuplot.h"
 #include "bench/accuracy/studies.h"
 #include "bench/machine.h"
 #include "engine/io/files/atomic_file.h"

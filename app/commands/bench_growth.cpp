@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/plots/gnuplot.h"
+#include "app/plots/gnuplot.h"
 #include "bench/growth_bench.h"
 #include "engine/io/files/atomic_file.h"
 

@@ -7,18 +7,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
-#include "app/commands/fit_files.h"
-#include "app/commands/layer_over.h"
+#include "app/commands/fit_text.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_options.h"
-#include "app/commands/step_file.h"
 #include "app/terminal.h"
+#include "app/work/field_fits.h"
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
@@ -26,8 +24,6 @@
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/measure/fit_choice.h"
-#include "engine/measure/fit_relation.h"
 
 namespace fettle::app {
 
@@ -121,21 +117,6 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
   return chosen;
 }
 
-// The best of the shapes may be none.
-void warnOfOtherShape(const FittedRegion& fitted, double noise_mm) {
-  constexpr double kUnlike = 3.0;
-  const engine::ShapeFit& found = fitted.chosen.fit;
-  // Of a scan without noise its rounding is left.
-  const double rounding = std::numeric_limits<float>::epsilon() * glm::length(found.middle);
-  const double times = found.rms_mm / std::max(noise_mm, rounding);
-  if (!(times > kUnlike)) return;
-  warn(
-      fmt::format("region {}: the samples lie {:.0f} times their noise off the {}, so it is another shape, "
-                  "or several, and "
-                  "the errors say little: divide it by edge lines, or look at --residuals",
-                  fitted.number, times, engine::infoOf(found.shape.kind).word));
-}
-
 // As if the samples of all regions were those of one.
 engine::Result<Foreseen> foreseeFit(const FitArguments& options, const engine::Version& field,
                                     const std::vector<engine::FitRegion>& regions,
@@ -198,40 +179,14 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
   auto foreseen = foreseeFit(options, *field, *regions, kinds, how, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
-  Report report{{"noise_mm", std::isnan(how.noise_mm) ? Report() : Report(how.noise_mm)},
-                {"distance", options.distance},
-                {"robust", options.robust},
-                {"fits", Report::array()},
-                {"not_fitted", Report::array()}};
-  addLayer(report, *field);
-  std::vector<FittedRegion> fitted;
-  for (std::size_t k = 0; k < regions->size(); ++k) {
-    engine::FitRegion& region = (*regions)[k];
-    const int number = static_cast<int>(k) + 1;
-    auto chosen = engine::fitBestShape(*field, region, kinds, how, job);
-    if (chosen) {
-      fitted.push_back({number, std::move(region), *std::move(chosen)});
-      report["fits"].push_back(fitReport(fitted.back()));
-      warnOfOtherShape(fitted.back(), how.noise_mm);
-      continue;
-    }
-    if (chosen.error().kind != engine::ErrorKind::kInput || regions->size() == 1)
-      return tl::unexpected(chosen.error());
-    report["not_fitted"].push_back(
-        {{"region", number}, {"samples", region.samples}, {"reason", chosen.error().what}});
-  }
-  if (!options.between.empty()) {
-    const FittedRegion* both[2] = {nullptr, nullptr};
-    for (const FittedRegion& one : fitted)
-      for (std::size_t k = 0; k < 2; ++k)
-        if (one.number == options.between[k]) both[k] = &one;
-    for (std::size_t k = 0; k < 2; ++k)
-      if (both[k] == nullptr)
-        return engine::inputError(fmt::format("region {} has no fit", options.between[k]), "--between",
-                                  "name two numbers of the list of fits");
-    report["between"] = relationReport(both[0]->number, both[1]->number,
-                                       engine::relationOf(both[0]->chosen.fit, both[1]->chosen.fit));
-  }
+  auto fits = fitEach(*field, *std::move(regions), kinds, how, job);
+  if (!fits) return tl::unexpected(fits.error());
+  for (const std::string& warning : fits->warnings) warn(warning);
+  if (!options.between.empty())
+    if (auto status = addRelation(*fits, options.between[0], options.between[1]); !status)
+      return tl::unexpected(status.error());
+  const std::vector<FittedRegion>& fitted = fits->fitted;
+  Report& report = fits->report;
   if (!options.residuals.empty()) {
     const auto map = residualField(*field, fitted, how.vertical, job);
     if (!map) return tl::unexpected(map.error());
@@ -241,24 +196,16 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
       return tl::unexpected(status.error());
     report["residuals"] = options.residuals;
   }
-  if (!options.step.empty()) {
-    std::vector<BoundedShape> faces;
-    for (const FittedRegion& one : fitted) {
-      const std::string name =
-          fmt::format("region {}: {}", one.number, engine::infoOf(one.chosen.fit.shape.kind).word);
-      for (BoundedShape& face : boundedBy(name, one.chosen.fit.shape, engine::FitSamples(*field, one.region)))
-        faces.push_back(std::move(face));
-    }
-    if (auto status = engine::writeFileAtomically(options.step, stepFile("fettle fit", faces)); !status)
+  if (!options.step.empty())
+    if (auto status = engine::writeFileAtomically(options.step, fitStep(*field, fitted)); !status)
       return tl::unexpected(status.error());
-  }
   if (!options.csv.empty())
     if (auto status = writeTo(
             options.csv, ".csv", job,
             [&](const std::string& path) { return engine::writeFileAtomically(path, fitCsv(report)); });
         !status)
       return tl::unexpected(status.error());
-  return report;
+  return std::move(report);
 }
 
 std::vector<Word> shapeWords() {

@@ -13,9 +13,9 @@
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
-#include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/plots/gnuplot.h"
 #include "app/work/streams.h"
 #include "engine/base/error.h"
 #include "engine/edges/edge_profile.h"

@@ -10,11 +10,11 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/layer_over.h"
-#include "app/commands/plots/gnuplot.h"
-#include "app/commands/section_files.h"
 #include "app/commands/section_options.h"
+#include "app/plots/gnuplot.h"
+#include "app/work/layer_over.h"
 #include "app/work/read_units.h"
+#include "app/work/section_files.h"
 #include "app/work/section_report.h"
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"

@@ -7,24 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/plots/gnuplot.h"
+#include "app/plots/gnuplot.h"
+#include "app/work/interpolation_words.h"
 
 namespace fettle::app {
 
 namespace {
 
-struct KnownInterpolation {
-  engine::Interpolation interpolation;
-  const char* word;
-  const char* text;
-};
-constexpr KnownInterpolation kInterpolations[] = {
-    {engine::Interpolation::kBilinear, "bilinear", "of the four samples around; none next to a hole"},
-    {engine::Interpolation::kNearest, "nearest", "of the nearest sample"}};
-
-std::vector<Word> interpolationWords() {
+std::vector<Word> wordsOfInterpolation() {
   std::vector<Word> words;
-  for (const KnownInterpolation& known : kInterpolations) words.emplace_back(known.word, known.text);
+  for (const InterpolationWord& known : interpolationWords()) words.emplace_back(known.word, known.text);
   return words;
 }
 
@@ -88,18 +80,6 @@ engine::Status checkSectionWords(const SectionArguments& options) {
   return options.plot.empty() ? engine::Status() : plotsCanBeMade();
 }
 
-engine::Interpolation interpolationNamed(const std::string& word) {
-  for (const KnownInterpolation& known : kInterpolations)
-    if (word == known.word) return known.interpolation;
-  return kInterpolations[0].interpolation;
-}
-
-const char* interpolationWord(engine::Interpolation interpolation) noexcept {
-  for (const KnownInterpolation& known : kInterpolations)
-    if (known.interpolation == interpolation) return known.word;
-  return "";
-}
-
 void addLineOptions(Command command, SectionArguments& options) {
   command.add({{.name = "--start",
                 .to = &options.from,
@@ -134,7 +114,7 @@ void addLineOptions(Command command, SectionArguments& options) {
                {.name = "--interpolation",
                 .to = &options.interpolation,
                 .text = "Heights between samples",
-                .words = interpolationWords()},
+                .words = wordsOfInterpolation()},
                {.name = "--region",
                 .to = &options.region,
                 .text = "The samples that count; others are holes",

@@ -40,10 +40,6 @@ struct SectionArguments : SectionWants {
 void addLineOptions(Command command, SectionArguments& options);
 void addFigureOptions(Command command, SectionArguments& options);
 
-/// What --interpolation means, and the word of it: "bilinear", "nearest".
-[[nodiscard]] engine::Interpolation interpolationNamed(const std::string& word);
-[[nodiscard]] const char* interpolationWord(engine::Interpolation interpolation) noexcept;
-
 /// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);
 

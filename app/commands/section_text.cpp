@@ -5,11 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/layer_over.h"
-#include "app/commands/section_files.h"
 #include "app/commands/section_options.h"
 #include "app/work/estimate_text.h"
+#include "app/work/interpolation_words.h"
+#include "app/work/layer_over.h"
 #include "app/work/read_units.h"
+#include "app/work/section_files.h"
 #include "app/work/section_lines.h"
 
 namespace fettle::app {

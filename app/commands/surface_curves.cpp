@@ -9,8 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/plots/gnuplot.h"
 #include "app/commands/surface_plots.h"
+#include "app/plots/gnuplot.h"
+#include "app/work/surface_numbers.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/profile_spectrum.h"
 

@@ -5,19 +5,18 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
-#include "app/commands/plots/gnuplot.h"
+#include "app/plots/gnuplot.h"
 #include "app/work/read_units.h"
+#include "app/work/surface_numbers.h"
 #include "engine/measure/profile_spectrum.h"
 
 namespace fettle::app {
 
 namespace {
 
-constexpr int kRatioSteps = 400;
 constexpr const char* kBeneath = "#a6cfe8";  // of the first of several states: the first colour, lighter
 
 // A thin broken line with its name: across the graph at height y, or from its lower to its upper side at x.
@@ -64,41 +63,6 @@ std::string titled(const PlottedState& state, const std::string& curve) {
 
 }  // namespace
 
-std::vector<double> curveRatios() {
-  std::vector<double> ratios;
-  for (int i = 0; i <= kRatioSteps; ++i) ratios.push_back(static_cast<double>(i) / kRatioSteps);
-  return ratios;
-}
-
-std::span<const double> curveHeights(const engine::ArealParameters& measured) {
-  return std::span(measured.heights).last(kRatioSteps + 1);
-}
-
-double decayStepMm(const engine::SpatialAnalysis& analysis) {
-  return std::min(analysis.correlation.spacing_x, analysis.correlation.spacing_y);
-}
-
-std::vector<DecayCurve> decayCurves(const engine::SpatialAnalysis& analysis) {
-  const double step_mm = decayStepMm(analysis);
-  const engine::SpatialParameters& found = analysis.parameters;
-  std::vector<DecayCurve> curves;
-  if (std::isnan(found.sal_direction) || std::isnan(found.slow_direction))
-    curves = {{"along x", 0.0, {}}, {"along y", 90.0, {}}};
-  else
-    curves = {{"fastest", found.sal_direction, {}}, {"slowest", found.slow_direction, {}}};
-  for (DecayCurve& curve : curves) {
-    const double angle = curve.degrees * std::numbers::pi / 180.0;
-    for (std::size_t i = 0;; ++i) {
-      const double distance = static_cast<double>(i) * step_mm;
-      const double value =
-          analysis.correlation.valueAt(distance * std::cos(angle), distance * std::sin(angle));
-      if (std::isnan(value)) break;
-      curve.values.push_back(value);
-    }
-  }
-  return curves;
-}
-
 std::string abbottPlot(std::span<const PlottedState> states, const engine::Grid& grid) {
   const engine::ArealParameters& first = *states.front().measured;
   const ReadAs height = readLengthAs(first.sq, grid.height_unit.mm, grid.height_unit.name);
@@ -110,7 +74,7 @@ std::string abbottPlot(std::span<const PlottedState> states, const engine::Grid&
   for (const PlottedState& state : states) {
     const std::span<const double> heights = curveHeights(*state.measured);
     high = std::max(high, heights[1]);
-    low = std::min(low, heights[kRatioSteps - 1]);
+    low = std::min(low, heights[heights.size() - 2]);
     highest = std::max(highest, heights.front());
     lowest = std::min(lowest, heights.back());
   }

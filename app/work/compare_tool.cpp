@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/work/estimate_text.h"
+#include "app/work/less_distances.h"
 #include "app/work/read_units.h"
 #include "engine/compare/compare.h"
 #include "engine/field/difference.h"
@@ -21,6 +22,15 @@ namespace {
 
 constexpr engine::AlignMoves kMovesOf[] = {
     {true, true, true}, {true, true, false}, {true, false, false}, {false, false, true}};
+
+// None: the other stays where it is.
+std::optional<engine::AlignOptions> alignOptionsOf(const CompareTool::Options& what) {
+  if (what.moves == CompareTool::Moves::kNone) return std::nullopt;
+  engine::AlignOptions how;
+  how.moves = kMovesOf[static_cast<std::size_t>(what.moves)];
+  how.region = what.region;
+  return how;
+}
 
 std::string figureLine(const char* name, double value, double error, double scale, const std::string& unit) {
   if (!(error > 0.0)) return fmt::format("{} {:.4g} {}, not free", name, value * scale, unit);
@@ -47,6 +57,14 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
   lines.push_back(fmt::format("deviation: rms {:.4g}, mean {:.4g}, largest {:.4g} {}, {} samples",
                               compared.rms_mm / height.size, compared.mean_mm / height.size,
                               compared.most_mm / height.size, height.name, compared.samples));
+  if (compared.tolerated) {
+    const auto& [within, above, below] = *compared.tolerated;
+    const ReadAs as = readOnScreenAs(compared.tolerance_mm, 1.0, "mm");
+    lines.push_back(fmt::format(
+        "within {:.4g} {}: {:.4g} % ({}), above {}, below {}", compared.tolerance_mm / as.size, as.name,
+        100.0 * static_cast<double>(within) / static_cast<double>(compared.samples), within, above, below));
+  }
+  lines.insert(lines.end(), compared.remarks.begin(), compared.remarks.end());
   if (compared.restored) lines.emplace_back("heights count with the form that was taken out");
   return lines;
 }
@@ -57,45 +75,78 @@ void CompareTool::compareWith(const LoopClient& client, std::string path, const 
   reading_ = reading;
   following_ = false;
   working_.start([field = client.newest(), path = std::move(path), reading = reading_,
-                  what = options](engine::JobControl& job) -> engine::Result<Work> {
-    const auto import = importOptions(reading);
-    if (!import) return tl::unexpected(import.error());
-    const auto other = engine::importField(path, *import, job);
-    if (!other) return tl::unexpected(other.error());
-    // Both as they were measured: one may be seen without a form that the other still has.
-    const auto samples = engine::withoutLayer(field, job);
-    if (!samples) return tl::unexpected(samples.error());
-    const auto others = engine::withoutLayer(other->field, job);
-    if (!others) return tl::unexpected(others.error());
-    Work work;
-    work.samples = *samples;
-    work.compared.path = path;
-    work.compared.restored = field.formOver() != nullptr || other->field.formOver() != nullptr;
-    engine::RigidMotion motion;
-    if (what.moves != Moves::kNone) {
-      engine::AlignOptions how;
-      how.moves = kMovesOf[static_cast<std::size_t>(what.moves)];
-      how.region = what.region;
-      const auto found = engine::alignFields(*samples, *others, how, job);
-      if (!found) return tl::unexpected(found.error());
-      motion = found->motion;
-      work.compared.alignment = *found;
-    }
-    auto moved = engine::movedOnto(*others, motion, samples->grid(), job);
-    if (!moved) return tl::unexpected(moved.error());
-    const auto deviation = engine::compareFields(*moved, *samples, job);
-    if (!deviation) return tl::unexpected(deviation.error());
-    if (deviation->samples == 0)
-      return engine::inputError("nothing of it lies over the field", path, "let it be moved: choose all");
-    const double mm = samples->grid().height_unit.mm;
-    work.compared.rms_mm = deviation->rms * mm;
-    work.compared.mean_mm = deviation->mean * mm;
-    work.compared.most_mm = deviation->max_abs * mm;
-    work.compared.samples = deviation->samples;
-    work.compared.moved = *std::move(moved);
-    if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
-    return work;
+                  what = options](engine::JobControl& job) {
+    return isNominalFile(path) ? withMesh(field, path, what, job) : withScan(field, path, reading, what, job);
   });
+}
+
+engine::Result<CompareTool::Work> CompareTool::withScan(const engine::Version& field, const std::string& path,
+                                                        const ScanOptions& reading, const Options& what,
+                                                        engine::JobControl& job) {
+  const auto import = importOptions(reading);
+  if (!import) return tl::unexpected(import.error());
+  const auto other = engine::importField(path, *import, job);
+  if (!other) return tl::unexpected(other.error());
+  // Both as they were measured: one may be seen without a form that the other still has.
+  const auto samples = engine::withoutLayer(field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  const auto others = engine::withoutLayer(other->field, job);
+  if (!others) return tl::unexpected(others.error());
+  Work work;
+  work.samples = *samples;
+  work.compared.path = path;
+  work.compared.restored = field.formOver() != nullptr || other->field.formOver() != nullptr;
+  engine::RigidMotion motion;
+  if (const auto how = alignOptionsOf(what)) {
+    const auto found = engine::alignFields(*samples, *others, *how, job);
+    if (!found) return tl::unexpected(found.error());
+    motion = found->motion;
+    work.compared.alignment = *found;
+  }
+  auto moved = engine::movedOnto(*others, motion, samples->grid(), job);
+  if (!moved) return tl::unexpected(moved.error());
+  const auto deviation = engine::compareFields(*moved, *samples, job);
+  if (!deviation) return tl::unexpected(deviation.error());
+  if (deviation->samples == 0)
+    return engine::inputError("nothing of it lies over the field", path, "let it be moved: choose all");
+  const double mm = samples->grid().height_unit.mm;
+  work.compared.rms_mm = deviation->rms * mm;
+  work.compared.mean_mm = deviation->mean * mm;
+  work.compared.most_mm = deviation->max_abs * mm;
+  work.compared.samples = deviation->samples;
+  work.compared.moved = *std::move(moved);
+  if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
+  return work;
+}
+
+engine::Result<CompareTool::Work> CompareTool::withMesh(const engine::Version& field, const std::string& path,
+                                                        const Options& what, engine::JobControl& job) {
+  const auto samples = engine::withoutLayer(field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  const auto found = compareWithNominal(*samples, path, what.nominal, alignOptionsOf(what), job);
+  if (!found) return tl::unexpected(found.error());
+  auto moved = lessDistances(*samples, found->deviation.field, job);
+  if (!moved) return tl::unexpected(moved.error());
+  const engine::NominalDeviation& deviation = found->deviation;
+  const double mm = samples->grid().height_unit.mm;
+  Work work;
+  work.samples = *samples;
+  Compared& compared = work.compared;
+  compared.path = path;
+  compared.restored = field.formOver() != nullptr;
+  compared.alignment = found->alignment;
+  compared.rms_mm = deviation.rms * mm;
+  compared.mean_mm = deviation.mean * mm;
+  compared.most_mm = deviation.max_abs * mm;
+  compared.samples = deviation.samples;
+  compared.remarks = found->remarks;
+  compared.moved = *std::move(moved);
+  if (what.nominal.tolerance > 0.0) {
+    compared.tolerated = {deviation.within, deviation.above, deviation.below};
+    compared.tolerance_mm = what.nominal.tolerance * mm;
+  }
+  if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
+  return work;
 }
 
 engine::Status CompareTool::see(Work& work, const engine::Version& field, engine::JobControl& job) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,12 +8,13 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/nominal_compare.h"
 #include "app/work/scan_reading.h"
 #include "engine/measure/align.h"
 
 namespace fettle::app {
 
-/// Another scan beside the field that is worked on: brought onto it, as `fettle align` does, and what the field deviates from it. The field stays
+/// Another scan, or a nominal mesh, beside the field that is worked on: brought onto it, as `fettle align` does, and what the field deviates from it. The field stays
 /// as it is, so that this is no step; it is worked out in the background while the hand goes on. A form over either of them
 /// counts: both are compared as they were measured. Threading: main.
 class CompareTool {
@@ -23,6 +25,7 @@ class CompareTool {
   struct Options {
     Moves moves = Moves::kAll;
     engine::Region region = engine::Region::kAll;  ///< samples of the field that count
+    NominalChoice nominal;                         ///< of a mesh
   };
   Options options;
   bool shown = true;  ///< colours are the deviation from it
@@ -36,6 +39,10 @@ class CompareTool {
     std::optional<engine::Alignment> alignment;         ///< none: it was not moved
     double rms_mm = 0.0, mean_mm = 0.0, most_mm = 0.0;  ///< of the field less the other
     std::int64_t samples = 0;                           ///< that both have
+    /// Of a mesh: within, above and below the tolerance, where there is one.
+    std::optional<std::array<std::int64_t, 3>> tolerated;
+    double tolerance_mm = 0.0;
+    std::vector<std::string> remarks;  ///< on a mesh
   };
 
   /// Reads a scan and brings it onto the newest field. One of which nothing lies over the field is refused by a notice of poll().
@@ -66,6 +73,11 @@ class CompareTool {
     engine::Version samples;  // of the field, without a form
     engine::Version seen;     // the field itself
   };
+  [[nodiscard]] static engine::Result<Work> withScan(const engine::Version& field, const std::string& path,
+                                                     const ScanOptions& reading, const Options& what,
+                                                     engine::JobControl& job);
+  [[nodiscard]] static engine::Result<Work> withMesh(const engine::Version& field, const std::string& path,
+                                                     const Options& what, engine::JobControl& job);
   [[nodiscard]] static engine::Status see(Work& work, const engine::Version& field, engine::JobControl& job);
   void followForm(const LoopClient& client);
 

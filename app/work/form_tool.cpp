@@ -20,9 +20,13 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                                                             : "mark samples, or fit by all of them";
     return tl::unexpected(error);
   }
-  return FormTool::Fit{options,      std::make_shared<const engine::NominalForm>(fit->form),
-                       fit->samples, fit->rms,
-                       fit->decided, fit->beyond};
+  return FormTool::Fit{options,
+                       std::make_shared<const engine::NominalForm>(fit->form),
+                       fit->samples,
+                       fit->rms,
+                       fit->decided,
+                       fit->beyond,
+                       engine::tiltOf(*fit, field.grid())};
 }
 
 }  // namespace

@@ -26,9 +26,10 @@ class FormTool {
     engine::FormChoice options;
     engine::FieldForm form;
     std::int64_t samples = 0;
-    double rms = 0.0;         ///< [height_unit]
-    bool decided = true;      ///< false: so few samples do not determine the form
-    std::int64_t beyond = 0;  ///< samples that count beyond the outline of a shape
+    double rms = 0.0;                       ///< [height_unit]
+    bool decided = true;                    ///< false: so few samples do not determine the form
+    std::int64_t beyond = 0;                ///< samples that count beyond the outline of a shape
+    std::optional<engine::Tilt> tilt = {};  ///< of a polynomial; with errors of a plane through three points
   };
 
   /// A form before it is taken out: what is seen less `surface` is what would be seen without it. Nothing else changes.

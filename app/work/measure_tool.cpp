@@ -54,8 +54,10 @@ engine::Result<engine::Version> withMarksOf(const engine::Version& field, const 
       job);
 }
 
+enum class Curves : std::uint8_t { kWithout, kWith };
+
 engine::Result<engine::ArealParameters> parametersOf(const engine::Version& field,
-                                                     const MeasureTool::Options& options,
+                                                     const MeasureTool::Options& options, Curves curves,
                                                      engine::JobControl& job) {
   const engine::Region region = regionOf(options.where);
   const auto fit =
@@ -63,27 +65,38 @@ engine::Result<engine::ArealParameters> parametersOf(const engine::Version& fiel
   if (!fit) return tl::unexpected(fit.error());
   engine::ArealOptions areal;
   areal.region = region;
+  if (curves == Curves::kWith) {
+    areal.at_ratios = curveRatios();
+    areal.analysis = true;
+  }
   return engine::measureAreal(field, fit->form, areal, job);
 }
 
-// The report of one state, as `fettle measure` makes it.
-engine::Result<Report> measuredState(const engine::Version& field, const MeasureTool::Options& options,
-                                     engine::JobControl& job) {
-  const auto measured = parametersOf(field, options, job);
+struct MeasuredState {
+  Report report;  // as `fettle measure` makes it
+  SurfaceCurves curves;
+};
+
+engine::Result<MeasuredState> measuredState(const engine::Version& field, const MeasureTool::Options& options,
+                                            engine::JobControl& job) {
+  auto measured = parametersOf(field, options, Curves::kWith, job);
   if (!measured) return tl::unexpected(measured.error());
-  Report report;
-  addAreal(report, *measured, {}, field.grid());
-  if (!options.noise) return report;
+  MeasuredState state{Report(), curvesOf(*measured, field.grid())};
+  // The noise says nothing of the curves, whose autocorrelation is as large as the field.
+  measured->heights.clear();
+  measured->analysis.reset();
+  addAreal(state.report, *measured, {}, field.grid());
+  if (!options.noise) return state;
   const auto noise = engine::measureNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
-  if (!(noise->sigma >= 0.0)) return report;
+  if (!(noise->sigma >= 0.0)) return state;
   auto effects = engine::arealEffects(
       field, *noise, *measured,
-      [&](const engine::Version& noisy) { return parametersOf(noisy, options, job); }, {.pairs = kNoisePairs},
-      job);
+      [&](const engine::Version& noisy) { return parametersOf(noisy, options, Curves::kWithout, job); },
+      {.pairs = kNoisePairs}, job);
   if (!effects) return tl::unexpected(effects.error());
-  addNoise(report, {noise->sigma, 2 * kNoisePairs, *std::move(effects)}, field.grid());
-  return report;
+  addNoise(state.report, {noise->sigma, 2 * kNoisePairs, *std::move(effects)}, field.grid());
+  return state;
 }
 
 }  // namespace
@@ -112,20 +125,22 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     }
     std::vector<Report> reports;
     if (work.figures.before) {
-      auto report = measuredState(before, what, job);
-      if (!report) return tl::unexpected(report.error());
-      reports.push_back(*std::move(report));
+      auto state = measuredState(before, what, job);
+      if (!state) return tl::unexpected(state.error());
+      reports.push_back(std::move(state->report));
+      work.figures.curves.push_back(std::move(state->curves));
     }
-    auto report = measuredState(after, what, job);
-    if (!report) {
-      engine::Error error = report.error();
+    auto state = measuredState(after, what, job);
+    if (!state) {
+      engine::Error error = state.error();
       if (error.kind == engine::ErrorKind::kInput)
         error.remedy =
             what.where == Where::kAll ? "every sample is a hole" : "mark samples, or measure all of them";
       return tl::unexpected(error);
     }
-    work.figures.samples = (*report)["samples"].get<std::int64_t>();
-    reports.push_back(*std::move(report));
+    work.figures.samples = state->report["samples"].get<std::int64_t>();
+    reports.push_back(std::move(state->report));
+    work.figures.curves.push_back(std::move(state->curves));
     work.figures.lines = arealLines(reports);
     return work;
   });

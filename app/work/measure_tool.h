@@ -7,6 +7,7 @@
 #include "app/work/areal_table.h"
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/surface_numbers.h"
 #include "engine/field/sample_rect.h"
 
 namespace fettle::app {
@@ -25,6 +26,9 @@ class MeasureTool {
     bool noise = false;  ///< figures without noise, by 16 trials
   };
   Options options;
+  /// The curve that the panel shows.
+  enum class Curve : std::uint8_t { kAbbott, kDecay, kSpectrum };
+  Curve curve = Curve::kAbbott;
 
   struct Figures {
     Options options;
@@ -32,6 +36,7 @@ class MeasureTool {
     std::vector<ArealLine>
         lines;            ///< a value for the scan, unless nothing differs from it, and one for the field
     bool before = false;  ///< whether lines have the scan's
+    std::vector<SurfaceCurves> curves;  ///< one for each value of the lines
   };
 
   /// Measures `options` on the newest field; `seen`: the rectangle that is visible. One that is empty is refused by a notice of poll().

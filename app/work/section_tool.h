@@ -34,6 +34,13 @@ class SectionTool {
     Report report;  ///< of sectionFigures() of the field, those that there are
   };
 
+  /// What of them is written to a file.
+  struct Exporting {
+    bool chosen_alone = false;
+    bool with_scan = false;  ///< profiles of the scan it began with, too, where the field differs from it
+  };
+  Exporting exporting;  ///< edited by the dialog
+
   /// Sets an end of the chosen section; the other one stays, or is the same point where there was none.
   void setFrom(const glm::dvec2& mm);
   void setTo(const glm::dvec2& mm);

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/plots/gnuplot.h"
 #include "app/pages/html.h"
+#include "app/plots/gnuplot.h"
 
 namespace fettle::app {
 

@@ -119,5 +119,32 @@ TEST_F(CompareToolTest, the_other_scan_follows_a_form_that_goes_and_comes) {
   EXPECT_TRUE(bench.notices().empty());
 }
 
+// A mesh of the same part, 0.02 mm above it: as `fettle compare` has it.
+TEST_F(CompareToolTest, a_nominal_mesh_is_compared_as_a_scan) {
+  const std::string mesh = folder.file("nominal.stl");
+  engine::JobControl job;
+  ASSERT_TRUE(engine::exportField(slopedField(0.02), mesh, {}, job));
+  tool.options.moves = CompareTool::Moves::kNone;
+  tool.options.nominal.tolerance = 0.01;
+  tool.compareWith(bench.client(), mesh, {});
+  ASSERT_TRUE(rest());
+  ASSERT_TRUE(tool.compared()) << (bench.notices().empty() ? "" : bench.notices().back().what);
+  // Of the corners of the mesh, which are samples; an STL rounds them to float as well.
+  EXPECT_NEAR(tool.compared()->mean_mm, -0.02, kRounding);
+  EXPECT_NEAR(mostSeen(), 0.02, 2.0 * kRounding);
+  ASSERT_TRUE(tool.compared()->tolerated);
+  EXPECT_EQ(tool.compared()->tolerated->at(0), 0);
+  EXPECT_EQ(tool.compared()->tolerated->at(2), tool.compared()->samples) << "all lie below it";
+  EXPECT_FALSE(tool.outdated());
+
+  tool.options.nominal.tolerance = 0.03;
+  tool.options.nominal.shortest = true;
+  tool.again(bench.client());
+  ASSERT_TRUE(rest());
+  // On a slope of 2.5 the nearest place is nearer than the one above.
+  EXPECT_LT(tool.compared()->most_mm, 0.02);
+  EXPECT_EQ(tool.compared()->tolerated->at(0), tool.compared()->samples);
+}
+
 }  // namespace
 }  // namespace fettle::app

@@ -1,4 +1,4 @@
-#include "app/commands/plots/gnuplot.h"
+#include "app/plots/gnuplot.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,17 +1,16 @@
-#include "app/commands/layer_over.h"
+#include "app/work/layer_over.h"
 
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "app/commands/form_option.h"
-#include "engine/field/nominal_form.h"
+#include "engine/measure/form_kind.h"
 
 namespace fettle::app {
 
 std::string layerOver(const engine::Version& field) {
   const engine::FieldForm& form = field.formOver();
-  return form == nullptr ? std::string() : formWordOf(*form);
+  return form == nullptr ? std::string() : std::string(engine::infoOf(*form).word);
 }
 
 void addLayer(Report& report, const engine::Version& field, const char* key) {

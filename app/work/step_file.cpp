@@ -1,4 +1,4 @@
-#include "app/commands/step_file.h"
+#include "app/work/step_file.h"
 
 #include <algorithm>
 #include <array>

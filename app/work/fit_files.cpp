@@ -1,16 +1,18 @@
-#include "app/commands/fit_files.h"
+#include "app/work/fit_files.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
-#include "app/commands/layer_over.h"
 #include "app/work/estimate_text.h"
+#include "app/work/layer_over.h"
 #include "app/work/read_units.h"
 #include "engine/field/builder.h"
 
@@ -118,60 +120,58 @@ Report relationReport(int first, int second, const engine::ShapeRelation& relati
   return report;
 }
 
-void printFits(const Report& report) {
-  if (report.contains("text")) return printReport(report);
+std::string fitTitle(const Report& fit) {
+  const double rms = fit["rms_mm"].get<double>();
+  const ReadAs small = readLengthAs(rms, 1.0, "mm");
+  return fmt::format("region {}: {}{}, {} samples, rms {:.4g} {}", fit["region"].get<int>(),
+                     fit.contains("hollow") && fit["hollow"].get<bool>() ? "hollow " : "",
+                     fit["shape"].get<std::string>(), fit["samples"].get<std::int64_t>(), rms / small.size,
+                     small.name);
+}
+
+std::vector<FitLine> fitLines(const Report& fit) {
   const ReadAs degrees{"degrees", 1.0};
-  if (!report["noise_mm"].is_null()) {
-    const double noise = report["noise_mm"].get<double>();
-    const ReadAs as = readLengthAs(noise, 1.0, "mm");
-    fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise / as.size, as.name);
+  const std::string shape = fit["shape"].get<std::string>();
+  std::vector<FitLine> lines;
+  for (const FitFigure& figure : kFitFigures) {
+    const std::string key = fmt::format("{}_{}", figure.key, figure.unit);
+    if (!fit.contains(key)) continue;
+    const ReadAs as =
+        std::string(figure.unit) == "mm" ? readLengthAs(fit[key].get<double>(), 1.0, "mm") : degrees;
+    lines.push_back({figure.title, shownEstimate(fit, figure.key, figure.unit, as)});
   }
-  printLayer(report);
-  for (const Report& fit : report["fits"]) {
-    const std::string shape = fit["shape"].get<std::string>();
-    const double rms = fit["rms_mm"].get<double>();
-    const ReadAs small = readLengthAs(rms, 1.0, "mm");
-    fmt::print("region {}: {}{}, {} samples, rms {:.4g} {}\n", fit["region"].get<int>(),
-               fit.contains("hollow") && fit["hollow"].get<bool>() ? "hollow " : "", shape,
-               fit["samples"].get<std::int64_t>(), rms / small.size, small.name);
-    if (fit["left_out"].get<std::int64_t>() > 0)
-      fmt::print("  {} samples lie apart and do not count\n", fit["left_out"].get<std::int64_t>());
-    for (const FitFigure& figure : kFitFigures) {
-      const std::string key = fmt::format("{}_{}", figure.key, figure.unit);
-      if (!fit.contains(key)) continue;
-      const ReadAs as =
-          std::string(figure.unit) == "mm" ? readLengthAs(fit[key].get<double>(), 1.0, "mm") : degrees;
-      fmt::print("  {:<19} {}\n", figure.title, shownEstimate(fit, figure.key, figure.unit, as));
+  const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double error = fit["point_error_mm"][k].get<double>();
+    // Within a plane the point may lie anywhere, and has next to no error.
+    lines.push_back({fmt::format("{} {}", pointTitle(shape), kAxes[k]),
+                     fmt::format("{} +- {:.2g} {}",
+                                 shownTo(fit["point_mm"][k].get<double>() / place.size,
+                                         std::max(error, 1e-5) / place.size),
+                                 error / place.size, place.name)});
+  }
+  if (fit.contains("direction"))
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double error = fit["direction_error"][k].get<double>();
+      lines.push_back(
+          {fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
+           fmt::format("{} +- {:.2g}", shownTo(fit["direction"][k].get<double>(), error), error)});
     }
-    const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
-    for (std::size_t k = 0; k < 3; ++k)
-      fmt::print("  {:<19} {} +- {:.2g} {}\n", fmt::format("{} {}", pointTitle(shape), kAxes[k]),
-                 // Within a plane the point may lie anywhere, and has next to no error.
-                 shownTo(fit["point_mm"][k].get<double>() / place.size,
-                         std::max(fit["point_error_mm"][k].get<double>(), 1e-5) / place.size),
-                 fit["point_error_mm"][k].get<double>() / place.size, place.name);
-    if (fit.contains("direction"))
-      for (std::size_t k = 0; k < 3; ++k)
-        fmt::print("  {:<19} {} +- {:.2g}\n",
-                   fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
-                   shownTo(fit["direction"][k].get<double>(), fit["direction_error"][k].get<double>()),
-                   fit["direction_error"][k].get<double>());
-  }
-  for (const Report& one : report["not_fitted"])
-    fmt::print("region {}: {} samples, {}\n", one["region"].get<int>(), one["samples"].get<std::int64_t>(),
-               one["reason"].get<std::string>());
-  if (!report.contains("between")) return;
-  const Report& b = report["between"];
-  fmt::print("between {} and {}:\n", b["first"].get<int>(), b["second"].get<int>());
+  return lines;
+}
+
+std::vector<FitLine> relationLines(const Report& between) {
+  std::vector<FitLine> lines;
   for (const auto& [key, unit, title] : {std::tuple("angle", "deg", "angle"),
                                          {"distance", "mm", "distance"},
                                          {"between_axes", "mm", "between axes"}}) {
-    const Report& value = b[fmt::format("{}_{}", key, unit)];
+    const Report& value = between[fmt::format("{}_{}", key, unit)];
     if (value.is_null()) continue;
-    const ReadAs as =
-        std::string(unit) == "mm" ? readLengthAs(std::abs(value.get<double>()), 1.0, "mm") : degrees;
-    fmt::print("  {:<19} {}\n", title, shownEstimate(b, key, unit, as));
+    const ReadAs as = std::string(unit) == "mm" ? readLengthAs(std::abs(value.get<double>()), 1.0, "mm")
+                                                : ReadAs{"degrees", 1.0};
+    lines.push_back({title, shownEstimate(between, key, unit, as)});
   }
+  return lines;
 }
 
 std::string fitCsv(const Report& report) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/command.h"
+#include "app/report.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
@@ -24,8 +24,15 @@ struct FittedRegion {
 /// What lies between two fits as keys of a report.
 [[nodiscard]] Report relationReport(int first, int second, const engine::ShapeRelation& relation);
 
-/// Prints the report of `fettle fit` as text.
-void printFits(const Report& report);
+/// "region 1: hollow cylinder, 1234 samples, rms 0.31 um" of a fitReport().
+[[nodiscard]] std::string fitTitle(const Report& fit);
+/// A figure as text, to two digits of its standard error.
+struct FitLine {
+  std::string name, text;  ///< "radius", "5.02 +- 0.01 mm"
+};
+[[nodiscard]] std::vector<FitLine> fitLines(const Report& fit);
+/// The same of a relationReport(), those that there are.
+[[nodiscard]] std::vector<FitLine> relationLines(const Report& between);
 
 /// A row for each figure: region, shape, figure, value, standard error, unit. Of the report.
 [[nodiscard]] std::string fitCsv(const Report& report);

@@ -1,4 +1,4 @@
-#include "app/commands/section_files.h"
+#include "app/work/section_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/layer_over.h"
-#include "app/commands/plots/gnuplot.h"
-#include "app/commands/section_options.h"
+#include "app/plots/gnuplot.h"
+#include "app/work/interpolation_words.h"
+#include "app/work/layer_over.h"
 #include "app/work/outputs.h"
 #include "app/work/read_units.h"
 #include "engine/io/files/atomic_file.h"

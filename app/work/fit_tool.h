@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/work/background.h"
+#include "app/work/field_fits.h"
+#include "app/work/loop_client.h"
+
+namespace fettle::app {
+
+/// Shapes fitted to the field that is worked on, as `fettle fit` does: to all samples that count, or between its edge lines. The field stays
+/// as it is, so that this is no step; it is worked out in the background while the hand goes on. Threading: main.
+class FitTool {
+ public:
+  /// Edited by the panel.
+  struct Options {
+    std::optional<engine::ShapeKind> shape;        ///< none: the simplest that the samples do not contradict
+    engine::Region region = engine::Region::kAll;  ///< samples that count
+    bool between_lines = true;  ///< where there are edge lines: each region between them by itself
+    bool robust = false;
+    bool vertical = false;  ///< distances along z
+  };
+  Options options;
+  bool shown = true;  ///< colours are the distances from the shapes
+
+  /// Fits `options` to the newest field.
+  void fit(const LoopClient& client);
+  void cancel() noexcept { working_.cancel(); }
+  /// Takes over results. True when something visible changed.
+  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
+
+  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  /// The last fits; null before, and of another document.
+  [[nodiscard]] const FieldFits* fits() const noexcept { return work_ ? &work_->fits : nullptr; }
+  /// The field that they are of.
+  [[nodiscard]] const engine::Version& field() const noexcept { return work_->field; }
+  /// Whether the field has changed since.
+  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  /// What the colours show the difference from: heights less their distances from the shapes, holes where nothing was fitted. Null
+  /// without fits, and where a form lies over the field that did not then.
+  [[nodiscard]] const engine::Version* surface(const engine::Version& field) const noexcept;
+
+  /// The two fits, by their places in the list, between which angle and distance are stated; none: there are not two.
+  [[nodiscard]] const std::optional<std::pair<std::size_t, std::size_t>>& pair() const noexcept {
+    return pair_;
+  }
+  /// Both within the list, and different.
+  void setPair(std::size_t first, std::size_t second);
+  /// Forgets the fits.
+  void clear();
+
+ private:
+  struct Work {
+    engine::Version field;
+    FieldFits fits;
+    engine::Version surface;
+  };
+  std::optional<Work> work_;
+  std::optional<std::pair<std::size_t, std::size_t>> pair_;
+  bool outdated_ = false;
+  Background<Work> working_;
+};
+
+/// Writes fits of a field as `fettle fit` does, by the ending of `path`: .csv, .step, .stp, or .json, its report; the whole file or none.
+/// Errors: another ending (kInput); those of writing.
+[[nodiscard]] engine::Status writeFits(const FieldFits& fits, const engine::Version& field,
+                                       const std::string& path);
+
+}  // namespace fettle::app
