@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/report_draft.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
@@ -26,8 +27,21 @@ struct ViewArguments {
   std::string theme;
 };
 
+engine::Status writeWindowReport(const ReportRequest& request, const std::string& path,
+                                 engine::JobControl& job) {
+  ReportArguments arguments;
+  arguments.scan = request.file;
+  arguments.reading = request.reading;
+  arguments.name = request.name;
+  arguments.kept = request.sections;
+  arguments.out = path;
+  const auto written = writeReport(arguments, job);
+  return written ? engine::Status() : tl::unexpected(written.error());
+}
+
 engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
   ViewOptions options = given.view;
+  options.write_report = writeWindowReport;
   options.drawing.smooth_at_rest = !given.plain_rest;
   const auto size = parseSize(given.size, "--size", kWindowSides);
   if (!size) return tl::unexpected(size.error());

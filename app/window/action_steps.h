@@ -8,6 +8,7 @@
 
 #include "app/overlay/line_overlay.h"
 #include "app/window/parts.h"
+#include "app/window/result_files.h"
 #include "app/window/scene_edits.h"
 #include "app/work/line_edits.h"
 #include "engine/marks/change_marks.h"
@@ -80,6 +81,10 @@ inline void saveScene(Parts& p) {
 inline void exportField(Parts& p) {
   ask(p, Question::Kind::kExport, p.saving.suggestedPath(p.document, "_fettled.tif"));
 }
+template <Question::Kind kind>
+void askForFile(Parts& p) {
+  askForResult(kind, p);
+}
 // Whether a step is the line that took the place of the marks of the step before it.
 inline bool isLineOfStroke(const engine::History& history, std::int64_t number) {
   return number - 1 > history.first() && number <= history.last() &&
@@ -134,7 +139,9 @@ bool chosen(const Parts& p) {
 
 // The last one begun ends first.
 inline void navigate(Parts& p) {
-  if (p.marking.edit.busy())
+  if (p.plane_points.next())
+    p.plane_points.leave(p.form.options);
+  else if (p.marking.edit.busy())
     p.marking.edit.cancel();
   else if (p.marking.places.busy())
     p.marking.places.drop();
@@ -148,6 +155,8 @@ inline void navigate(Parts& p) {
     p.heights.cancel();
   else if (p.heights.previewed() != nullptr)
     p.heights.dropPreview();
+  else if (p.fit.busy())
+    p.fit.cancel();
   else if (p.compare.busy())
     p.compare.cancel();
   else if (p.measure.busy())
@@ -371,6 +380,41 @@ inline void formPreview(Parts& p) {
     p.form.dropPreview();
   else
     p.form.preview(clientOf(p));
+  p.picture.requestRedraw();
+}
+// What a preview is made with, and what it found, stands in its panel.
+inline void enterPanel(Parts& p, const char* name) {
+  p.settings.panels[name] = true;
+  p.enter_panel = name;
+}
+inline bool hasFits(const Parts& p) {
+  return hasField(p) && p.fit.fits() != nullptr;
+}
+inline void fitShapes(Parts& p) {
+  p.fit.fit(clientOf(p));
+  p.settings.side_panel = true;
+  enterPanel(p, "Fit");
+  p.picture.requestRedraw();
+}
+inline bool expectsPlanePoint(const Parts& p) {
+  return p.plane_points.next().has_value();
+}
+inline void beginPlanePoints(Parts& p) {
+  p.chooseTool(std::nullopt);  // a click is for the points
+  p.form.dropPreview();
+  p.plane_points.begin(p.form.options, clientOf(p).field().grid());
+  p.settings.side_panel = true;
+  enterPanel(p, "Form");
+  p.picture.requestRedraw();
+}
+// With the third the plane is previewed.
+inline void setPlanePoint(Parts& p) {
+  const auto at = p.picture.inside(p.cursor.x, p.cursor.y)
+                      ? p.picture.fieldAt(p.cursor, clientOf(p).field(), p.view)
+                      : std::nullopt;
+  if (!at) return;
+  if (!p.plane_points.next()) beginPlanePoints(p);
+  if (p.plane_points.take(*at, p.form.options)) p.form.preview(clientOf(p));
   p.picture.requestRedraw();
 }
 // An end of the section at the cursor; where that is not on the surface, none.

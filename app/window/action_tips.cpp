@@ -31,6 +31,12 @@ constexpr Tip kTips[] = {
     {Action::kFilterSuggest,
      "Tries filters on surfaces as this scan has, with noise like its own, and lists the best with what they "
      "leave of the error, why, and their time. Takes some ten seconds and changes nothing."},
+    {Action::kExportSections,
+     "All of them, or the chosen one: as a table, a drawing, a picture or polylines, by the ending of the "
+     "name."},
+    {Action::kExportReport,
+     "One page with pictures, surface texture, sections and steps, before and after, for a browser or as "
+     "PDF."},
     {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
     {Action::kFilterAdd,
      "Keeps what is shown and puts another beside it, which follows the fields from then on."},
@@ -50,6 +56,13 @@ constexpr Tip kTips[] = {
      "stay "
      "unless they are named."},
     {Action::kRemoveMarked, "What is marked becomes holes, and its marks go; undo brings both back."},
+    {Action::kFitShapes,
+     "To all samples that count, or to each region between edge lines: sizes and places with standard "
+     "errors."},
+    {Action::kExportFits, "As a table, as the report of fettle fit, or as STEP for a CAD program."},
+    {Action::kPlanePoints,
+     "For a part whose drawing names three level places: click them one after the other. The heights around "
+     "each are averaged. Esc leaves it as it was."},
     {Action::kFillPreview, "Shows it beside the scan and changes nothing."},
     {Action::kLevelPreview, "Shows it beside the scan and changes nothing."},
     {Action::kFillHoles, "From the heights at their rim; what is filled is known as filled everywhere."},

@@ -143,6 +143,10 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
   const auto now = std::chrono::steady_clock::now();
   if (now - noted_ < kNoteEvery) return;
   noted_ = now;
+  storeNotes(view);
+}
+
+void ActiveDocument::storeNotes(const render::View& view) {
   keeper_->setNote("camera", viewText(view));
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
   keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));

@@ -43,6 +43,9 @@ class ActiveDocument {
   /// Restores the previous step, read from the session where memory does not hold it.
   void undo();
 
+  /// Gives the session what it keeps besides steps - camera, scene, sections, bookmarks - as it is now.
+  void storeNotes(const render::View& view);
+
   /// Whether closing would lose something.
   [[nodiscard]] bool unsaved() const;
   /// How the work is stored, for the status bar. `exported`: a file that holds it as it is now; empty: there is none.

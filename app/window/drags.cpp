@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -91,6 +92,19 @@ void ViewDrag::handle(const render::InputEvent& event, const glm::dvec2& from, b
     default:
       break;
   }
+}
+
+bool PictureClick::completes(const render::InputEvent& event, const WindowPicture& picture) noexcept {
+  if (event.button != MouseButton::kLeft) return false;
+  const glm::dvec2 at(event.x, event.y);
+  if (event.kind == InputKind::kButtonDown) {
+    const bool plain = event.modifiers == render::Modifiers{};
+    pressed_ = plain && !event.panels_mouse && picture.inside(at.x, at.y) ? std::optional(at) : std::nullopt;
+    return false;
+  }
+  if (event.kind != InputKind::kButtonUp) return false;
+  const auto pressed = std::exchange(pressed_, std::nullopt);
+  return pressed && glm::distance(*pressed, at) <= kClick_px;
 }
 
 std::optional<glm::dvec2> LineDrag::placeOf(const render::InputEvent& event, const Scope& scope) {

@@ -37,6 +37,17 @@ class ViewDrag {
   bool split_line_ = false;
 };
 
+/// A click of the left button in the picture: pressed and let go at one place. The events are for others, too: a drag turns the view.
+/// Threading: main.
+class PictureClick {
+ public:
+  /// True when the event completes one.
+  [[nodiscard]] bool completes(const render::InputEvent& event, const WindowPicture& picture) noexcept;
+
+ private:
+  std::optional<glm::dvec2> pressed_;
+};
+
 /// Edge lines under the cursor: a click chooses the line (where no tool is on), Ctrl+Shift and the left button drag it.
 /// Threading: main.
 class LineDrag {

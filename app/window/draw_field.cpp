@@ -41,6 +41,8 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, c
 // What the colours show the difference from.
 std::optional<engine::Version> comparedWith(Parts& parts) {
   if (const auto& form = parts.form.previewed()) return form->surface;
+  if (parts.fit.shown)
+    if (const auto* surface = parts.fit.surface(parts.document.client()->field())) return *surface;
   if (parts.compare.shown)
     if (const auto* other = parts.compare.beside(parts.document.client()->field())) return *other;
   if (parts.settings.display.deviation) return parts.document.client()->original();
@@ -144,6 +146,8 @@ void drawField(Parts& parts, const DrawOptions& options) {
                                 input.overlays);
   else
     parts.stylus_overlay.hide();
+  if (parts.settings.side_panel && parts.settings.panels["Form"])
+    appendPoints(client.field(), parts.plane_points.set(parts.form.options), input.overlays);
   parts.section_overlay.append(client.field(), parts.section, picture.mmPerPixel(), input.overlays);
   parts.place_overlay.append(client.field(), parts.marking.places, picture.mmPerPixel(), input.overlays);
   if (parts.settings.display.marks)

@@ -151,6 +151,7 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
           event, {*client, parts.picture, parts.marking, parts.stylus.on(), linesAreShown(parts)}))
     return {};
   if (parts.seenGrid() == nullptr || dialog) return {};
+  const bool clicked = parts.plane_click.completes(event, parts.picture);
   if (pressesDeeper(event, parts)) {
     if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) client->mouse()->wheel(event.wheel);
     return {};
@@ -165,6 +166,7 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
                     {parts.window.pictureArea(), parts.picture, parts.view, parts.settings});
   // A hand at the view ends a flight where it is.
   if (parts.drag.active() || !(parts.view == before)) parts.flight.stop();
+  if (clicked && parts.plane_points.next()) return {Action::kPlanePoint, std::nullopt};
   return {};
 }
 

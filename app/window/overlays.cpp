@@ -23,7 +23,9 @@ constexpr double kPlacePiece_px = 3.0;
 constexpr float kOtherPlace_px = 2.5F, kPresentPlace_px = 4.0F, kPlaceEnd_px = 9.0F;
 constexpr render::LineMeaning kOpenPlace{{0.75F, 0.08F, 0.75F}, "place for a line"},
     kPresentPlace{{1.0F, 0.2F, 0.9F}, "the present place"}, kDonePlace{{0.08F, 0.6F, 0.15F}, "place done"},
-    kSkippedPlace{{0.3F, 0.3F, 0.3F}, "place skipped"}, kSectionMeaning{{0.02F, 0.02F, 0.02F}, "section"};
+    kSkippedPlace{{0.3F, 0.3F, 0.3F}, "place skipped"}, kSectionMeaning{{0.02F, 0.02F, 0.02F}, "section"},
+    kPointMeaning{{1.0F, 0.9F, 0.2F}, "point of the plane"};
+constexpr glm::vec3 kPointRim{0.02F, 0.02F, 0.02F};
 
 const render::LineMeaning& meaningOfPlace(State state, bool present) {
   return state == State::kDone      ? kDonePlace
@@ -116,6 +118,34 @@ void appendStepArea(const engine::Version& field, const engine::SampleRect& chan
       piece.to_mm = at(i + 1);
       overlays.lines.push_back(piece);
     }
+}
+
+void appendPoints(const engine::Version& field, std::span<const glm::dvec2> points_mm,
+                  render::Overlays& overlays) {
+  // A dark rim: seen on light and dark colours of heights.
+  constexpr float kRim_px = 13.0F, kPoint_px = 8.0F;
+  const engine::FieldReader reader = field.reader();
+  const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
+  render::OverlayLine piece;
+  piece.depth = render::OverlayLine::Depth::kOnTop;
+  const auto at = [&](std::size_t i) { return aboveSurface(reader, points_mm[i] / spacing); };
+  for (std::size_t i = 0; i + 1 < points_mm.size(); ++i) {
+    piece.colour = kPointRim;
+    piece.width_px = 2.0F;
+    piece.from_mm = at(i);
+    piece.to_mm = at(i + 1);
+    overlays.lines.push_back(piece);
+  }
+  for (std::size_t i = 0; i < points_mm.size(); ++i) {
+    piece.from_mm = piece.to_mm = at(i);
+    piece.colour = kPointRim;
+    piece.width_px = kRim_px;
+    overlays.lines.push_back(piece);
+    piece.colour = kPointMeaning.colour;
+    piece.width_px = kPoint_px;
+    overlays.lines.push_back(piece);
+  }
+  if (!points_mm.empty()) addMeaning(kPointMeaning, overlays.meanings);
 }
 
 void SectionOverlay::append(const engine::Version& field, const SectionTool& section, double mm_per_pixel,

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "app/window/settings.h"
 #include "app/window/stylus_trail.h"
@@ -37,6 +40,10 @@ class PlaceOverlay {
 /// The outline of what a step changed, on the surface.
 void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
                     render::Overlays& overlays);
+
+/// Points of a plane on the surface [mm in field coordinates], with a line from each to the next.
+void appendPoints(const engine::Version& field, std::span<const glm::dvec2> points_mm,
+                  render::Overlays& overlays);
 
 /// The lines of the sections in the picture, the chosen one with discs at its ends. Threading: main.
 class SectionOverlay {

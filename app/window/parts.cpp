@@ -69,6 +69,7 @@ void Parts::showMarksMade() {
 
 void Parts::chooseTool(std::optional<haptic::Tool> tool) {
   marking.leaveLasso();
+  plane_points.stop();
   stylus.choose(tool, *document.client(), picture, cursor);
 }
 
@@ -135,11 +136,14 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   filters.finish(*document.client());
   suggester.clear();
   form.clear();
+  form.options.through.reset();
+  plane_points.stop();
   heights.clear();
   removal.clear();
   measure.clear();
   if (auto kept = section.takeKept()) document.keepSections(*std::move(kept));
   section.reset();
+  fit.clear();
   transform.cancel();
   compare.clear();
   marking.reset();

@@ -19,6 +19,8 @@
 #include "app/window/overlays.h"
 #include "app/window/questions.h"
 #include "app/window/radial_menu.h"
+#include "app/window/report_request.h"
+#include "app/window/result_writing.h"
 #include "app/window/saving.h"
 #include "app/window/scene_files.h"
 #include "app/window/settings.h"
@@ -32,9 +34,11 @@
 #include "app/work/device_lister.h"
 #include "app/work/filter_preview.h"
 #include "app/work/filter_suggester.h"
+#include "app/work/fit_tool.h"
 #include "app/work/form_tool.h"
 #include "app/work/height_tool.h"
 #include "app/work/measure_tool.h"
+#include "app/work/plane_picking.h"
 #include "app/work/recent_files.h"
 #include "app/work/removal_count.h"
 #include "app/work/section_tool.h"
@@ -64,6 +68,8 @@ struct Parts {
   Opening opening;
   Saving saving;
   SceneFiles scene_files;
+  ResultWriting results;
+  ReportWriter write_report;
 
   WindowPicture picture;
   render::View view = startView();
@@ -83,13 +89,16 @@ struct Parts {
 
   Marking marking;
   LineDrag line_drag;
+  PictureClick plane_click;  ///< that sets a point
   FilterPreview filters;
   FilterSuggester suggester;
   FormTool form;
+  PlanePicking plane_points;  ///< of its choice
   HeightTool heights;
   RemovalCount removal;
   MeasureTool measure;
   SectionTool section;
+  FitTool fit;
   TransformTool transform;
   CompareTool compare;
   ChangeFigures change;

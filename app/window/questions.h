@@ -35,6 +35,9 @@ struct Question {
     kExport,
     kOpenScene,
     kSaveScene,
+    kExportSections,
+    kExportReport,
+    kExportFits,
     kUnsaved,
     kUnsavedScene,
     kReplace,
@@ -45,7 +48,7 @@ struct Question {
   };
   Kind kind = Kind::kMessage;
   std::string path =
-      {};  ///< kOpen, kCompare, kSaveAs, kExport, kOpenScene, kSaveScene: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
+      {};  ///< kOpen, kCompare, kSaveAs, kExport and others: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
   Afterwards afterwards = {};               ///< kSaveAs, kSaveScene, kUnsaved, kUnsavedScene, kReplace
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.

@@ -198,7 +198,7 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
   Afterwards afterwards = std::exchange(afterwards_, {});
   if (*ended) {
     feedback.status = fmt::format("written: {}", target_);
-    folder_ = fs::path(target_).parent_path().string();
+    noteFolderOf(target_);
     return Saved{std::move(afterwards), moved};
   }
   if (ended->error().kind != engine::ErrorKind::kCancelled)
@@ -209,6 +209,10 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
 std::string Saving::suggestedPath(const ActiveDocument& document, const char* ending) const {
   const std::string beside = document.suggestedPath(ending);
   return folder_.empty() ? beside : (fs::path(folder_) / fs::path(beside).filename()).string();
+}
+
+void Saving::noteFolderOf(const std::string& path) {
+  folder_ = fs::path(path).parent_path().string();
 }
 
 std::string Saving::exportText(const ActiveDocument& document) const {

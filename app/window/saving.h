@@ -51,6 +51,8 @@ class Saving {
 
   /// "/folder/scan" + `ending`, in the folder that was written to last, else in that of the scan.
   [[nodiscard]] std::string suggestedPath(const ActiveDocument& document, const char* ending) const;
+  /// A file was written beside those of the document: the next one is suggested in its folder.
+  void noteFolderOf(const std::string& path);
   /// Whether a file that was exported holds the present state: "It was exported to out.tif at 14:03, as it is now."; empty
   /// where nothing was exported since the document was opened.
   [[nodiscard]] std::string exportText(const ActiveDocument& document) const;

@@ -56,6 +56,10 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   changed |= p.removal.poll(client);
   changed |= p.devices.poll();
   changed |= p.measure.poll(client, notices);
+  if (p.fit.poll(client, notices)) {
+    p.picture.refreshRanges();
+    changed = true;
+  }
   if (p.compare.poll(client, notices)) {
     p.picture.refreshRanges();
     changed = true;

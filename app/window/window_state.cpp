@@ -60,6 +60,7 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
            {"loading", p.opening.busy()},
            {"coarse", p.coarseIsShown()},
            {"saving", p.saving.busy(p.document)},
+           {"writing", p.results.busy() ? p.results.what() : ""},
            {"path", p.document.path()},
            {"save_path", keeper != nullptr && keeper->named() ? keeper->path() : p.saving.path()}};
   Report notices = Report::array();
@@ -195,6 +196,11 @@ void addFilters(const Parts& p, Report& r) {
   r["form_preview"] = preview ? Report(std::string(engine::infoOf(preview->options.kind).word)) : Report();
   r["form_preview_means_of"] = preview && preview->coarse ? Report(preview->coarse->step) : Report();
   r["form_rms"] = p.form.fit() ? Report(p.form.fit()->rms) : Report();
+  Report points = Report::array();
+  if (const auto& through = p.form.options.through)
+    for (const glm::dvec2& at : through->at_mm) points.push_back({rounded(at.x), rounded(at.y)});
+  r["plane_points"] = points;
+  r["plane_point"] = p.plane_points.next() ? Report(*p.plane_points.next() + 1) : Report();
   r["computing_heights"] = p.heights.busy();
   r["heights_found"] = p.heights.found();
   const haptic::HeightsMaker* const previewed = p.heights.previewed();
@@ -207,6 +213,7 @@ void addFilters(const Parts& p, Report& r) {
   if (const auto& figures = p.measure.figures())
     for (const ArealLine& line : figures->lines) parameters[line.name] = line.values;
   r["parameters"] = parameters;
+  r["curves"] = p.measure.figures() ? p.measure.figures()->curves.size() : 0;
   r["parameters_of"] = p.measure.figures() ? p.measure.figures()->samples : 0;
   r["parameters_outdated"] = p.measure.outdated();
   const auto& profiles = p.section.profiles();
@@ -215,6 +222,8 @@ void addFilters(const Parts& p, Report& r) {
   r["compared_rms_mm"] = compared ? Report(compared->rms_mm) : Report();
   r["compared_rotation"] =
       compared && compared->alignment ? Report(compared->alignment->angles.rotation_z) : Report();
+  r["fitting"] = p.fit.busy();
+  r["fits"] = p.fit.fits() != nullptr ? p.fit.fits()->report : Report();
   r["taking_section"] = p.section.busy();
   r["section_mm"] = profiles ? Report(rounded(profiles->now.lengthMm())) : Report();
   r["section_before"] = profiles && profiles->before.size() > 0;
@@ -302,6 +311,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("opening", p.opening.busy());
   waits("files", p.files.busy());
   waits("saving", p.saving.busy(p.document));
+  waits("a file of what was measured", p.results.busy());
   if (const Questions& questions = p.feedback.questions; questions.pending()) {
     // A dialog needs some frames until it is in its final position.
     constexpr int kInPlace = 4;
@@ -325,6 +335,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("heights", p.heights.busy() || p.heights.awaitsRest());
   waits("a count", p.removal.busy());
   waits("a comparison", p.compare.busy());
+  waits("shapes", p.fit.busy());
   waits("a transform", p.transform.busy());
   waits("figures", p.measure.busy());
   waits("a section", p.section.busy());

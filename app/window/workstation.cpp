@@ -14,6 +14,7 @@
 #include "app/terminal.h"
 #include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
+#include "app/window/result_files.h"
 #include "app/window/scene_edits.h"
 #include "app/work/behind_the_window.h"
 #include "engine/base/stopwatch.h"
@@ -36,10 +37,10 @@ std::string settingsPath(const char* file) {
 // Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
-         p.saving.busy(p.document) || p.filters.computing() || p.filters.awaitsRest() ||
+         p.saving.busy(p.document) || p.results.busy() || p.filters.computing() || p.filters.awaitsRest() ||
          p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.devices.busy() ||
          p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
-         p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() ||
+         p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() || p.fit.busy() ||
          p.transform.busy() ||
          (p.document.isOpen() &&
           (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
@@ -55,6 +56,7 @@ Workstation::Workstation(const ViewOptions& options, const Settings& settings,
       saved_settings_(parts_.settings),
       ui_scale_(settings.ui_scale) {
   parts_.usual_reading = options_.reading;
+  parts_.write_report = options_.write_report;
   if (options_.theme) parts_.settings.panels_theme = *options_.theme;
   window_->setWhileWaiting([this] { whileWaiting(); });
 }
@@ -203,6 +205,13 @@ void Workstation::takeResults() {
     }
     resumeAfterSave(saved->afterwards);
   }
+  const SessionKeeper* const keeper = p.document.keeper();
+  // Before the first step there is no file, and what waits is for one that may come.
+  const bool stored = keeper == nullptr || keeper->path().empty() || keeper->waiting() == 0;
+  if (const auto written = p.results.poll(stored, p.feedback)) {
+    p.saving.noteFolderOf(*written);
+    p.picture.requestRedraw();
+  }
   if (!p.document.isOpen()) return;
   p.document.poll(p.view, p.feedback);
   followButtons(p);
@@ -331,6 +340,11 @@ void Workstation::carryOut(Answer answer) {
     case Kind::kExport:
       p.saving.askToWrite(std::move(question), Saving::Typed::kYes, p.document, p.feedback);
       break;
+    case Kind::kExportSections:
+    case Kind::kExportReport:
+    case Kind::kExportFits:
+      confirmResult(std::move(question), p);
+      break;
     case Kind::kUnsaved:
       if (question.stop_asking) p.settings.ask_before_quitting = false;
       if (confirmed)
@@ -345,8 +359,11 @@ void Workstation::carryOut(Answer answer) {
       break;
     case Kind::kReplace:
       if (question.from == Kind::kSaveScene) return carryOutOfScene(std::move(answer));
-      p.saving.start(question.path, Saving::keepingOf(question.from), std::move(question.afterwards),
-                     p.document, p.feedback);
+      if (resultFileOf(question.from) != nullptr)
+        writeResult(question.from, question.path, p);
+      else
+        p.saving.start(question.path, Saving::keepingOf(question.from), std::move(question.afterwards),
+                       p.document, p.feedback);
       break;
     case Kind::kRecover:
       load(question.path, confirmed ? Recovery::kTake : Recovery::kLeave, question.reading);

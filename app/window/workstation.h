@@ -14,6 +14,7 @@
 #include "app/window/input.h"
 #include "app/window/panels/panels.h"
 #include "app/window/parts.h"
+#include "app/window/report_request.h"
 #include "app/window/tool_results.h"
 #include "app/window/window_state.h"
 #include "app/xr/room_table.h"
@@ -32,6 +33,7 @@ struct ViewOptions {
   std::optional<render::Theme> theme;  ///< of the panels, in place of the one in the settings, and kept there
   bool xr = false;                     ///< shows the field in a headset as well
   RoomScale xr_scale = RoomScale::kGiant;
+  ReportWriter write_report;
   std::string events;  ///< where to write the events (EventLog); empty: nowhere
 };
 

@@ -5,12 +5,34 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
+#include "engine/io/import.h"
 
 namespace fettle::app {
 namespace {
 
 // Lines of the outcome from when a scan is compared, and before.
-constexpr int kComparedLines = 13, kUncomparedLines = 3;
+constexpr int kComparedLines = 15, kUncomparedLines = 3;
+
+// What counts where a nominal mesh is compared.
+void meshFields(const PanelContext& context, NominalChoice& nominal) {
+  (void)field("mesh in", "The unit of the numbers of an .stl, which does not say it.", [&] {
+    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.c_str())) return false;
+    for (const std::string& unit : engine::lengthUnitNames())
+      if (ImGui::Selectable(unit.c_str(), unit == nominal.unit)) nominal.unit = unit;
+    ImGui::EndCombo();
+    return true;
+  });
+  (void)field("from a mesh", [&] {
+    constexpr const char* kDistances[] = {"height over it", "shortest distance"};
+    int distance = nominal.shortest ? 1 : 0;
+    const bool changed = ImGui::Combo("##mesh distance", &distance, kDistances, std::size(kDistances));
+    nominal.shortest = distance == 1;
+    return changed;
+  });
+  (void)field("tolerance", "Counts what lies within it of a mesh on both sides, above and below.", [&] {
+    return typeLength("##mesh tolerance", nominal.tolerance, 0.0, 1e12, context.units.change, "none");
+  });
+}
 
 }  // namespace
 
@@ -36,6 +58,7 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
     if (changed) compare.options.region = kOf[of];
     return changed;
   });
+  meshFields(context, compare.options.nominal);
   endFields();
   actionButton("Choose a scan", Action::kCompare, context.act);
   const auto& compared = compare.compared();
@@ -63,7 +86,9 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
     for (const std::string& line : compare.lines()) writeWrapped(line);
   } else {
     writeIn(render::PanelColour::kMuted,
-            "A scan of the same part is moved onto this one. Here stands how, and how far they differ.");
+            "A scan of the same part, or its nominal mesh (.stl), is moved onto this one. Here stands how, "
+            "and how far they "
+            "differ.");
   }
   endPlace();
 }

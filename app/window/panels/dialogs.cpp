@@ -9,6 +9,7 @@
 
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
+#include "app/window/result_files.h"
 
 namespace fettle::app {
 namespace {
@@ -21,7 +22,7 @@ using render::Key;
 
 bool isPathKind(Kind kind) {
   return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport ||
-         kind == Kind::kOpenScene || kind == Kind::kSaveScene;
+         kind == Kind::kOpenScene || kind == Kind::kSaveScene || resultFileOf(kind) != nullptr;
 }
 
 // A dialog that has just appeared goes aside where the cursor, left where it was, would lie on the last button.
@@ -200,6 +201,9 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kExport:
     case Kind::kOpenScene:
     case Kind::kSaveScene:
+    case Kind::kExportSections:
+    case Kind::kExportReport:
+    case Kind::kExportFits:
       return fileDialog(question, parts);
     case Kind::kImport:
       return importPage(question, parts);

@@ -12,6 +12,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
 #include "app/window/panels/scan_picture.h"
+#include "app/window/result_files.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 
@@ -261,6 +262,36 @@ void formatChooser(Question& question) {
   ImGui::EndCombo();
 }
 
+// The formats of a file of what was measured; choosing one changes the ending.
+void resultFormatChooser(Question& question, const ResultFile& file) {
+  const ResultFormat* const now = formatOf(file, question.path);
+  const auto label = [](const ResultFormat& format) {
+    return fmt::format("{} ({})", format.text, format.ending);
+  };
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 24.0F);
+  if (!ImGui::BeginCombo("format", now != nullptr ? label(*now).c_str() : "by the ending")) return;
+  for (const ResultFormat& format : file.formats)
+    if (ImGui::Selectable(label(format).c_str(), &format == now))
+      question.path = fs::path(question.path).replace_extension(format.ending).string();
+  ImGui::EndCombo();
+}
+
+void sectionChoices(SectionTool& sections) {
+  SectionTool::Exporting& exporting = sections.exporting;
+  ImGui::BeginDisabled(!sections.chosen());
+  ImGui::Checkbox("the chosen section alone", &exporting.chosen_alone);
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::Checkbox("profiles of the scan beside them", &exporting.with_scan);
+  explain("Those of the scan that the work began with, where it differs from the field.");
+}
+
+void resultHelp(Question& question, const ResultFile& file, Parts& parts) {
+  resultFormatChooser(question, file);
+  ImGui::TextDisabled("%s", file.content);
+  if (question.kind == Kind::kExportSections) sectionChoices(parts.section);
+}
+
 void writingHelp(Question& question, bool& embeds) {
   if (isScene(question)) {
     ImGui::TextDisabled("tip, force, brushes and effects with their numbers, as a .toml file");
@@ -280,11 +311,14 @@ void writingHelp(Question& question, bool& embeds) {
 }
 
 // Behind the buttons, which stay where they are.
-void remark(const Question& question, const FileBrowser& browser) {
+void remark(const Question& question, const FileBrowser& browser, const ResultFile* result) {
   std::error_code error;
   if (const engine::Error* problem = browser.problem()) {
     ImGui::SameLine();
     writeIn(PanelColour::kProblem, problem->line());
+  } else if (result != nullptr && formatOf(*result, question.path) == nullptr) {
+    ImGui::SameLine();
+    textIn(PanelColour::kWarning, "choose a format, or end the name with one");
   } else if (!reads(question) && fs::is_regular_file(question.path, error)) {
     ImGui::SameLine();
     textIn(PanelColour::kWarning, "this file exists already");
@@ -322,13 +356,17 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const bool twice = fileTable(question, files, ImVec2(width, kHeight * scale), moved);
   ImGui::SameLine();
   preview(question, parts, scale);
-  if (!reads(question)) writingHelp(question, parts.saving.embeds);
+  const ResultFile* const result = resultFileOf(question.kind);
+  if (result != nullptr)
+    resultHelp(question, *result, parts);
+  else if (!reads(question))
+    writingHelp(question, parts.saving.embeds);
   confirmed = dialogButton(reads(question) ? "Open" : "Write", questions, Key::kEnter) || confirmed || twice;
   ImGui::SameLine();
   const bool as = question.kind == Kind::kOpen && ImGui::Button("Read as ...");
   if (question.kind == Kind::kOpen) ImGui::SameLine();
   const bool left = dialogButton("Cancel", questions, Key::kEscape);
-  remark(question, files.browser);
+  remark(question, files.browser, result);
   if (left) return Choice::kBack;
   std::error_code error;
   if (as && fs::is_regular_file(question.path, error) && !isSessionPath(question.path)) return Choice::kOther;
@@ -344,6 +382,7 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
     enter(folder, question, files);
     return std::nullopt;
   }
+  if (result != nullptr && formatOf(*result, question.path) == nullptr) return std::nullopt;
   return Choice::kConfirm;
 }
 

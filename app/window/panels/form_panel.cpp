@@ -1,8 +1,12 @@
+#include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/action_tips.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -14,14 +18,52 @@ std::string shortTitle(const engine::FormInfo& form) {
   return form.degree >= 2 ? fmt::format("polynomial {}", form.degree) : std::string(form.title);
 }
 
-void formKindField(engine::FormChoice& options) {
+constexpr const char* kByPoints = "plane by three points";
+
+void formKindField(const PanelContext& context, FormTool& form, PlanePicking& points) {
+  engine::FormChoice& options = form.options;
+  const bool by_points = options.through.has_value();
+  const std::string now = by_points ? kByPoints : shortTitle(engine::infoOf(options.kind));
   (void)field("form", [&] {
-    if (!ImGui::BeginCombo("##form", shortTitle(engine::infoOf(options.kind)).c_str())) return false;
-    for (const engine::FormInfo& form : engine::formInfos())
-      if (ImGui::Selectable(shortTitle(form).c_str(), form.kind == options.kind)) options.kind = form.kind;
+    if (!ImGui::BeginCombo("##form", now.c_str())) return false;
+    for (const engine::FormInfo& info : engine::formInfos()) {
+      if (ImGui::Selectable(shortTitle(info).c_str(), !by_points && info.kind == options.kind)) {
+        options.kind = info.kind;
+        options.through.reset();
+        points.stop();
+      }
+      if (info.kind != engine::FormKind::kPlane) continue;
+      if (ImGui::Selectable(kByPoints, by_points) && !by_points)
+        choosePlaneByPoints(options, context.client.field().grid());
+      explain(tipOf(Action::kPlanePoints));
+    }
     ImGui::EndCombo();
     return true;
   });
+}
+
+// The points of the plane as numbers, and the button to set them on the surface.
+void pointFields(const PanelContext& context, FormTool& form, const PlanePicking& points) {
+  constexpr double kFar = 1e12;
+  engine::ThreePoints& through = *form.options.through;
+  const render::ShownUnit length =
+      ofMillimetres(context.units.length, context.client.field().grid().lateral_unit.mm);
+  beginFields();
+  for (std::size_t i = 0; i < through.at_mm.size(); ++i)
+    for (const auto& [axis, value] :
+         {std::pair('x', &through.at_mm[i].x), std::pair('y', &through.at_mm[i].y)}) {
+      const std::string name = fmt::format("{} of point {}", axis, i + 1), id = "##plane " + name;
+      (void)field(name.c_str(),
+                  [&, value = value] { return typeLength(id.c_str(), *value, -kFar, kFar, length); });
+    }
+  (void)field("around each", "Heights of the samples this near to a point are averaged.", [&] {
+    return typeLength("##plane radius", through.radius_mm, 0.0, kFar, length, "5 samples");
+  });
+  endFields();
+  ImGui::BeginDisabled(form.busy());
+  actionButton(points.next() ? "Set them again###plane points" : "Set them on the surface###plane points",
+               Action::kPlanePoints, context.act);
+  ImGui::EndDisabled();
 }
 
 void regionField(engine::FormChoice& options) {
@@ -35,9 +77,19 @@ void regionField(engine::FormChoice& options) {
     options.region = kRegions[chosen];
 }
 
+std::string tiltText(const engine::Tilt& tilt) {
+  const auto one = [](double degrees, double error) {
+    return std::isnan(error) ? fmt::format("{:.4g}", degrees)
+                             : fmt::format("{:.4g} +- {:.2g}", degrees, error);
+  };
+  return fmt::format("tilted {} degrees along x, {} along y\n", one(tilt.x_deg, tilt.x_error_deg),
+                     one(tilt.y_deg, tilt.y_error_deg));
+}
+
 std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
   std::string text = fmt::format("{} of {} samples\n", formName(*fit.form), fit.samples);
   if (const std::string figures = formFigures(*fit.form); !figures.empty()) text += figures + "\n";
+  if (fit.options.through && fit.tilt) text += tiltText(*fit.tilt);
   text += fmt::format("rms of what is left {}", lengthText(fit.rms, units.height, 3));
   if (fit.beyond > 0)
     text += fmt::format("\n{} samples lie beyond its outline: there it is continued by a plane", fit.beyond);
@@ -46,15 +98,18 @@ std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
 
 }  // namespace
 
-void formPanel(const PanelContext& context, FormTool& form) {
+void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points) {
   const engine::FieldForm& over = context.client.newest().formOver();
   writeWrapped(over != nullptr ? "taken out: " + formName(*over) : std::string("nothing is taken out"));
   beginFields();
-  formKindField(form.options);
+  formKindField(context, form, points);
   regionField(form.options);
   endFields();
+  ImGui::BeginDisabled(form.options.through.has_value());
   ImGui::Checkbox("without steps and spikes", &form.options.robust);
-  form.followOptions(context.client);
+  ImGui::EndDisabled();
+  if (form.options.through) pointFields(context, form, points);
+  if (!points.next()) form.followOptions(context.client);
   const bool previewed = form.previewed().has_value();
   ImGui::BeginDisabled(form.busy());
   if (ImGui::Button("Fit")) form.measure(context.client);

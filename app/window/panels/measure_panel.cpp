@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <string>
@@ -5,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/curve_plot.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -88,6 +91,105 @@ void caption(MeasureTool& measure) {
   endPlace();
 }
 
+using render::PanelColour;
+
+// How a curve is drawn of the scan, beneath, and of the field; the second one of a state in another colour.
+void addCurve(CurvePlot& plot, std::size_t state, std::size_t states, std::size_t curve, std::string name,
+              std::vector<glm::dvec2> points) {
+  const bool beneath = state + 1 < states;
+  const PanelColour first = states > 1 ? PanelColour::kProfileNow : PanelColour::kProfile;
+  if (states > 1) name = (beneath ? "scan, " : "now, ") + name;
+  plot.curves.push_back({std::move(points),
+                         beneath      ? PanelColour::kProfileBefore
+                         : curve == 0 ? first
+                                      : PanelColour::kOtherCursors,
+                         beneath ? 0.25F : 0.1F, std::move(name)});
+}
+
+CurvePlot abbottCurves(const std::vector<SurfaceCurves>& states, const render::ShownUnit& height) {
+  CurvePlot plot{.x_name = "material ratio [%]", .y_name = fmt::format("height [{}]", height.name)};
+  const std::vector<double> ratios = curveRatios();
+  bool any = false;
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    const std::vector<double>& heights = states[s].heights;
+    std::vector<glm::dvec2> points;
+    for (std::size_t i = 0; i < std::min(ratios.size(), heights.size()); ++i)
+      points.emplace_back(100.0 * ratios[i], heights[i] * height.per_unit);
+    // Single spikes would leave of everything else a level line.
+    if (points.size() > 2) {
+      const double high = points[1].y, low = points[points.size() - 2].y;
+      plot.low = any ? std::min(plot.low, low) : low;
+      plot.high = any ? std::max(plot.high, high) : high;
+      any = true;
+    }
+    addCurve(plot, s, states.size(), 0, "height", std::move(points));
+  }
+  const double room = 0.2 * (plot.high - plot.low);
+  plot.low -= room;
+  plot.high += room;
+  return plot;
+}
+
+CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUnit& length) {
+  CurvePlot plot{.x_name = fmt::format("distance [{}]", length.name), .y_name = "autocorrelation"};
+  for (std::size_t s = 0; s < states.size(); ++s)
+    for (std::size_t c = 0; c < states[s].decay.size(); ++c) {
+      const DecayCurve& curve = states[s].decay[c];
+      std::vector<glm::dvec2> points;
+      for (std::size_t i = 0; i < curve.values.size(); ++i)
+        points.emplace_back(static_cast<double>(i) * states[s].decay_step_mm * length.per_unit,
+                            curve.values[i]);
+      addCurve(plot, s, states.size(), c,
+               fmt::format("{}, {:.0f} degrees from x:", curve.name, curve.degrees), std::move(points));
+    }
+  return plot;
+}
+
+// `per_mm`: of the unit of heights.
+CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& unit, double per_mm) {
+  CurvePlot plot{.scale = CurvePlot::Scale::kLogarithmic,
+                 .x_name = "frequency [1/mm]",
+                 .y_name = fmt::format("power density [{}^2 mm]", unit)};
+  for (std::size_t s = 0; s < states.size(); ++s)
+    for (const auto& [spectrum, c] : {std::pair(&states[s].along_x, 0), {&states[s].along_y, 1}}) {
+      std::vector<glm::dvec2> points;
+      for (std::size_t i = 1; i < spectrum->density.size(); ++i)
+        points.emplace_back(spectrum->frequency(i), spectrum->density[i] * per_mm * per_mm);
+      addCurve(plot, s, states.size(), static_cast<std::size_t>(c),
+               c == 0 ? "along x:" : "along y:", std::move(points));
+    }
+  return plot;
+}
+
+// One of the curves, in a place of its own from when figures were asked for.
+void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
+  using Curve = MeasureTool::Curve;
+  constexpr int kLines = 10;
+  constexpr const char* kCurves[] = {"material ratio (Abbott)", "autocorrelation", "power spectrum"};
+  int curve = static_cast<int>(measure.curve);
+  beginFields();
+  if (field("curve", "Over each other of the scan, wide and pale, and of the field.",
+            [&] { return ImGui::Combo("##surface curve", &curve, kCurves, std::size(kCurves)); }))
+    measure.curve = static_cast<Curve>(curve);
+  endFields();
+  beginPlace("##surface curves", kLines);
+  const auto& figures = measure.figures();
+  if (!figures) {
+    writeIn(PanelColour::kMuted, measure.busy() ? "measuring" : "no figures yet");
+  } else if (measure.curve != Curve::kAbbott && !figures->curves.back().no_decay.empty()) {
+    writeIn(PanelColour::kMuted, "no autocorrelation and no spectrum: " + figures->curves.back().no_decay);
+  } else {
+    const engine::Grid& grid = context.client.field().grid();
+    const render::ShownUnit& height = context.units.height;
+    curvePlot("##curve",
+              measure.curve == Curve::kAbbott ? abbottCurves(figures->curves, height)
+              : measure.curve == Curve::kDecay
+                  ? decays(figures->curves, render::ofMillimetres(context.units.length, grid.lateral_unit.mm))
+                  : spectra(figures->curves, height.name, height.per_unit / grid.height_unit.mm));
+  }
+  endPlace();
+}
+
 }  // namespace
 
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture) {
@@ -100,6 +202,7 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   if (measure.asked() == nullptr) return;
   const auto& figures = measure.figures();
   arealTable(measure, measure.busy() || !figures ? measure.asked()->noise : figures->options.noise);
+  surfaceCurves(context, measure);
 }
 
 }  // namespace fettle::app

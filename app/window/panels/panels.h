@@ -35,7 +35,7 @@ void suggestionPanel(const PanelContext& context, FilterSuggester& suggester, Fi
                      EdgeTool& edges);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
 /// The form that lies over the field, and the one that is to.
-void formPanel(const PanelContext& context, FormTool& form);
+void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points);
 /// Holes that are filled, lines that are levelled.
 void heightsPanel(const PanelContext& context, HeightTool& heights);
 /// Samples that become holes; `picture`: whose colours have limits.
@@ -57,6 +57,8 @@ void heightOutcome(HeightTool& heights, bool here);
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture);
 /// The section along a line, and its cursors.
 void sectionPanel(const PanelContext& context, SectionTool& section);
+/// Shapes fitted to the field, and what lies between two of them.
+void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture);
 /// Another scan brought onto the field, and the deviation from it.
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture);
 /// `pointed` is set to the step under the cursor, if any.

@@ -191,6 +191,10 @@ void sectionChoice(const PanelContext& context, SectionTool& tool) {
   sameLineIfFits("Remove");
   if (ImGui::Button("Remove##section")) tool.remove();
   ImGui::EndDisabled();
+  ImGui::BeginDisabled(count == 0);
+  sameLineIfFits("Export ...");
+  actionButton("Export ...##section", Action::kExportSections, context.act);
+  ImGui::EndDisabled();
 }
 
 }  // namespace

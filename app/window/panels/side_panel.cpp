@@ -48,11 +48,12 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(parts, "Remove samples", false))
     removePanel(context, parts.heights, parts.removal, parts.picture);
   if (section(parts, "Holes and lines", false)) heightsPanel(context, parts.heights);
-  if (section(parts, "Form", false)) formPanel(context, parts.form);
+  if (section(parts, "Form", false)) formPanel(context, parts.form, parts.plane_points);
   if (section(parts, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
   if (section(parts, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(parts, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
   if (section(parts, "Section", false)) sectionPanel(context, parts.section);
+  if (section(parts, "Fit", false)) fitPanel(context, parts.fit, parts.picture);
   if (section(parts, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
   if (section(parts, "Compare", false)) comparePanel(context, parts.compare, parts.picture);

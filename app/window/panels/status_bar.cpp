@@ -82,6 +82,11 @@ void content(Parts& parts) {
              ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"
              : "lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with Ctrl "
                "unmarks; Esc leaves");
+  } else if (const auto& point = parts.plane_points.next()) {
+    const ActionRow& key = rowOf(Action::kPlanePoint);
+    text(fmt::format(
+        "plane through three points: click point {} of 3 on the surface, or {} at the cursor; Esc leaves",
+        *point + 1, keyText(key.key, key.modifiers)));
   } else if (edges != nullptr) {
     text(fmt::format(
         "suggested: {} lines; Enter takes them, Ctrl+[ and Ctrl+] fewer and more, M and U paint over "
@@ -89,6 +94,9 @@ void content(Parts& parts) {
         edges->lines));
   } else if (const auto saving = parts.saving.progress(parts.document)) {
     if (statusWork(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
+  } else if (parts.results.busy()) {
+    if (statusWork(parts.results.progress(), 240.0F, fmt::format("writing {}", parts.results.what()).c_str()))
+      parts.results.cancel();
   } else if (parts.opening.coarse() != nullptr) {
     if (statusWork(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
     ImGui::SameLine();

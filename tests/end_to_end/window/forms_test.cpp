@@ -6,6 +6,7 @@
 #include "engine/field/builder.h"
 #include "engine/formats/formats.h"
 #include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
 
 namespace fettle::tests {
 namespace {
@@ -131,6 +132,87 @@ TEST_F(WindowTest, a_form_is_taken_out_touched_without_and_put_back_exactly) {
     EXPECT_EQ(program->wait(), 0) << program->err();
     expectSilence(*program);
   }
+}
+
+// Three points of the surface name the plane: clicked, by a key at the cursor, or typed.
+TEST_F(WindowTest, a_plane_goes_through_three_points_of_the_surface) {
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"panels",
+                                                                    {{"Form", true},
+                                                                     {"Filters", false},
+                                                                     {"Tool", false},
+                                                                     {"Steps", false},
+                                                                     {"Change since the scan", false}}}};
+  bend(scan);
+  const std::string work = folder.file("work.fettle");
+  const auto program = start({scan});
+  User user(display, *program, "three points");
+  const State first = opened(*program);
+  EXPECT_TRUE(first["plane_point"].is_null());
+  EXPECT_EQ(first["plane_points"].size(), 0U);
+  (void)user.key("7");
+  user.at({20, 790});
+  const Screen alone = user.look("scan");
+  const State begun = user.key("alt+d");
+  EXPECT_EQ(begun["plane_point"], 1);
+  EXPECT_EQ(begun["plane_points"].size(), 3U);
+  EXPECT_TRUE(user.reads("click point 1 of 3"));
+  const auto click = [&](int x, int y) {
+    user.at({x, y});
+    user.down(1);
+    user.up(1);
+    return user.rest();
+  };
+  EXPECT_EQ(click(230, 250)["plane_point"], 2);
+  // A drag turns the view, and sets nothing.
+  EXPECT_EQ(user.drag(1, {300, 300}, {360, 300}, 6)["plane_point"], 2);
+  (void)user.key("7");
+  user.at({540, 260});
+  EXPECT_EQ(user.key("shift+d")["plane_point"], 3);
+  (void)user.look("two of three");
+  // Esc leaves the points, and the form, as they were.
+  const State left = user.key("Escape");
+  EXPECT_TRUE(left["plane_point"].is_null());
+  EXPECT_EQ(left["plane_points"].size(), 0U);
+  EXPECT_TRUE(user.reads("plane"));
+  // All three: the plane is previewed.
+  (void)user.key("alt+d");
+  (void)click(230, 250);
+  (void)click(540, 260);
+  const State set = click(380, 470);
+  EXPECT_TRUE(set["plane_point"].is_null());
+  const State shown = program->until(
+      "a preview", [](const State& s) { return s["form_preview"] == "plane" && s["settled"] == true; });
+  EXPECT_EQ(shown["steps"], 0);
+  EXPECT_TRUE(user.reads("tilted"));
+  user.at({20, 790});
+  (void)user.changed("preview", alone);
+  // A typed number moves a point, and the preview follows.
+  const double rms = shown["form_rms"];
+  const State typed = user.enter("y of point 3", "2 mm");
+  EXPECT_NEAR(typed["plane_points"][2][1].get<double>(), 2.0, 1e-9);
+  (void)program->until("followed", [&](const State& s) {
+    return s["settled"] == true && s["form_rms"].is_number() && s["form_rms"] != rms;
+  });
+  const State out = user.click("Take out");
+  EXPECT_EQ(out["form"], "plane");
+  EXPECT_EQ(out["steps"], 1);
+  const State points = out["plane_points"];
+  saveAs(user, work);
+  (void)quit(user);
+  // As the command does it with these points.
+  const auto pair = [&](int i) {
+    return points[static_cast<std::size_t>(i)][0].dump() + "," +
+           points[static_cast<std::size_t>(i)][1].dump();
+  };
+  const std::string recipe_text = runProcess({FETTLE_PROGRAM, "recipe", work}).out;
+  EXPECT_NE(recipe_text.find("through"), std::string::npos) << recipe_text;
+  const std::string by_command = folder.file("level.fettle");
+  const Outcome level = runProcess({FETTLE_PROGRAM, "level", scan, by_command, "--layer", "put", "--through",
+                                    pair(0) + ":" + pair(1) + ":" + pair(2)});
+  ASSERT_EQ(level.status, 0) << level.err;
+  // Points are told to a millionth of a millimetre, on a slope of less than 1: a few units in the last place.
+  const Differences seen = compare(load(work), load(by_command));
+  EXPECT_LT(seen.most, 1e-5);
 }
 
 }  // namespace

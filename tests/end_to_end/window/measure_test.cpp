@@ -84,6 +84,18 @@ TEST_F(WindowTest, parameters_are_measured_of_what_is_chosen_before_and_after) {
   EXPECT_TRUE(user.reads("scan"));
   user.at({20, 790});
   (void)user.look("before and after");
+  // The curves of both over each other.
+  EXPECT_EQ(both["curves"], 2);
+  EXPECT_TRUE(user.readsScrolled("material ratio [%] 0 to 100"));
+  (void)user.look("material ratio");
+  (void)user.click("material ratio (Abbott)");
+  (void)user.click("autocorrelation");
+  EXPECT_TRUE(user.readsScrolled("autocorrelation -"));
+  (void)user.look("autocorrelation");
+  (void)user.click("autocorrelation");
+  (void)user.click("power spectrum");
+  EXPECT_TRUE(user.readsScrolled("frequency [1/mm]"));
+  (void)user.look("power spectrum");
   EXPECT_EQ(both["steps"], 1) << "measuring changes nothing";
   EXPECT_EQ(user.key("ctrl+z")["parameters_outdated"], true);
   program->signal(SIGTERM);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -98,6 +99,7 @@ const std::vector<std::string>& namesOfPanels() {
                                               "Change since the scan",
                                               "Measure",
                                               "Section",
+                                              "Fit",
                                               "Transform",
                                               "Compare",
                                               "Colours",
@@ -216,11 +218,20 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
   if (step.starts_with("type ")) return {"type", "--delay", "0", step.substr(5)};
   if (step.starts_with("hold ")) return {"keydown", step.substr(5)};
   if (step.starts_with("release ")) return {"keyup", step.substr(8)};
+  const State picture = state.value("picture", State{0, 0, width_, height_});
+  if (step.starts_with("over ")) {
+    std::vector<std::string> words;
+    std::istringstream shares(step.substr(5));
+    int x = 0, y = 0;
+    shares >> x >> y;
+    moveTo(words, picture[0].get<int>() + picture[2].get<int>() * x / 100,
+           picture[1].get<int>() + picture[3].get<int>() * y / 100);
+    return words;
+  }
   if (!step.starts_with("panel ")) return {"key", "--delay", "0", step};
   const std::string name = step.substr(6);
   for (const State& open : state.value("panels", State::array()))
     if (open == name) return {};
-  const State picture = state.value("picture", State{0, 0, width_, height_});
   const int left = picture[0].get<int>() + picture[2].get<int>();
   if (left >= state.value("frame", State{width_, height_})[0].get<int>())
     return {"key", "--delay", "0", "Tab"};

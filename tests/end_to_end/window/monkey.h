@@ -14,7 +14,7 @@ namespace fettle::tests {
 struct Reach {
   std::string kind, what;
   std::function<bool(const ViewProgram::State&)> is;
-  /// Steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME", "type TEXT", "hold KEY", "release KEY".
+  /// Steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME", "over X Y" (per cent of the picture), "type TEXT", "hold KEY", "release KEY".
   std::vector<std::string> way;
   int times = 0;  ///< reported so far
 };

@@ -36,7 +36,7 @@ bool calm(const State& s) {
   return s["dialog"] == "none" && s["settled"] == true && s["text_field"] == false &&
          s.value("tool", "view") == "view" && s.value("variants", State::array()).empty() &&
          s.value("suggested", 0) == 0 && s.value("lasso", "") == "" && s.value("adjusting", "") == "" &&
-         !s.value("radial", State()).is_string();
+         s.value("plane_point", State()).is_null() && !s.value("radial", State()).is_string();
 }
 
 // Everything that must come up. `folder` has "second.tif", "left.tif", "there.tif" and "broken.tif".
@@ -66,6 +66,9 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
             {"export", {"ctrl+e"}},
             {"open scene", {"alt+o"}},
             {"save scene", {"alt+s"}},
+            {"export sections", {"Home", "7", "over 40 40", "q", "over 60 60", "shift+q", "ctrl+shift+e"}},
+            {"export report", {"alt+e"}},
+            {"export fits", {"ctrl+shift+f", "alt+f"}},
             {"unsaved", {"ctrl+i", "drop " + folder.file("second.tif")}},
             {"replace", {"ctrl+e", "ctrl+a", "type " + folder.file("there.tif"), "Return"}},
             {"recover", {"drop " + folder.file("left.tif"), "d"}},
@@ -85,6 +88,9 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
       [](const State& s) { return s.value("radial", State()).is_string(); }, {"s", "space"});
   add("seen", "filters that are tried", [](const State& s) { return s.value("trying_filters", false); },
       {"ctrl+f"});
+  add("seen", "a point of a plane",
+      [](const State& s) { return s.value("plane_point", State()).is_number(); }, {"alt+d"});
+  add("seen", "a fit", [](const State& s) { return s.value("fits", State()).is_object(); }, {"ctrl+shift+f"});
   add("seen", "full screen", [](const State& s) { return s["full_screen"] == true; }, {"F11"});
   add("seen", "the scan as it was", [](const State& s) { return s.value("shows_before", false); },
       {"hold BackSpace", "release BackSpace"});

@@ -294,6 +294,36 @@ TEST_F(WindowTest, levelled_lines_of_a_large_field_are_approximated_first) {
             0);
 }
 
+TEST_F(WindowTest, a_nominal_mesh_is_compared_as_by_the_command) {
+  openPanels(folder, {"Compare"});
+  const std::string mesh = folder.file("nominal.stl"), drawn = folder.file("drawn.tif");
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", drawn, "--size", "320x320", "--noise", "0"}).status, 0);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "convert", drawn, mesh}).status, 0);
+  const State by_command = jsonOf({"compare", scan, mesh, "--tolerance", "0.05 mm"});
+  const auto program = start({scan});
+  User user(display, *program, "nominal");
+  (void)opened(*program);
+  (void)user.key("7");
+  user.at({20, 790});
+  const Screen before = user.look("alone");
+  (void)user.click("shift, rotation, tilt");
+  (void)user.click("not");
+  (void)user.enter("tolerance", "0.05 mm");
+  (void)user.click("Choose a scan");
+  user.type(mesh);
+  (void)user.press("Return");
+  const State found = settledWith(*program, "compared", [](const State& s) {
+    return s["comparing"] == false && (s["compared_rms_mm"].is_number() || !s["notices"].empty());
+  });
+  ASSERT_TRUE(found["compared_rms_mm"].is_number()) << found["notices"].dump();
+  EXPECT_DOUBLE_EQ(found["compared_rms_mm"].get<double>(), by_command["rms"].get<double>());
+  EXPECT_TRUE(user.reads(fmt::format("({}), above {}, below {}", by_command["within"].get<int>(),
+                                     by_command["above"].get<int>(), by_command["below"].get<int>())));
+  user.at({20, 790});
+  (void)user.changed("deviation", before);
+  (void)quit(user);
+}
+
 TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {
   openPanels(folder, {"Compare"});
   const std::string turned = folder.file("turned.tif");

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+// Lines of the outcome from when shapes are fitted, and before.
+constexpr int kFittedLines = 16, kUnfittedLines = 3;
+
+void fitFields(FitTool::Options& options) {
+  beginFields();
+  (void)field("shape",
+              "The simplest: one is taken in place of a simpler one only where it lowers the rms by a tenth.",
+              [&] {
+                const std::string now =
+                    options.shape ? std::string(engine::infoOf(*options.shape).word) : "the simplest";
+                if (!ImGui::BeginCombo("##fitted shape", now.c_str())) return false;
+                if (ImGui::Selectable("the simplest", !options.shape)) options.shape.reset();
+                for (const engine::ShapeInfo& info : engine::shapeInfos())
+                  if (ImGui::Selectable(std::string(info.word).c_str(), options.shape == info.kind))
+                    options.shape = info.kind;
+                ImGui::EndCombo();
+                return true;
+              });
+  (void)field("to", [&] {
+    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+    constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
+                                      engine::Region::kUnmarked};
+    int of = static_cast<int>(std::ranges::find(kOf, options.region) - std::begin(kOf));
+    const bool changed = ImGui::Combo("##fitted to", &of, kSamples, std::size(kSamples));
+    if (changed) options.region = kOf[of];
+    return changed;
+  });
+  endFields();
+  ImGui::Checkbox("between edge lines, each by itself", &options.between_lines);
+  explain("What edge lines enclose is a region of its own, two samples from them. Without lines all is one.");
+  ImGui::Checkbox("without samples far from it##fit", &options.robust);
+  explain("Half of the samples must be near to the shape.");
+  ImGui::Checkbox("distances along z##fit", &options.vertical);
+  explain(
+      "In which a scanner has its noise; else the shortest to the shape, as the standards of coordinate "
+      "metrology have it.");
+}
+
+void fitTable(const std::vector<FitLine>& lines, const char* id) {
+  if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) return;
+  for (const FitLine& line : lines) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(line.name.c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(line.text.c_str());
+  }
+  ImGui::EndTable();
+}
+
+// Angle and distance between two of several.
+void pairFields(FitTool& fit) {
+  if (!fit.pair()) return;
+  auto [first, second] = *fit.pair();
+  const std::vector<FittedRegion>& fitted = fit.fits()->fitted;
+  const auto choose = [&](const char* id, std::size_t& now, std::size_t other) {
+    const auto name = [&](std::size_t i) {
+      return fmt::format("region {}: {}", fitted[i].number,
+                         engine::infoOf(fitted[i].chosen.fit.shape.kind).word);
+    };
+    if (!ImGui::BeginCombo(id, name(now).c_str())) return false;
+    bool changed = false;
+    for (std::size_t i = 0; i < fitted.size(); ++i)
+      if (i != other && ImGui::Selectable(name(i).c_str(), i == now)) {
+        now = i;
+        changed = true;
+      }
+    ImGui::EndCombo();
+    return changed;
+  };
+  beginFields();
+  bool changed = field("between", [&] { return choose("##first fit", first, second); });
+  changed = field("and", [&] { return choose("##second fit", second, first); }) || changed;
+  endFields();
+  if (changed) fit.setPair(first, second);
+  fitTable(relationLines(fit.fits()->report["between"]), "relation");
+}
+
+void outcome(FitTool& fit) {
+  const FieldFits& fits = *fit.fits();
+  if (fit.outdated()) writeWrapped("the field has changed since: Fit");
+  pairFields(fit);
+  int number = 0;
+  for (const Report& one : fits.report["fits"]) {
+    writeWrapped(fitTitle(one));
+    if (const auto left = one["left_out"].get<std::int64_t>(); left > 0)
+      writeWrapped(fmt::format("{} samples lie apart and do not count", left));
+    fitTable(fitLines(one), fmt::format("fit {}", ++number).c_str());
+  }
+  for (const std::string& warning : fits.warnings) writeIn(render::PanelColour::kWarning, warning);
+  for (const Report& one : fits.report["not_fitted"])
+    writeIn(render::PanelColour::kMuted,
+            fmt::format("region {}: {}", one["region"].get<int>(), one["reason"].get<std::string>()));
+}
+
+// As it stands in the panel, in columns.
+std::string copiedText(const FieldFits& fits) {
+  std::string text;
+  const auto add = [&text](const std::vector<FitLine>& lines) {
+    for (const FitLine& line : lines) text += fmt::format("{}\t{}\n", line.name, line.text);
+  };
+  for (const Report& one : fits.report["fits"]) {
+    text += fitTitle(one) + "\n";
+    add(fitLines(one));
+  }
+  if (!fits.report.contains("between")) return text;
+  const Report& between = fits.report["between"];
+  text += fmt::format("between {} and {}\n", between["first"].get<int>(), between["second"].get<int>());
+  add(relationLines(between));
+  return text;
+}
+
+}  // namespace
+
+void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture) {
+  fitFields(fit.options);
+  ImGui::BeginDisabled(fit.busy());
+  actionButton("Fit##shapes", Action::kFitShapes, context.act);
+  ImGui::BeginDisabled(fit.fits() == nullptr);
+  sameLineIfFits("Copy");
+  if (ImGui::Button("Copy##fits")) ImGui::SetClipboardText(copiedText(*fit.fits()).c_str());
+  explain("The figures as text in columns, for a table or a message.");
+  sameLineIfFits("Export ...");
+  actionButton("Export ...##fits", Action::kExportFits, context.act);
+  sameLineIfFits("Remove");
+  if (ImGui::Button("Remove##fits")) {
+    fit.clear();
+    picture.refreshRanges();
+    picture.requestRedraw();
+  }
+  explain("Forgets the fits and their colours.");
+  if (ImGui::Checkbox("colours show the distances from it", &fit.shown)) {
+    picture.refreshRanges();
+    picture.requestRedraw();
+  }
+  ImGui::EndDisabled();
+  ImGui::EndDisabled();
+  beginPlace("##fits", fit.busy() || fit.fits() != nullptr ? kFittedLines : kUnfittedLines);
+  if (fit.busy()) {
+    if (cancelledBar(fit.progress(), "fitting", "Cancel##fits")) fit.cancel();
+  } else if (fit.fits() != nullptr) {
+    outcome(fit);
+  } else {
+    writeIn(
+        render::PanelColour::kMuted,
+        "Plane, sphere, cylinder, cone or torus nearest to the samples. Here stand their sizes and places "
+        "with standard errors.");
+  }
+  endPlace();
+}
+
+}  // namespace fettle::app
