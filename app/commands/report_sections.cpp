@@ -87,7 +87,8 @@ ReportPage::Table figuresOf(const std::vector<engine::Section>& sections,
   if (!wanted.cutoff_mm) return table;
   std::vector<engine::Roughness> rough;
   for (std::size_t s = 0; s < sections.size(); ++s) {
-    auto figures = engine::roughnessOf(sections[s], {0.0, sections[s].lengthMm()}, *wanted.cutoff_mm);
+    auto figures =
+        engine::roughnessOf(sections[s], {0.0, sections[s].lengthMm()}, {.cutoff_mm = *wanted.cutoff_mm});
     if (!figures) {
       table.note = fmt::format("No roughness: {}.", figures.error().what);
       return table;

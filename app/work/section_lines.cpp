@@ -73,8 +73,11 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
   if (of.contains("roughness")) {
     const Report& r = of["roughness"];
     const ReadAs as = readLengthAs(r["ra_mm"].get<double>(), 1.0, "mm");
-    row("roughness", fmt::format("over {} cut-offs of {}; without noise +- standard error",
-                                 r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along)));
+    row("roughness", fmt::format("over {} cut-offs of {}{}; without noise +- standard error",
+                                 r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along),
+                                 r.contains("lambda_s_mm")
+                                     ? fmt::format(", lambda s {}", shownLength(r["lambda_s_mm"], along))
+                                     : ""));
     struct Kind {
       const char* name;
       const char* key;

@@ -162,14 +162,16 @@ class SectionMeasurement {
     return report;
   }
   engine::Result<Report> roughness(const Section& section) const {
-    const auto figures = engine::roughnessOf(section, within(section), *options_.cutoff);
+    const engine::ProfileFilters filters{*options_.cutoff, options_.lambda_s.value_or(0.0)};
+    const auto figures = engine::roughnessOf(section, within(section), filters);
     if (!figures) return tl::unexpected(figures.error());
-    const auto noise = engine::roughnessNoise(section, within(section), *options_.cutoff, *figures, noise_mm_,
+    const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_mm_,
                                               {.pairs = kRoughnessPairs});
     if (!noise) return tl::unexpected(noise.error());
     Report report{{"cutoff_mm", *options_.cutoff},
                   {"evaluated", stretchOf(figures->evaluated)},
                   {"lengths", figures->lengths}};
+    if (options_.lambda_s) report["lambda_s_mm"] = *options_.lambda_s;
     const auto add = [&report](const std::string& key, const char* unit, double value,
                                const engine::NoiseEffect& effect) {
       report[key + unit] = numberOrNull(value);

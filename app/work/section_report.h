@@ -17,14 +17,15 @@ namespace fettle::app {
 
 /// What is measured in a section: lengths along it in millimetres from its first point. Empty: not.
 struct SectionWants {
-  std::vector<double> within;   ///< A,B: of step, groove and roughness; empty: the whole line
-  std::vector<double> cursors;  ///< A,B
-  std::vector<double> line;     ///< A,B
-  std::vector<double> angle;    ///< A,B,C,D
-  std::vector<double> arc;      ///< A,B
-  std::string step;             ///< the edge's length, or "auto"
-  std::string groove;           ///< both edges' lengths A,B, or "auto"
-  std::optional<double> cutoff;
+  std::vector<double> within;      ///< A,B: of step, groove and roughness; empty: the whole line
+  std::vector<double> cursors;     ///< A,B
+  std::vector<double> line;        ///< A,B
+  std::vector<double> angle;       ///< A,B,C,D
+  std::vector<double> arc;         ///< A,B
+  std::string step;                ///< the edge's length, or "auto"
+  std::string groove;              ///< both edges' lengths A,B, or "auto"
+  std::optional<double> cutoff;    ///< of roughness
+  std::optional<double> lambda_s;  ///< of its S-filter
 };
 
 /// A place along a section that a picture shows.

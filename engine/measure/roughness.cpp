@@ -97,26 +97,43 @@ std::vector<double> gaussianMeanLine(std::span<const double> heights, double ste
   return line;
 }
 
-Result<Roughness> roughnessOf(const Section& section, const Stretch& within, double cutoff_mm) {
+Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch& within,
+                                          const ProfileFilters& filters) {
   const Run run = longestRun(section, within);
-  const double step = section.step_mm;
-  const double length = run.to > run.from ? static_cast<double>(run.to - run.from - 1) * step : 0.0;
-  if (!(cutoff_mm >= 4.0 * step * (1.0 - 1e-9)))
-    return inputError(
-        fmt::format("a cut-off of {:.6g} mm is shorter than 4 places of the section", cutoff_mm), "section",
-        fmt::format("give {:.6g} mm or more", 4.0 * step));
-  if (!(length >= 2.0 * cutoff_mm * (1.0 - 1e-9)))
-    return inputError(
-        fmt::format("the section has {:.6g} mm without a hole, less than two cut-offs of {:.6g} mm", length,
-                    cutoff_mm),
-        "section", "give a longer line or a shorter cut-off");
+  const double step = section.step_mm, cutoff_mm = filters.cutoff_mm, lambda_s_mm = filters.lambda_s_mm;
+  const double least = 4.0 * step;
+  const auto is_short = [least](double length_mm) { return !(length_mm >= least * (1.0 - 1e-9)); };
+  if (is_short(cutoff_mm) || (lambda_s_mm != 0.0 && is_short(lambda_s_mm)))
+    return inputError(fmt::format("a {} of {:.6g} mm is shorter than 4 places of the section",
+                                  is_short(cutoff_mm) ? "cut-off" : "lambda s",
+                                  is_short(cutoff_mm) ? cutoff_mm : lambda_s_mm),
+                      "section", fmt::format("give {:.6g} mm or more", least));
+  if (!(lambda_s_mm < cutoff_mm))
+    return inputError(fmt::format("a lambda s of {:.6g} mm leaves nothing below a cut-off of {:.6g} mm",
+                                  lambda_s_mm, cutoff_mm),
+                      "section", "give a shorter lambda s: a hundredth or a three-hundredth is usual");
   std::vector<double> heights(section.height.begin() + static_cast<std::ptrdiff_t>(run.from),
                               section.height.begin() + static_cast<std::ptrdiff_t>(run.to));
   takeLineOut(heights);
+  std::size_t first = run.from;  // place of the section
+  if (lambda_s_mm > 0.0) {
+    heights = gaussianMeanLine(heights, step, lambda_s_mm);
+    const std::size_t end =
+        std::min(static_cast<std::size_t>(std::ceil(0.5 * lambda_s_mm / step - 1e-6)), heights.size() / 2);
+    heights.erase(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(end));
+    heights.resize(heights.size() - end);
+    first += end;
+  }
+  const double length = heights.empty() ? 0.0 : static_cast<double>(heights.size() - 1) * step;
+  if (!(length >= 2.0 * cutoff_mm * (1.0 - 1e-9)))
+    return inputError(
+        fmt::format("the section has {:.6g} mm without a hole{}, less than two cut-offs of {:.6g} mm", length,
+                    lambda_s_mm > 0.0 ? " or an end of the S-filter" : "", cutoff_mm),
+        "section", "give a longer line or a shorter cut-off");
   const std::vector<double> line = gaussianMeanLine(heights, step, cutoff_mm);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] -= line[i];
 
-  Roughness result;
+  RoughnessProfile result;
   result.lengths = static_cast<int>(std::floor((length - cutoff_mm) / cutoff_mm + 1e-6));
   // In the middle of the run.
   const double start = 0.5 * (length - result.lengths * cutoff_mm);
@@ -124,17 +141,30 @@ Result<Roughness> roughnessOf(const Section& section, const Stretch& within, dou
     return std::min(heights.size() - 1, static_cast<std::size_t>(std::ceil(at / step - 1e-6)));
   };
   const std::size_t from = placeAt(start), to = placeAt(start + result.lengths * cutoff_mm);
-  const double begin = section.along(run.from);
+  const double begin = section.along(first);
   result.evaluated = {begin + static_cast<double>(from) * step, begin + static_cast<double>(to) * step};
-  const std::span<const double> evaluated = std::span(heights).subspan(from, to - from + 1);
-  const auto n = static_cast<double>(evaluated.size());
+  for (int k = 0; k <= result.lengths; ++k)
+    result.lengths_begin.push_back(placeAt(start + k * cutoff_mm) - from);
+  result.heights.assign(heights.begin() + static_cast<std::ptrdiff_t>(from),
+                        heights.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+  const auto n = static_cast<double>(result.heights.size());
   double mean = 0.0;
-  for (const double z : evaluated) mean += z / n;
+  for (const double z : result.heights) mean += z / n;
+  // The mean line of all is not exactly the mean of the evaluated part.
+  for (double& z : result.heights) z -= mean;
+  return result;
+}
+
+Result<Roughness> roughnessOf(const Section& section, const Stretch& within, const ProfileFilters& filters) {
+  const auto found = roughnessProfile(section, within, filters);
+  if (!found) return tl::unexpected(found.error());
+  const std::vector<double>& profile = found->heights;
+  Roughness result;
+  result.evaluated = found->evaluated;
+  result.lengths = found->lengths;
+  const auto n = static_cast<double>(profile.size());
   double second = 0.0, third = 0.0, fourth = 0.0;
-  std::vector<double> profile(evaluated.begin(), evaluated.end());
-  for (double& z : profile) {
-    // From the mean of the evaluated part: the mean line of all is not exactly its mean.
-    z -= mean;
+  for (const double z : profile) {
     result.ra += std::abs(z) / n;
     second += z * z / n;
     third += z * z * z / n;
@@ -143,14 +173,13 @@ Result<Roughness> roughnessOf(const Section& section, const Stretch& within, dou
   result.rq = std::sqrt(second);
   result.rsk = second > 0.0 ? third / (second * result.rq) : std::numeric_limits<double>::quiet_NaN();
   result.rku = second > 0.0 ? fourth / (second * second) : std::numeric_limits<double>::quiet_NaN();
-  for (int k = 0; k < result.lengths; ++k) {
-    const std::size_t low = placeAt(start + k * cutoff_mm) - from,
-                      high = placeAt(start + (k + 1) * cutoff_mm) - from;
-    const auto [least, most] = std::minmax_element(profile.begin() + static_cast<std::ptrdiff_t>(low),
-                                                   profile.begin() + static_cast<std::ptrdiff_t>(high) + 1);
+  for (std::size_t k = 0; k + 1 < found->lengths_begin.size(); ++k) {
+    const auto low = static_cast<std::ptrdiff_t>(found->lengths_begin[k]),
+               high = static_cast<std::ptrdiff_t>(found->lengths_begin[k + 1]);
+    const auto [least, most] = std::minmax_element(profile.begin() + low, profile.begin() + high + 1);
     result.rz += (*most - *least) / result.lengths;
   }
-  result.rsm = meanWidth(profile, step, 0.1 * result.rz);
+  result.rsm = meanWidth(profile, section.step_mm, 0.1 * result.rz);
   return result;
 }
 

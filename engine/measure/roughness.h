@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -17,9 +18,33 @@ namespace fettle::engine {
 [[nodiscard]] std::vector<double> gaussianMeanLine(std::span<const double> heights, double step_mm,
                                                    double cutoff_mm);
 
+/// The Gaussian filters that make the roughness profile of a section.
+struct ProfileFilters {
+  double cutoff_mm = 0.0;    ///< L-filter (lambda c): longer waves are taken out
+  double lambda_s_mm = 0.0;  ///< S-filter: shorter waves are taken out first; 0: none
+};
+
+/// A roughness profile as far as it is evaluated.
+struct RoughnessProfile {
+  Stretch evaluated;            ///< a whole number of section lengths, each one cut-off
+  int lengths = 0;              ///< of these
+  std::vector<double> heights;  ///< about their mean [mm]
+  std::vector<std::size_t>
+      lengths_begin;  ///< places at which section lengths begin, and where the last one ends: lengths + 1
+};
+
+/// Of a stretch of a section: its least-squares line is taken out, then it is filtered by the S-filter (ISO 16610-21, which leaves the primary
+/// profile of ISO 21920-2), then its Gaussian mean line is taken out. At both ends, where a filter lacks neighbours (end effects
+/// of ISO 16610-21 and -28: weights are those that are left), half a lambda s is cut off before the mean line is found, and
+/// half a cut-off is not evaluated. Where the stretch has places without a height, its longest part without one counts.
+/// Errors (kInput): a cut-off or a lambda s shorter than 4 places (ISO 21920-3 has 5 and more), a lambda s not below the
+/// cut-off, a cut-off longer than half of the part.
+[[nodiscard]] Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch& within,
+                                                        const ProfileFilters& filters);
+
 /// Profile roughness of ISO 21920-2:2021 [mm]. NaN where the profile does not determine a figure.
 struct Roughness {
-  Stretch evaluated;  ///< a whole number of section lengths, each one cut-off
+  Stretch evaluated;  ///< as of RoughnessProfile
   int lengths = 0;
   double ra = 0.0, rq = 0.0, rz = 0.0;  ///< rz: mean of the section lengths' highest less lowest
   double rsk = 0.0, rku = 0.0;
@@ -28,10 +53,8 @@ struct Roughness {
   double rsm = 0.0;
 };
 
-/// Of a stretch of a section: its least-squares line is taken out, then its Gaussian mean line. Half a cut-off at both
-/// ends, where the mean line lacks neighbours, is not evaluated. No S-filter is applied. Where the stretch has places
-/// without a height, its longest part without one counts. Errors (kInput): a cut-off shorter than 4 places or longer
-/// than half of the part.
-[[nodiscard]] Result<Roughness> roughnessOf(const Section& section, const Stretch& within, double cutoff_mm);
+/// Of roughnessProfile(), with its errors.
+[[nodiscard]] Result<Roughness> roughnessOf(const Section& section, const Stretch& within,
+                                            const ProfileFilters& filters);
 
 }  // namespace fettle::engine

@@ -68,8 +68,8 @@ std::vector<double> sectionNoise(const Section& section, double noise_mm, std::u
   return drawn(section, factorOf(section), noise_mm, seed);
 }
 
-Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within, double cutoff_mm,
-                                      const Roughness& found, double noise_mm,
+Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within,
+                                      const ProfileFilters& filters, const Roughness& found, double noise_mm,
                                       const NoiseTrialOptions& options) {
   RoughnessNoise result;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -85,7 +85,7 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
     for (int side = 0; side < 2; ++side) {
       for (std::size_t i = 0; i < noise.size(); ++i)
         noisy.height[i] = section.height[i] + (side == 0 ? noise[i] : -noise[i]);
-      const auto rough = roughnessOf(noisy, within, cutoff_mm);
+      const auto rough = roughnessOf(noisy, within, filters);
       if (!rough) return tl::unexpected(rough.error());
       sides[side] = *rough;
     }

@@ -16,11 +16,11 @@ struct RoughnessNoise {
 
 /// By trials (noise_trial.h) in which heights of the section get noise with the covariance that independent noise of standard deviation
 /// `noise_mm` in every sample gives them (Section::covariance), drawn through its banded Cholesky factor. `found` is roughnessOf(section, within,
-/// cutoff_mm). Noise that samples share is left out, as in the errors of section_figures.h. `noise_mm` not above 0: no effect, NaN.
+/// filters). Noise that samples share is left out, as in the errors of section_figures.h. `noise_mm` not above 0: no effect, NaN.
 /// Time: 2 pairs times that of roughnessOf, and places times band squared. Errors: those of roughnessOf. Thread: any.
 [[nodiscard]] Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within,
-                                                    double cutoff_mm, const Roughness& found, double noise_mm,
-                                                    const NoiseTrialOptions& options);
+                                                    const ProfileFilters& filters, const Roughness& found,
+                                                    double noise_mm, const NoiseTrialOptions& options);
 
 /// Heights with such noise, `sign` times; places without a height have none. For tests.
 [[nodiscard]] std::vector<double> sectionNoise(const Section& section, double noise_mm, std::uint64_t seed);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -17,6 +18,8 @@
 #include "engine/formats/formats.h"
 #include "engine/measure/areal.h"
 #include "engine/measure/form.h"
+#include "engine/measure/roughness.h"
+#include "engine/measure/section.h"
 #include "engine/measure/spatial.h"
 #include "engine/measure/surface.h"
 
@@ -163,6 +166,57 @@ class Table {
   bool failed_ = false;
 };
 
+// Gwyddion's Rtm: m sampling lengths of n / m samples each, none of them in two, where ISO 21920-2 has lengths whose ends are those of
+// their neighbours; and samples that are left over at the end are in none.
+double heightOfSamplings(const std::vector<double>& profile, int m) {
+  const std::size_t n = profile.size(), lengths = static_cast<std::size_t>(m);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < lengths; ++k) {
+    const auto from = profile.begin() + static_cast<std::ptrdiff_t>(k * n / lengths),
+               to = profile.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / lengths);
+    sum += (*std::max_element(from, to) - *std::min_element(from, to)) / m;
+  }
+  return sum;
+}
+
+// The row with the longest part without a hole, filtered by Fettle: Gwyddion's library has the parameters of a profile, its
+// filter is one of the program.
+void compareProfile(const Version& field, Table& table) {
+  const Grid& grid = field.grid();
+  std::int32_t row = 0, longest = 0;
+  for (std::int32_t r = 0; r < grid.height; ++r) {
+    std::int32_t run = 0;
+    for (std::int32_t c = 0; c < grid.width; ++c) {
+      run = std::isnan(field.reader().heightAt(c, r)) ? 0 : run + 1;
+      if (run <= longest) continue;
+      longest = run;
+      row = r;
+    }
+  }
+  if (longest < 60) return;
+  JobControl job;
+  const double y = row * grid.spacingYMm();
+  const std::vector<glm::dvec2> line{{0.0, y}, {(grid.width - 1) * grid.spacingXMm(), y}};
+  const auto section = sectionAlong(field, line, {}, job);
+  if (!section) return;
+  const double cutoff = longest * section->step_mm / 7.0;
+  const ProfileFilters filters{cutoff, 4.0 * section->step_mm};
+  const Stretch all{0.0, section->lengthMm()};
+  const auto profile = roughnessProfile(*section, all, filters);
+  const auto rough = roughnessOf(*section, all, filters);
+  if (!profile || !rough) return;
+  const auto n = static_cast<int>(profile->heights.size());
+  GwyDataLine* const data = gwy_data_line_new(n, n * section->step_mm, TRUE);
+  std::copy(profile->heights.begin(), profile->heights.end(), gwy_data_line_get_data(data));
+  table.row("Ra", rough->ra, gwy_data_line_get_ra(data));
+  table.row("Rq", rough->rq, gwy_data_line_get_rms(data));
+  table.row("Rsk", rough->rsk, gwy_data_line_get_skew(data));
+  table.row("Rku", rough->rku, gwy_data_line_get_kurtosis(data), rough->rku - 3.0);
+  table.row("Rz", rough->rz, gwy_data_line_get_xtm(data, profile->lengths, 1),
+            heightOfSamplings(profile->heights, profile->lengths));
+  g_object_unref(data);
+}
+
 bool compare(const std::string& path) {
   JobControl job;
   const auto imported = importField(path, {}, job);
@@ -211,6 +265,7 @@ bool compare(const std::string& path) {
   table.row("autocorrelation, 1 + largest difference", 1.0 + difference, 1.0);
   if (!std::isnan(correlated->parameters.sal))
     table.row("Sal of it [mm]", shortestDecay(correlated->correlation), shortestDecay(other));
+  compareProfile(field, table);
   g_object_unref(peer.data);
   g_object_unref(peer.mask);
   return !table.failed();

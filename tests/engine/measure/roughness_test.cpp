@@ -24,8 +24,8 @@ Section profileOf(std::vector<double> heights, double step_mm) {
   return section;
 }
 
-Roughness measured(const Section& section, double cutoff_mm) {
-  const auto roughness = roughnessOf(section, {0.0, section.lengthMm()}, cutoff_mm);
+Roughness measured(const Section& section, double cutoff_mm, double lambda_s_mm = 0.0) {
+  const auto roughness = roughnessOf(section, {0.0, section.lengthMm()}, {cutoff_mm, lambda_s_mm});
   EXPECT_TRUE(roughness) << roughness.error().line();
   return roughness ? *roughness : Roughness{};
 }
@@ -98,12 +98,52 @@ TEST(Roughness, SmallPeaksCountToTheirNeighbours) {
   EXPECT_NEAR(measured(profileOf(heights, step), 0.8).rsm, wavelength, 0.02 * wavelength);
 }
 
+// ISO 16610-21, 4.3, of the S-filter: what is left of a sine of wavelength L is the share exp(-ln 2 (lambda s / L)^2), a half
+// where both are alike. The mean line with its cut-off of ten and more wavelengths takes nothing.
+TEST(Roughness, LambdaSLeavesHalfOfASineOfItsLength) {
+  const double step = 0.0005, cutoff = 0.8;
+  for (const double wavelength : {0.02, 0.04, 0.08})
+    for (const double lambda_s : {0.01, 0.02, 0.04}) {
+      std::vector<double> heights(11201);  // on a slope
+      for (std::size_t i = 0; i < heights.size(); ++i)
+        heights[i] = 0.1 * static_cast<double>(i) * step +
+                     std::sin(kTurn * static_cast<double>(i) * step / wavelength);
+      const Roughness whole = measured(profileOf(heights, step), cutoff),
+                      left = measured(profileOf(heights, step), cutoff, lambda_s);
+      const double share = std::exp(-std::numbers::ln2 * std::pow(lambda_s / wavelength, 2));
+      // 2e-3 of the sine, of which the section's length holds no whole number (OfASineIsThatOfTheSine).
+      EXPECT_NEAR(left.rq, share * whole.rq, 2e-3) << wavelength << " " << lambda_s;
+      EXPECT_NEAR(left.rz, share * whole.rz, 4e-3) << wavelength << " " << lambda_s;
+    }
+}
+
+// Ends of the S-filter, where its weights are one-sided, are cut off: the slope leaves nothing, and what is evaluated is half of
+// lambda s and half of a cut-off away from both ends at least.
+TEST(Roughness, LambdaSHasNoEndsInWhatIsEvaluated) {
+  std::vector<double> heights(4001);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.3 * static_cast<double>(i);
+  for (const double lambda_s : {0.02, 0.1, 0.2}) {
+    const Section section = profileOf(heights, 0.001);
+    const Roughness r = measured(section, 0.25, lambda_s);
+    EXPECT_LT(r.rz, 1e-9);
+    EXPECT_GE(r.evaluated.from_mm, 0.5 * (lambda_s + 0.25) - 1e-9);
+    EXPECT_LE(r.evaluated.to_mm, 4.0 - 0.5 * (lambda_s + 0.25) + 1e-9);
+    EXPECT_NEAR(r.evaluated.to_mm - r.evaluated.from_mm, r.lengths * 0.25, 1e-9);
+  }
+  // A spike at an end that the S-filter spreads does not reach over half of it.
+  heights.front() = 1e6;
+  EXPECT_LT(measured(profileOf(heights, 0.001), 0.25, 0.02).rz, measured(profileOf(heights, 0.001), 0.25).rz);
+}
+
 TEST(Roughness, RefusesWhatACutOffDoesNotFit) {
   std::vector<double> heights(101, 0.0);
   const Section flat = profileOf(heights, 0.01);
-  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, 0.03));
-  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, 0.6));
-  EXPECT_FALSE(roughnessOf(flat, {2.0, 3.0}, 0.1));
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, {0.03}));
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, {0.6}));
+  EXPECT_FALSE(roughnessOf(flat, {2.0, 3.0}, {0.1}));
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, {0.1, 0.03})) << "a lambda s of three places";
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, {0.1, 0.1})) << "nothing between";
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, {0.48, 0.2})) << "its ends leave less than two cut-offs";
   const Roughness r = measured(flat, 0.1);
   EXPECT_EQ(r.rq, 0.0);
   EXPECT_TRUE(std::isnan(r.rsk));

@@ -89,14 +89,14 @@ TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
     const Section clean = sectionOf(groundField(0.0, 1), to_y, width);
     const Stretch all{0.0, clean.lengthMm()};
     constexpr double kCutoff = 40.0;
-    const auto truth = roughnessOf(clean, all, kCutoff);
+    const auto truth = roughnessOf(clean, all, {kCutoff});
     ASSERT_TRUE(truth);
     std::vector<Shares> shares(std::size(kFigures));
     for (int s = 0; s < seeds; ++s) {
       const Section noisy = sectionOf(groundField(sigma, 100U + static_cast<unsigned>(s)), to_y, width);
-      const auto found = roughnessOf(noisy, all, kCutoff);
+      const auto found = roughnessOf(noisy, all, {kCutoff});
       ASSERT_TRUE(found);
-      const auto noise = roughnessNoise(noisy, all, kCutoff, *found, sigma,
+      const auto noise = roughnessNoise(noisy, all, {kCutoff}, *found, sigma,
                                         {.pairs = 16, .seed = 5000 + 100 * static_cast<std::uint64_t>(s)});
       ASSERT_TRUE(noise);
       for (std::size_t f = 0; f < std::size(kFigures); ++f) {
@@ -126,10 +126,10 @@ TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
 TEST(RoughnessNoise, WithoutNoiseHasNoEffect) {
   const Section section = sectionOf(groundField(0.1, 3), 12.0, 0.0);
   const Stretch all{0.0, section.lengthMm()};
-  const auto found = roughnessOf(section, all, 40.0);
+  const auto found = roughnessOf(section, all, {40.0});
   ASSERT_TRUE(found);
   for (const double none : {0.0, std::nan("")}) {
-    const auto noise = roughnessNoise(section, all, 40.0, *found, none, {});
+    const auto noise = roughnessNoise(section, all, {40.0}, *found, none, {});
     ASSERT_TRUE(noise);
     EXPECT_TRUE(std::isnan(noise->ra.error));
   }
