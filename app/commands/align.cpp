@@ -59,8 +59,9 @@ engine::Result<Foreseen> foreseeAlign(const AlignCommand& options, const engine:
   return foresee(planned, shownInput(options.b), options.estimate, job);
 }
 
-engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Version& a,
+engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Imported& read,
                                     engine::JobControl& job) {
+  const engine::Version& a = read.field;
   const auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
   auto foreseen = foreseeAlign(
@@ -72,7 +73,7 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::V
       job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
-  const auto alignment = alignmentOf(a, b->field, options.a, options.b, options.how, job);
+  const auto alignment = alignmentOf(read, b->field, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
   PlacedB placed{.alignment = *alignment};
   if (options.out.empty()) return placed;
@@ -82,8 +83,9 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::V
   return placed;
 }
 
-engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine::Version& a,
+engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine::Imported& read,
                                        engine::JobControl& job) {
+  const engine::Version& a = read.field;
   const auto nominal =
       loadNominal(options.b, options.nominal, options.reading.from, a.grid(), Sides::kNotNeeded, job);
   if (!nominal) return tl::unexpected(nominal.error());
@@ -98,7 +100,7 @@ engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine
       job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
-  const auto alignment = alignmentOf(a, *nominal, options.a, options.b, options.how, job);
+  const auto alignment = alignmentOf(read, *nominal, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
   PlacedB placed{.alignment = *alignment, .nominal = nominalReport(options.nominal, *nominal)};
   if (options.out.empty()) return placed;
@@ -127,8 +129,8 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
   const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
   const auto placed = isNominal(options.b, options.reading, options.nominal)
-                          ? alignedNominal(options, a->field, job)
-                          : alignedScan(options, a->field, job);
+                          ? alignedNominal(options, *a, job)
+                          : alignedScan(options, *a, job);
   if (!placed) return tl::unexpected(placed.error());
   if (placed->only) return *placed->only;
   Report report = alignReport(options.how, placed->alignment);
@@ -206,6 +208,7 @@ void addAlign(Command root, Chosen& chosen) {
         "The second at the samples of the first, without tilting it"},
        {"fettle align scan.tif clean.tif level.tif --moves level --region unmarked --marks marks.png",
         "Height and tilt alone, by what is not marked"},
+       {"fettle align scan.tif clean.tif --region \"rectangle 1,1,6,4\"", "By what lies between two corners"},
        {"fettle align scan.tif nominal.stl nominal.tif", "The nominal shape at the samples of the part"}});
 }
 

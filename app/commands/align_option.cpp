@@ -54,10 +54,10 @@ std::string alignKey(const AlignFigure& figure, const char* between) {
 }
 
 // What `align` finds under the options that the arguments mean; errors name the files.
-engine::Result<engine::Alignment> namedAlignment(const engine::Version& a, const std::string& path_a,
+engine::Result<engine::Alignment> namedAlignment(const engine::Imported& a, const std::string& path_a,
                                                  const std::string& path_b, const AlignArguments& arguments,
                                                  engine::JobControl& job, const auto& align) {
-  const auto counted = withMarks(a, arguments.marks, job);
+  const auto counted = countedOf(a.field, a.original, path_a, arguments, job);
   if (!counted) return tl::unexpected(counted.error());
   engine::Result<engine::Alignment> alignment = align(*counted, alignOptionsOf(arguments));
   if (!alignment && alignment.error().kind == engine::ErrorKind::kInput) {
@@ -88,9 +88,7 @@ const engine::AlignMoves& movesOf(const std::string& word) {
 engine::AlignOptions alignOptionsOf(const AlignArguments& arguments) {
   engine::AlignOptions options;
   options.moves = movesNamed(arguments.moves).moves;
-  options.region = arguments.region == "marked"     ? engine::Region::kMarked
-                   : arguments.region == "unmarked" ? engine::Region::kUnmarked
-                                                    : engine::Region::kAll;
+  options.region = regionOf(arguments.region);
   options.most_rotation_deg = arguments.rotation.value_or(options.most_rotation_deg);
   return options;
 }
@@ -103,31 +101,21 @@ void addAlignOptions(Command command, AlignArguments& arguments) {
         .text = "Rotations about z that the search tries, both ways; any smaller one is found between",
         .range = Range{0.0, 180.0},
         .unit = "degrees",
-        .otherwise = "10"},
-       {.name = "--region",
-        .to = &arguments.region,
-        .text = "The samples of A by which B is aligned",
-        .words = {{"all", "every sample that is no hole"},
-                  {"marked", "those that are marked"},
-                  {"unmarked", "those that are not"}}},
-       {.name = "--marks",
-        .to = &arguments.marks,
-        .text = "Picture of marks of A for --region, instead of the marks of a session",
-        .kind = ValueKind::kMarks}},
+        .otherwise = "10"}},
       kGroup);
+  addRegionOptions(command, arguments, "The samples of A by which B is aligned", kGroup,
+                   arguments.region.empty() ? "all" : "");
 }
 
 engine::Status checkAlign(const AlignArguments& arguments) {
-  if (!arguments.marks.empty() && arguments.region == "all")
-    return engine::inputError("marks choose nothing where all samples count", "--marks",
-                              "add --region marked or --region unmarked");
+  if (auto status = checkRegion(arguments); !status) return status;
   if (arguments.rotation && !movesNamed(arguments.moves).moves.rotation)
     return engine::inputError(fmt::format("'{}' does not rotate about z", arguments.moves), "--rotation",
                               "leave it out, or align by all or in-plane");
   return {};
 }
 
-engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const engine::Version& b,
+engine::Result<engine::Alignment> alignmentOf(const engine::Imported& a, const engine::Version& b,
                                               const std::string& path_a, const std::string& path_b,
                                               const AlignArguments& arguments, engine::JobControl& job) {
   return namedAlignment(a, path_a, path_b, arguments, job,
@@ -136,7 +124,7 @@ engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const en
                         });
 }
 
-engine::Result<engine::Alignment> alignmentOf(const engine::Version& a, const engine::NominalMesh& b,
+engine::Result<engine::Alignment> alignmentOf(const engine::Imported& a, const engine::NominalMesh& b,
                                               const std::string& path_a, const std::string& path_b,
                                               const AlignArguments& arguments, engine::JobControl& job) {
   return namedAlignment(a, path_a, path_b, arguments, job,
@@ -155,7 +143,7 @@ Report alignReport(const AlignArguments& arguments, const engine::Alignment& ali
                                      alignment.shift_error.z,      alignment.angle_error.rotation_z,
                                      alignment.angle_error.tilt_x, alignment.angle_error.tilt_y};
   const std::array<bool, 6> free{moves.shift, moves.shift, true, moves.rotation, moves.tilt, moves.tilt};
-  Report report{{"moves", arguments.moves}, {"region", arguments.region}};
+  Report report{{"moves", arguments.moves}, {"region", arguments.region.empty() ? "all" : arguments.region}};
   for (std::size_t k = 0; k < values.size(); ++k) {
     report[alignKey(kAlignFigures[k], "")] = values[k];
     report[alignKey(kAlignFigures[k], "_error")] = free[k] ? Report(errors[k]) : Report();

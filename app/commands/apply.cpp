@@ -19,6 +19,7 @@
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
+#include "app/commands/region_option.h"
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -133,8 +134,10 @@ engine::Status take(const RecipeInvert&, Applied& at, engine::JobControl&) {
 }
 
 engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& job) {
-  const auto levelling = levellingOf(at.field, at.task.in, at.imported, step.lines, step.form, job);
-  if (!levelling && levelling.error().kind == engine::ErrorKind::kInput && step.form.region != "all")
+  const auto counted = countedOf(at.field, std::nullopt, at.task.in, step.form, job);
+  if (!counted) return tl::unexpected(counted.error());
+  const auto levelling = levellingOf(*counted, at.task.in, at.imported, step.lines, step.form, job);
+  if (!levelling && levelling.error().kind == engine::ErrorKind::kInput && choosesByMarks(step.form.region))
     return engine::inputError(levelling.error().what, levelling.error().where,
                               "let a step that marks come before it, or level by region = \"all\"");
   if (!levelling) return tl::unexpected(levelling.error());
@@ -176,9 +179,9 @@ engine::Status take(const RecipeFill& step, Applied& at, engine::JobControl& job
 engine::Status take(const RecipeRemove& step, Applied& at, engine::JobControl& job) {
   const auto options = removeOptionsOf(step.what, at.field.grid());
   if (!options) return tl::unexpected(options.error());
-  auto removed = engine::removeSamples(at.field, *options, job);
-  if (!removed && removed.error().kind == engine::ErrorKind::kInput)
-    return engine::inputError(removed.error().what, shownInput(at.task.in), removed.error().remedy);
+  const auto counted = countedOf(at.field, std::nullopt, at.task.in, {.region = step.what.region}, job);
+  if (!counted) return tl::unexpected(counted.error());
+  auto removed = removedFrom(at.field, *counted, step.what.region, *options, at.task.in, job);
   if (!removed) return tl::unexpected(removed.error());
   at.field = std::move(removed->field);
   at.steps.push_back(
@@ -266,7 +269,7 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
           }});
     } else if (const auto* level = std::get_if<RecipeLevel>(&step)) {
       FormArguments form = level->form;
-      form.region = "all";  // marks of an earlier step are not there yet
+      form.region = "all";  // marks of an earlier step are not there yet, and shapes lie in what it made
       steps.emplace_back(plannedLevel(field, field, level->lines, form, Lowered::kTwice));
     } else if (const auto* filling = std::get_if<RecipeFill>(&step)) {
       const auto fill = fillOptionsOf(filling->what, grid);

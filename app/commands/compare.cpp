@@ -15,6 +15,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/list_text.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/shards/list_shard.h"
@@ -33,6 +34,15 @@ namespace fettle::app {
 
 namespace {
 
+// --region is that of the figures.
+AlignArguments alignedApart() {
+  AlignArguments align;
+  align.region.clear();
+  align.option = "--align-region";
+  align.marks_option = "--align-marks";
+  return align;
+}
+
 struct CompareArguments {
   std::string a;
   std::vector<std::string> others;
@@ -44,7 +54,8 @@ struct CompareArguments {
   std::string to;
   bool estimate = false;
   bool aligned = false;  // B is moved onto A first
-  AlignArguments align;
+  RegionArguments counted;
+  AlignArguments align = alignedApart();
   InspectArguments inspect;
   std::string shard, shard_folder;
   ScanOptions reading;
@@ -66,13 +77,20 @@ void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a
 
 // Options that say something about an alignment, or that exclude one.
 engine::Status checkAligned(const CompareArguments& options) {
-  if (options.aligned) return checkAlign(options.align);
-  const char* const alone = options.align.rotation          ? "--rotation"
-                            : options.align.region != "all" ? "--region"
-                            : !options.align.marks.empty()  ? "--marks"
-                                                            : nullptr;
-  return alone == nullptr ? engine::Status()
-                          : engine::inputError("nothing is aligned", alone, "give --align all");
+  if (!options.aligned) {
+    const char* const alone = options.align.rotation          ? "--rotation"
+                              : !options.align.region.empty() ? "--align-region"
+                              : !options.align.marks.empty()  ? "--align-marks"
+                                                              : nullptr;
+    return alone == nullptr ? engine::Status()
+                            : engine::inputError("nothing is aligned", alone, "give --align all");
+  }
+  // Before there was a region of figures, --region was that of the alignment.
+  if (options.align.region.empty() && options.counted.region != "all")
+    return engine::inputError(
+        "it is not said by which samples B is aligned: --region is of the figures", "--align",
+        fmt::format("add --align-region all, or --align-region \"{}\"", options.counted.region));
+  return checkAlign(options.align);
 }
 
 // Options that need a nominal mesh, or that it excludes.
@@ -94,6 +112,7 @@ engine::Status checkPair(const CompareArguments& options) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges need a truth", "--edges", "give --truth too");
   if (auto status = checkNominal(options); !status) return status;
+  if (auto status = checkRegion(options.counted); !status) return status;
   return checkAligned(options);
 }
 
@@ -140,15 +159,17 @@ engine::Result<Foreseen> foreseeCompare(const CompareArguments& options, const e
 engine::Result<Report> compareOne(const CompareArguments& options, std::optional<engine::Imported>& first,
                                   engine::JobControl& job) {
   if (auto status = checkPair(options); !status) return tl::unexpected(status.error());
-  if (auto status = checkOutputs({{options.deviation, OutputKind::kField, options.to}},
-                                 {options.a, options.b, options.truth, options.edges, options.align.marks},
-                                 options.replacing, job);
+  if (auto status = checkOutputs(
+          {{options.deviation, OutputKind::kField, options.to}},
+          {options.a, options.b, options.truth, options.edges, options.counted.marks, options.align.marks},
+          options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   if (isNominal(options.b, options.reading, options.inspect.nominal))
-    return compareNominal({options.a, options.b, options.inspect, options.aligned ? &options.align : nullptr,
-                           options.reading, options.deviation, options.to, options.estimate},
-                          job);
+    return compareNominal(
+        {options.a, options.b, options.inspect, options.counted, options.aligned ? &options.align : nullptr,
+         options.reading, options.deviation, options.to, options.estimate},
+        job);
   if (!first) {
     auto read = loadSamples(options.a, options.reading, job);
     if (!read) return tl::unexpected(read.error());
@@ -162,14 +183,18 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   if (foreseen->only) return *std::move(foreseen->only);
   Report alignment;
   if (options.aligned) {
-    const auto found = alignmentOf(a->field, b->field, options.a, options.b, options.align, job);
+    const auto found = alignmentOf(*a, b->field, options.a, options.b, options.align, job);
     if (!found) return tl::unexpected(found.error());
     auto moved = engine::movedOnto(b->field, found->motion, a->field.grid(), job);
     if (!moved) return tl::unexpected(moved.error());
     b->field = *std::move(moved);
     alignment = alignReport(options.align, *found);
   }
-  const auto deviation = engine::compareFields(a->field, b->field, job);
+  const auto of_a = chosenOf(a->field, a->original, options.a, options.counted, job);
+  if (!of_a) return tl::unexpected(of_a.error());
+  const auto of_b = chosenLike(b->field, *of_a, options.counted, job);
+  if (!of_b) return tl::unexpected(of_b.error());
+  const auto deviation = engine::compareFields(*of_a, *of_b, job);
   if (!deviation) return tl::unexpected(deviation.error());
   warnOfDifferentGrids(options, a->field.grid(), b->field.grid());
   if (deviation->samples == 0) warn("the two fields have no sample in common");
@@ -185,9 +210,10 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
                 {"sa_a", deviation->sa_a},
                 {"only_a", deviation->only_a},
                 {"only_b", deviation->only_b}};
+  if (options.counted.region != "all") report["region"] = options.counted.region;
   if (options.aligned) report["align"] = std::move(alignment);
   if (!options.deviation.empty()) {
-    const auto difference = engine::deviationField(a->field, b->field, job);
+    const auto difference = engine::deviationField(*of_a, *of_b, job);
     if (!difference) return tl::unexpected(difference.error());
     if (auto status = saveField(*difference, options.deviation, job, {}, options.to); !status)
       return tl::unexpected(status.error());
@@ -199,7 +225,7 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   if (!truth) return tl::unexpected(truth.error());
   const auto edges = withMarks(truth->field, options.edges, job);
   if (!edges) return tl::unexpected(edges.error());
-  const auto figures = engine::compareToTruth(b->field, truth->field, *edges, job);
+  const auto figures = engine::compareToTruth(*of_b, truth->field, *edges, job);
   if (!figures) return tl::unexpected(figures.error());
   report["rmse"] = figures->rmse;
   report["rmse_flat"] = figures->rmse_flat;
@@ -325,6 +351,7 @@ void addCompare(Command root, Chosen& chosen) {
                     },
                 .text = "First move B onto the samples of A, as fettle align does",
                 .words = alignWords()}});
+  addRegionOptions(command, options->counted, "The samples of A that count");
   addAlignOptions(command, options->align);
   addInspectOptions(command, options->inspect);
   addForceOption(command, options->replacing);
@@ -341,12 +368,18 @@ void addCompare(Command root, Chosen& chosen) {
       "under no "
       "triangle counts as no_nominal and in no other figure. Without --align a mesh lies where its "
       "coordinates are those "
-      "of A's world, or, where it would lie wholly beside A, in millimetres from A's lower left sample.");
+      "of A's world, or, where it would lie wholly beside A, in millimetres from A's lower left sample.\n"
+      "Where not all samples count, the others are left out of both: of all figures, of the deviation that "
+      "is "
+      "written, and of what is compared with a truth. Holes of A are in no region, so that none are counted "
+      "there.");
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
                     {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",
                      "Errors against a known surface, on flats and near edges"},
                     {"fettle compare scan.tif clean.tif --align all --deviation wear.tif",
                      "What differs after the second was moved onto the first"},
+                    {"fettle compare scan.tif clean.tif --region \"rectangle 1,1,6,4\"",
+                     "Deviation figures between two corners"},
                     {"fettle compare scan.tif nominal.stl --align all --distance shortest --tolerance 0.05mm",
                      "How a part deviates from its nominal shape"},
                     {"fettle compare scan.tif clean.tif other.tif --shard 1/2 --shard-dir compared",

@@ -8,6 +8,7 @@
 
 #include "app/commands/align_estimate.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
@@ -27,15 +28,16 @@ struct NominalInPlace {
   std::optional<Report> alignment;
 };
 
-engine::Result<NominalInPlace> nominalInPlace(const engine::Version& part, const engine::NominalMesh& nominal,
-                                              const std::string& path_a, const std::string& path_b,
-                                              const AlignArguments* align, engine::JobControl& job) {
+engine::Result<NominalInPlace> nominalInPlace(const engine::Imported& part,
+                                              const engine::NominalMesh& nominal, const std::string& path_a,
+                                              const std::string& path_b, const AlignArguments* align,
+                                              engine::JobControl& job) {
   if (align != nullptr) {
     const auto found = alignmentOf(part, nominal, path_a, path_b, *align, job);
     if (!found) return tl::unexpected(found.error());
     return NominalInPlace{found->motion, alignReport(*align, *found)};
   }
-  const auto placed = engine::placedAsStored(nominal, part.grid());
+  const auto placed = engine::placedAsStored(nominal, part.field.grid());
   if (!placed)
     return engine::inputError("the nominal lies nowhere over or under the part", shownInput(path_b),
                               "give --align all, or state its unit with --nominal-unit");
@@ -105,7 +107,7 @@ std::string optionOfNominal(const InspectArguments& arguments) {
 }
 
 engine::Result<Report> compareNominal(const NominalComparison& comparison, engine::JobControl& job) {
-  const auto& [part, nominal, arguments, align, reading, deviation, to, estimate] = comparison;
+  const auto& [part, nominal, arguments, counted, align, reading, deviation, to, estimate] = comparison;
   engine::NominalOptions options;
   options.distance = arguments.distance == "shortest" ? engine::NominalDistance::kShortest
                                                       : engine::NominalDistance::kVertical;
@@ -124,10 +126,14 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
   auto foreseen = foreseeNominal(comparison, a->field, *mesh, options, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
-  auto placed = nominalInPlace(a->field, *mesh, part, nominal, align, job);
+  auto placed = nominalInPlace(*a, *mesh, part, nominal, align, job);
   if (!placed) return tl::unexpected(placed.error());
-  const auto found = engine::deviationFromNominal(a->field, *mesh, placed->motion, options, job);
+  const auto region = chosenOf(a->field, a->original, part, counted, job);
+  if (!region) return tl::unexpected(region.error());
+  auto found = engine::deviationFromNominal(*region, *mesh, placed->motion, options, job);
   if (!found) return tl::unexpected(found.error());
+  // Holes are in no region, and what is left out is no hole of the part.
+  if (counted.region != "all") found->unmeasured = 0;
   if (found->samples == 0)
     return engine::inputError("no sample of the part lies over or under a triangle", shownInput(nominal),
                               "give --align all, or state its unit with --nominal-unit");
@@ -154,6 +160,7 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
                    {"within", found->within},
                    {"above", found->above},
                    {"below", found->below}});
+  if (counted.region != "all") report["region"] = counted.region;
   report["nominal"] = nominalReport(arguments.nominal, *mesh);
   if (placed->alignment) report["align"] = *std::move(placed->alignment);
   if (deviation.empty()) return report;

@@ -28,7 +28,8 @@ void addInspectOptions(Command command, InspectArguments& arguments);
 struct NominalComparison {
   const std::string &part, &nominal;  ///< paths
   const InspectArguments& inspect;
-  const AlignArguments* align;  ///< null: it is measured in the place that the files state
+  const RegionArguments& counted;  ///< of the part
+  const AlignArguments* align;     ///< null: it is measured in the place that the files state
   const ScanOptions& reading;
   const std::string& deviation;  ///< to write, empty: nothing; to "-" in the format `to`
   const std::string& to;

@@ -12,6 +12,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/fit_text.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_options.h"
@@ -29,12 +30,12 @@ namespace fettle::app {
 
 namespace {
 
-struct FitArguments {
+struct FitArguments : RegionArguments {
   std::string scan;
   std::vector<std::string> shapes;
   std::string distance = "orthogonal";
   bool robust = false;
-  std::string region = "all", marks, lines;
+  std::string lines;
   std::optional<double> margin;
   std::optional<double> least;
   std::vector<std::string> at;
@@ -47,9 +48,7 @@ struct FitArguments {
 };
 
 engine::Status checkFit(const FitArguments& options) {
-  if (!options.marks.empty() && options.region == "all")
-    return engine::inputError("marks choose nothing where all samples count", "--marks",
-                              "add --region marked or --region unmarked");
+  if (auto status = checkRegion(options); !status) return status;
   for (const std::string& text : options.at)
     if (numbersOf(text, 2).empty())
       return engine::inputError(fmt::format("'{}' is no place", text), "--at",
@@ -72,9 +71,7 @@ std::vector<engine::ShapeKind> kindsOf(const FitArguments& options) {
 engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& options,
                                                          const engine::Version& field,
                                                          engine::JobControl& job) {
-  const engine::Region counted = options.region == "marked"     ? engine::Region::kMarked
-                                 : options.region == "unmarked" ? engine::Region::kUnmarked
-                                                                : engine::Region::kAll;
+  const engine::Region counted = regionOf(options.region);
   const bool lines = field.lines() != nullptr && !field.lines()->empty();
   if (!lines && options.at.empty()) {
     if (options.margin)
@@ -83,9 +80,9 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
     if (!whole) return tl::unexpected(whole.error());
     if (whole->samples == 0)
       return engine::inputError("no sample counts", shownInput(options.scan),
-                                counted == engine::Region::kAll
-                                    ? "is every sample a hole? fettle info counts them"
-                                    : "give marks with --marks, or take --region all");
+                                choosesByMarks(options.region)
+                                    ? "give marks with --marks, or take --region all"
+                                    : "is every sample a hole? fettle info counts them");
     return std::vector<engine::FitRegion>{*std::move(whole)};
   }
   engine::FitRegionOptions how;
@@ -157,7 +154,7 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
     return tl::unexpected(status.error());
   const auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto marked = withMarks(imported->field, options.marks, job);
+  const auto marked = countedOf(imported->field, imported->original, options.scan, options, job);
   if (!marked) return tl::unexpected(marked.error());
   const auto field = withLines(*marked, options.lines, job);
   if (!field) return tl::unexpected(field.error());
@@ -208,7 +205,9 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
   return std::move(report);
 }
 
-std::vector<Word> shapeWords() {
+constexpr const char* kRegionGroup = "Regions";
+
+std::vector<Word> fitShapeWords() {
   std::vector<Word> words;
   for (const engine::ShapeInfo& info : engine::shapeInfos())
     words.emplace_back(std::string(info.word), std::string(info.text));
@@ -232,7 +231,7 @@ void addFit(Command root, Chosen& chosen) {
        {.name = "--shape",
         .to = &options->shapes,
         .text = "The shapes that are tried; of several the one is taken that describes the samples best",
-        .words = shapeWords(),
+        .words = fitShapeWords(),
         .otherwise = "auto",
         .between = ','},
        {.name = "--distance",
@@ -273,18 +272,9 @@ void addFit(Command root, Chosen& chosen) {
         .text =
             "Only the connected region around this place, in mm from the lower left sample; may be repeated",
         .shown = "X,Y",
-        .one_word = true},
-       {.name = "--region",
-        .to = &options->region,
-        .text = "The samples that count",
-        .words = {{"all", "every sample that is no hole"},
-                  {"marked", "those that are marked"},
-                  {"unmarked", "those that are not"}}},
-       {.name = "--marks",
-        .to = &options->marks,
-        .text = "Picture of marks for --region, instead of the marks of a session",
-        .kind = ValueKind::kMarks}},
-      "Regions");
+        .one_word = true}},
+      kRegionGroup);
+  addRegionOptions(command, *options, "The samples that count", kRegionGroup);
   command.add({{.name = "--csv",
                 .to = &options->csv,
                 .text = "Write a row per figure: region, shape, figure, value, standard error, unit",

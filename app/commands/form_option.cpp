@@ -6,18 +6,15 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
-#include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
-#include "engine/fill/filled_samples.h"
 
 namespace fettle::app {
 
 namespace {
 
 constexpr const char* kNoForm = "none";
-constexpr const char* kMeasured = "measured";
 
 // Nothing where the text is not three points.
 std::optional<engine::ThreePoints> throughOf(const FormArguments& arguments) {
@@ -52,17 +49,9 @@ void addFormOptions(Command command, FormArguments& arguments) {
       {.name = "--robust",
        .to = &arguments.robust,
        .text = "Steps, spikes and other samples far from the form do not count when it is fitted"},
-      {.name = "--region",
-       .to = &arguments.region,
-       .text = "The samples that count",
-       .words = {{"all", "every sample that is no hole"},
-                 {"marked", "those that are marked"},
-                 {"unmarked", "those that are not"},
-                 {"measured", "those of a session that were not filled"}}},
-      {.name = "--marks",
-       .to = &arguments.marks,
-       .text = "Picture of marks for --region, instead of the marks of a session",
-       .kind = ValueKind::kMarks},
+  });
+  addRegionOptions(command, arguments, "The samples that count");
+  command.add({
       {.name = "--through",
        .to = &arguments.through,
        .text = "The plane through the mean heights around three points instead, mm from the lower left "
@@ -79,9 +68,8 @@ void addFormOptions(Command command, FormArguments& arguments) {
 
 engine::FormChoice formChoiceOf(const FormArguments& arguments) {
   const engine::FormInfo* form = engine::formNamed(arguments.form);
-  return {form != nullptr ? form->kind : engine::FormKind::kMean,
-          engine::regionNamed(arguments.region).value_or(engine::Region::kAll), arguments.robust,
-          throughOf(arguments)};
+  return {form != nullptr ? form->kind : engine::FormKind::kMean, regionOf(arguments.region),
+          arguments.robust, throughOf(arguments)};
 }
 
 void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments& arguments) {
@@ -94,22 +82,8 @@ void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments&
   if (points->radius_mm > 0.0) arguments.probe_mm = points->radius_mm;
 }
 
-engine::Result<engine::Version> countedOf(const engine::Version& field,
-                                          const std::optional<engine::Version>& original,
-                                          const std::string& scan, const FormArguments& arguments,
-                                          engine::JobControl& job) {
-  if (arguments.region != kMeasured) return withMarks(field, arguments.marks, job);
-  if (!original)
-    return engine::inputError("the file does not say which samples were filled", shownInput(scan),
-                              "give the session of fettle fill, or its --filled-out as --marks with --region "
-                              "unmarked");
-  return engine::withoutFilled(field, *original, job);
-}
-
 engine::Status checkForm(const FormArguments& arguments) {
-  if (!arguments.marks.empty() && arguments.region != "marked" && arguments.region != "unmarked")
-    return engine::inputError("marks choose nothing in this region", "--marks",
-                              "add --region marked or --region unmarked");
+  if (auto status = checkRegion(arguments); !status) return status;
   if (arguments.through.empty() && arguments.probe_mm)
     return engine::inputError("there are no points around which samples would count", "--probe",
                               "add --through X,Y:X,Y:X,Y");
@@ -137,7 +111,9 @@ engine::Result<engine::FittedForm> formOf(const engine::Version& field, const st
     return engine::inputError(fit.error().what, shownInput(scan),
                               !no_sample                  ? fit.error().remedy
                               : arguments.region == "all" ? "is every sample a hole? fettle info counts them"
-                                                          : "give marks with --marks, or take --region all");
+                              : choosesByMarks(arguments.region)
+                                  ? "give marks with --marks, or take --region all"
+                                  : "take a larger region, or --region all");
   }
   if (!fit->decided)
     warn(fmt::format(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/commands/region_option.h"
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/io/import.h"
@@ -13,11 +14,9 @@
 namespace fettle::app {
 
 /// What is taken out of a surface before it is measured, and the samples that count.
-struct FormArguments {
+struct FormArguments : RegionArguments {
   std::string form = "plane";  ///< a word of formWords()
   bool robust = false;
-  std::string region = "all";
-  std::string marks;  ///< a picture of marks instead of the scan's own; empty: none
   std::string through =
       {};  ///< X,Y:X,Y:X,Y [mm]: a plane through three points; empty: one that is nearest to all samples
   std::optional<double> probe_mm = {};  ///< around each of these
@@ -37,15 +36,6 @@ void addFormOptions(Command command, FormArguments& arguments);
 
 /// The same points and radius as arguments.
 void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments& arguments);
-
-/// The field that is measured: with the marks of the arguments, and in the region "measured" with holes in place of the
-/// samples that were filled since `original`, that of a session. `scan` is its path. Errors: as withMarks; the region
-/// "measured" without an original (kInput).
-[[nodiscard]] engine::Result<engine::Version> countedOf(const engine::Version& field,
-                                                        const std::optional<engine::Version>& original,
-                                                        const std::string& scan,
-                                                        const FormArguments& arguments,
-                                                        engine::JobControl& job);
 
 /// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples, three points of another
 /// form than a plane or of a robust one, a radius without them; and points that are not three.

@@ -116,7 +116,7 @@ engine::Result<Layered> withLayer(const std::string& layer, const FormArguments&
   auto first = engine::withoutLayer(original, job);
   if (!first) return tl::unexpected(first.error());
   if (layer == kLayerRemove) return Layered{*std::move(samples), *std::move(first), {}};
-  auto fit = formOf(engine::upright(*samples), scan, imported, form, job);
+  auto fit = fitOver(*samples, std::nullopt, form, imported, scan, job);
   if (!fit) return tl::unexpected(fit.error());
   const auto over = std::make_shared<const engine::NominalForm>(fit->form);
   const auto seen = engine::SeenField::of(samples->withForm(over), job);

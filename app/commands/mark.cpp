@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -14,6 +15,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/known_steps.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -36,6 +38,7 @@
 #include "engine/inspect/noise.h"
 #include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
+#include "engine/marks/change_marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/marks/edge_traces.h"
 #include "haptic/base/strokes.h"
@@ -138,6 +141,7 @@ struct MarkArguments {
   engine::LocateOptions locating;
   double scale = engine::EdgeMap::kUsualSigma;
   engine::EdgeChoice choice;
+  RegionArguments within{.region = ""};
   bool filled = false;
   bool invert = false;
   bool estimate = false;
@@ -249,6 +253,20 @@ engine::Result<engine::Version> edgesOfPiece(const engine::Version& piece, const
   return found->field.withLines(lined->lines());
 }
 
+// The samples of a shape, beside those that are marked.
+engine::Result<engine::Version> markRegion(const engine::Version& scan, const engine::Version& field,
+                                           const MarkArguments& options, engine::JobControl& job) {
+  const auto inside = countedOf(scan, std::nullopt, options.in, options.within, job);
+  if (!inside) return tl::unexpected(inside.error());
+  const engine::FieldReader of = inside->reader();
+  return engine::changeMarks(
+      field, engine::allTiles(field.grid()),
+      [&](std::int32_t tc, std::int32_t tr, const engine::Tile& tile, engine::MarkRows& rows) {
+        engine::applyChange(tile, of.tile(tc, tr).marks, engine::MarkChange::kMark, rows);
+      },
+      job);
+}
+
 // A field with its marks stays in memory with its steps. Suggested edges are one; other marks belong to their scan.
 engine::Status noteMarks(const MarkArguments& options, const engine::Imported& imported, MemoryPlace& place,
                          engine::JobControl& job) {
@@ -258,6 +276,7 @@ engine::Status noteMarks(const MarkArguments& options, const engine::Imported& i
   for (const auto& [given, what] : {std::pair(options.as_lines, "that edges became lines"),
                                     {!options.strokes.empty(), "strokes"},
                                     {!options.add.empty(), "marks that were added"},
+                                    {!options.within.region.empty(), "marks of a region"},
                                     {options.filled, "marks of filled samples"},
                                     {options.invert, "that marks were inverted"}})
     if (given) known->leftOut(what);
@@ -275,10 +294,11 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   if (options.as_lines && (!options.edges || options.lines_out.empty()))
     return engine::inputError("edges become lines where both are named", "--as-lines",
                               "give --edges and --lines-out as well");
-  if (!options.edges && !options.invert && !options.filled && options.strokes.empty() && options.add.empty())
+  if (!options.edges && !options.invert && !options.filled && options.strokes.empty() &&
+      options.add.empty() && options.within.region.empty())
     return engine::inputError(
         "it is not stated what to mark", "mark",
-        "give --edges, --strokes, --filled, --invert, or --add to write marks in another format");
+        "give --edges, --strokes, --region, --filled, --invert, or --add to write marks in another format");
   if (auto status = checkOutputs({{options.out, OutputKind::kMarks, options.to},
                                   {options.lines_out, OutputKind::kLines, kLinesStream}},
                                  {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
@@ -332,6 +352,11 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     auto along = markStrokes(field, options, report, job);
     if (!along) return tl::unexpected(along.error());
     field = *std::move(along);
+  }
+  if (!options.within.region.empty()) {
+    auto inside = markRegion(imported->field, field, options, job);
+    if (!inside) return tl::unexpected(inside.error());
+    field = *std::move(inside);
   }
   if (options.filled) {
     auto filled = engine::withFilledMarked(field, *imported->original, engine::OtherMarks::kStay, job);
@@ -411,6 +436,7 @@ void addMark(Command root, Chosen& chosen) {
        .text = "Picture of marks to begin with; alone it is written as MARKS, as a GeoTIFF with the place of "
                "SCAN",
        .kind = ValueKind::kMarks},
+      regionRow(options->within, "Mark the samples of this region, too", "", shapeWords()),
       {.name = "--filled", .to = &options->filled, .text = "Mark the samples that were filled, of a session"},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
@@ -421,10 +447,12 @@ void addMark(Command root, Chosen& chosen) {
                 .proposed = {"png", "tif"}}});
   addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
-  command.examples({{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",
-                     "The sharp edges that the program finds, as marks and as lines"},
-                    {"fettle mark scan.tif drawn.png --strokes strokes.csv --lines-out drawn.csv",
-                     "The edges that were drawn by hand"}});
+  command.examples(
+      {{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",
+        "The sharp edges that the program finds, as marks and as lines"},
+       {"fettle mark scan.tif drawn.png --strokes strokes.csv --lines-out drawn.csv",
+        "The edges that were drawn by hand"},
+       {"fettle mark scan.tif bore.png --region \"polygon 2,1 4,1 3,3\"", "What lies between three places"}});
 }
 
 }  // namespace fettle::app

@@ -16,6 +16,7 @@
 #include <toml++/toml.h>
 
 #include "app/commands/level_layer.h"
+#include "app/commands/region_option.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/filter/catalogue.h"
@@ -261,7 +262,7 @@ class StepReader {
     for (const Word& form : formWords())
       if (form.word != "none" || with_none) forms.push_back(form.word);
     what.form = word("form", forms, what.form);
-    what.region = word("region", {"all", "marked", "unmarked"}, what.region);
+    region(what.region, {"all", "marked", "unmarked"});
     yesOrNo("robust", what.robust);
     if (const toml::node* node = table_.get("through")) through(*node, what);
     if (const toml::node* node = table_.get("probe")) {
@@ -270,6 +271,16 @@ class StepReader {
       what.probe_mm = radius;
       if (what.through.empty()) complain(*node, "probe is that of three points: add through");
     }
+  }
+
+  // One of these words, or a shape in the coordinates of each scan.
+  void region(std::string& value, std::vector<Word> known) {
+    const toml::node* node = table_.get("region");
+    if (node == nullptr) return;
+    for (Word& shape : shapeWords()) known.push_back(std::move(shape));
+    value = node->value_or(std::string());
+    if (const std::string problem = regionProblem(value, known); !problem.empty())
+      complain(*node, fmt::format("region: {}", problem));
   }
 
   // Three points of a plane.
@@ -326,7 +337,7 @@ class StepReader {
         for (std::size_t k = 0; k < 2; ++k)
           what.between.push_back(typedLength("between", *list->get(k), kAnySign));
     }
-    if (table_.contains("region")) what.region = word("region", {"unmarked", "marked", "all"}, "");
+    region(what.region, {"unmarked", "marked", "all"});
     if (!problem_.empty()) return step;
     // In millimetres, since the unit of each scan is not known: what may not come together is known without.
     if (const auto valid = removeOptionsOf(what, engine::Grid{}); !valid)

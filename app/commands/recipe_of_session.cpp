@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/level_layer.h"
+#include "app/commands/region_option.h"
 #include "engine/field/seen_field.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -94,7 +95,7 @@ Noted addNoted(const engine::Session& session, const std::map<std::int64_t, Made
     if (std::holds_alternative<RecipeEdges>(step)) marks = true;
     // Marks that steps set again choose the samples again.
     const bool chosen = !marks || !recipe.left_out.empty();
-    if (by != nullptr && by->region != "all" && chosen) {
+    if (by != nullptr && choosesByMarks(by->region) && chosen) {
       recipe.left_out.push_back(
           fmt::format("the {} of the {} samples of step 0: which these are belongs to this scan",
                       level != nullptr ? "level" : "form", by->region));
@@ -173,7 +174,10 @@ class FormSteps {
     } else if (made->heights) {
       step = RecipeForm{kLayerBake, {}};
     } else if (made->fitted) {
-      step = RecipeForm{kLayerPut, {made->fitted->form, made->fitted->robust, made->fitted->region, {}}};
+      step = RecipeForm{kLayerPut, {}};
+      step->form.form = made->fitted->form;
+      step->form.robust = made->fitted->robust;
+      step->form.region = made->fitted->region;
       setThrough(made->fitted->through, step->form);
     } else if (after.formOver() == nullptr) {
       step = RecipeForm{kLayerRemove, {}};
@@ -183,7 +187,7 @@ class FormSteps {
       return Reason("the session stores the form, not how it was fitted");
     }
     if (step->layer == kLayerPut) {
-      lies_ = step->form.region == "all" || !chosen;
+      lies_ = !choosesByMarks(step->form.region) || !chosen;
       if (!lies_) return Reason("which samples it was fitted to belongs to this scan");
       return *step;
     }

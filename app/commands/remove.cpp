@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/known_steps.h"
+#include "app/commands/region_option.h"
 #include "app/commands/removing.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -25,7 +27,7 @@ namespace {
 struct RemoveRun {
   BatchOptions files;
   RemoveArguments what;
-  std::string marks;
+  RegionArguments region{.region = ""};
   bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
@@ -63,7 +65,7 @@ engine::Result<Report> removeOne(const RemoveRun& options, const BatchTask& task
   if (!imported) return tl::unexpected(imported.error());
   const auto remove = removeOptionsOf(options.what, imported->field.grid());
   if (!remove) return tl::unexpected(remove.error());
-  const auto field = withMarks(imported->field, options.marks, job);
+  const auto field = countedOf(imported->field, std::nullopt, task.in, options.region, job);
   if (!field) return tl::unexpected(field.error());
   engine::Result<Foreseen> foreseen;
   if (memoryPlace(task.out) == nullptr)
@@ -71,9 +73,7 @@ engine::Result<Report> removeOne(const RemoveRun& options, const BatchTask& task
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
-  const auto done = engine::removeSamples(*field, *remove, job);
-  if (!done && done.error().kind == engine::ErrorKind::kInput)
-    return engine::inputError(done.error().what, shownInput(task.in), done.error().remedy);
+  const auto done = removedFrom(imported->field, *field, options.what.region, *remove, task.in, job);
   if (!done) return tl::unexpected(done.error());
   const double seconds = watch.seconds();
   sayWhenNothingGoes(done->counts, *remove, *field, task.in);
@@ -81,10 +81,10 @@ engine::Result<Report> removeOne(const RemoveRun& options, const BatchTask& task
   writing.original = imported->original.value_or(imported->field);
   auto known = KnownSteps::of(*imported, task, job);
   if (!known) return tl::unexpected(known.error());
-  if (remove->region == engine::Region::kMarked) {
+  if (choosesByMarks(options.what.region) && remove->region == engine::Region::kMarked) {
     known->leftOut("marked samples that were removed: they belong to this scan");
   } else {
-    if (!options.marks.empty()) known->leftOut("the marks of --marks: they belong to this scan");
+    if (!options.region.marks.empty()) known->leftOut("the marks of --marks: they belong to this scan");
     known->did(RecipeRemove{options.what});
   }
   known->note(writing);
@@ -97,8 +97,12 @@ engine::Result<Report> removeOne(const RemoveRun& options, const BatchTask& task
                 {"hash", hashOf(done->field)}};
 }
 
-engine::Result<Report> removeAll(const RemoveRun& options, engine::JobControl& job) {
-  const auto tasks = batchTasks(options.files, {options.marks}, job);
+engine::Result<Report> removeAll(const RemoveRun& given, engine::JobControl& job) {
+  RemoveRun options = given;
+  options.what.region = options.region.region;
+  if (isShape(options.what.region))
+    if (auto status = checkRegion(options.region); !status) return tl::unexpected(status.error());
+  const auto tasks = batchTasks(options.files, {options.region.marks}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) { return removeOne(options, task, j); };
@@ -134,15 +138,10 @@ void addRemove(Command root, Chosen& chosen) {
        .otherwise = "any",
        .between = ',',
        .excludes = {"--below", "--above"}},
-      {.name = "--region",
-       .to = &options->what.region,
-       .text = "Which of these. Without heights, all of the region",
-       .words = {{"unmarked", "those that are not marked: a mark protects its sample"},
-                 {"marked", "marked samples alone, which nothing else removes; their marks go with them"},
-                 {"all", "marked or not"}},
-       .otherwise = "unmarked"},
+      regionRow(options->region, "Which of these. Without heights, all of the region", "unmarked",
+                removeWords()),
       {.name = "--marks",
-       .to = &options->marks,
+       .to = &options->region.marks,
        .text = "Picture of marks, instead of the marks of a session",
        .kind = ValueKind::kMarks},
   });
@@ -161,7 +160,8 @@ void addRemove(Command root, Chosen& chosen) {
       {{"fettle remove scan.tif part.tif --below -0.2mm", "A part without the table it stands on"},
        {"fettle remove scan.tif part.tif --between 0,0", "Zeros that stand for no data"},
        {"fettle remove scan.tif clean.tif --region marked --marks marks.png", "What was marked"},
-       {"fettle remove scan.tif part.tif --region unmarked --marks marks.png", "All but what was marked"}});
+       {"fettle remove scan.tif part.tif --region unmarked --marks marks.png", "All but what was marked"},
+       {"fettle remove scan.tif part.tif --region \"rectangle 1,1,3,2\"", "What lies between two corners"}});
 }
 
 }  // namespace fettle::app

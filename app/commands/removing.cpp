@@ -3,15 +3,17 @@
 #include <utility>
 
 #include "app/commands/typed_values.h"
+#include "app/work/streams.h"
 #include "engine/base/job.h"
 #include "engine/field/piece.h"
+#include "engine/marks/chosen_marks.h"
 
 namespace fettle::app {
 
 engine::Result<engine::RemoveOptions> removeOptionsOf(const RemoveArguments& arguments,
                                                       const engine::Grid& grid) {
   engine::RemoveOptions options;
-  options.region = engine::regionNamed(arguments.region).value_or(engine::Region::kUnmarked);
+  options.region = arguments.region.empty() ? engine::Region::kUnmarked : regionOf(arguments.region);
   const bool outside = !arguments.below.empty() || !arguments.above.empty();
   const bool between = !arguments.between.empty();
   if (outside && between)
@@ -43,6 +45,32 @@ engine::Result<engine::RemoveOptions> removeOptionsOf(const RemoveArguments& arg
                                         "--below, --above", "swap them, or take --between")
                    : engine::inputError("the first height is above the second", "--between", "swap them");
   return options;
+}
+
+std::vector<Word> removeWords() {
+  std::vector<Word> words{
+      {"unmarked", "those that are not marked: a mark protects its sample"},
+      {"marked", "marked samples alone, which nothing else removes; their marks go with them"},
+      {"all", "marked or not"}};
+  for (Word& shape : shapeWords()) {
+    shape.text += shape.word == "rectangle" ? ", marked or not" : "";
+    words.push_back(std::move(shape));
+  }
+  return words;
+}
+
+engine::Result<engine::Removed> removedFrom(const engine::Version& field, const engine::Version& counted,
+                                            const std::string& region, const engine::RemoveOptions& options,
+                                            const std::string& scan, engine::JobControl& job) {
+  auto removed = engine::removeSamples(counted, options, job);
+  if (!removed && removed.error().kind == engine::ErrorKind::kInput)
+    return engine::inputError(removed.error().what, shownInput(scan), removed.error().remedy);
+  if (!removed || !isShape(region)) return removed;
+  // The marks of the shape were to choose.
+  auto own = engine::withMarksFrom(removed->field, field, job);
+  if (!own) return tl::unexpected(own.error());
+  removed->field = *std::move(own);
+  return removed;
 }
 
 PlannedOnPieces plannedRemove(const engine::Version& field, const engine::RemoveOptions& options) {

@@ -13,6 +13,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_options.h"
@@ -89,7 +90,7 @@ engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments
                                  engine::JobControl& job) {
   const auto imported = loadScan(path, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  auto marked = withMarks(imported->field, options.marks, job);
+  auto marked = countedOf(imported->field, imported->original, path, options, job);
   if (!marked) return tl::unexpected(marked.error());
   const auto noise = engine::estimateNoise(*marked, job);
   if (!noise) return tl::unexpected(noise.error());
@@ -100,9 +101,7 @@ engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments
 engine::SectionOptions sectionOptionsOf(const SectionArguments& options) {
   engine::SectionOptions of;
   of.width_mm = options.width;
-  of.region = options.region == "marked"     ? engine::Region::kMarked
-              : options.region == "unmarked" ? engine::Region::kUnmarked
-                                             : engine::Region::kAll;
+  of.region = regionOf(options.region);
   of.interpolation = interpolationNamed(options.interpolation);
   return of;
 }

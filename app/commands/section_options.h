@@ -8,6 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_options.h"
 #include "app/work/section_report.h"
 #include "engine/base/error.h"
@@ -16,15 +17,13 @@
 namespace fettle::app {
 
 /// What `fettle section` is asked for. Lengths and positions in millimetres.
-struct SectionArguments : SectionWants {
+struct SectionArguments : SectionWants, RegionArguments {
   std::string scan;
   std::vector<double> from, to;
   std::vector<std::string> polylines;
   std::string lines;
   double width = 0.0;
   std::string interpolation = "bilinear";
-  std::string region = "all";
-  std::string marks;
   std::string compare;
   bool kept = false;  ///< those of the session, each with its own width and figures
   // What is measured besides.

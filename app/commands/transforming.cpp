@@ -11,6 +11,7 @@
 #include "engine/field/grid.h"
 #include "engine/field/piece.h"
 #include "engine/field/sample_rect.h"
+#include "engine/marks/chosen_marks.h"
 #include "engine/transform/rearrange.h"
 
 namespace fettle::app {
@@ -32,23 +33,14 @@ engine::Result<engine::SampleRect> cropOf(const TransformArguments& options, con
   if (std::ranges::any_of(options.crop, [](double v) { return !std::isfinite(v); }))
     return engine::inputError("a corner is no number", "--crop", "give X,Y,X,Y in mm");
   if (options.crop.empty()) return engine::SampleRect{0, 0, grid.width, grid.height};
-  // Samples in the rectangle; one that is on its side but for rounding is in it.
-  constexpr double kRounding = 1e-6;
-  const auto range = [](double from, double to, double spacing, std::int32_t count) {
-    const double first = std::ceil(std::min(from, to) / spacing - kRounding);
-    const double last = std::floor(std::max(from, to) / spacing + kRounding);
-    return std::pair{static_cast<std::int32_t>(std::clamp(first, 0.0, static_cast<double>(count))),
-                     static_cast<std::int32_t>(std::clamp(last, -1.0, count - 1.0))};
-  };
-  const auto columns = range(options.crop[0], options.crop[2], grid.spacingXMm(), grid.width);
-  const auto rows = range(options.crop[1], options.crop[3], grid.spacingYMm(), grid.height);
-  if (columns.first > columns.second || rows.first > rows.second)
+  const engine::SampleRect rect =
+      engine::samplesBetween(grid, {options.crop[0], options.crop[1]}, {options.crop[2], options.crop[3]});
+  if (rect.empty())
     return engine::inputError(
         "no sample is in the rectangle", "--crop",
         fmt::format("the scan is from 0,0 to {:.6g},{:.6g} mm", (grid.width - 1) * grid.spacingXMm(),
                     (grid.height - 1) * grid.spacingYMm()));
-  return engine::SampleRect{columns.first, rows.first, columns.second - columns.first + 1,
-                            rows.second - rows.first + 1};
+  return rect;
 }
 
 engine::Turning turningOf(const TransformArguments& options) {

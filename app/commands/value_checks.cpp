@@ -56,7 +56,8 @@ std::vector<std::function<std::string(const std::string&)>> problemsOf(const Par
     problems.emplace_back([range = *p.range, whole = p.kind == ValueKind::kWhole](const std::string& typed) {
       return outside(typed, range, whole);
     });
-  if (!p.words.empty())
+  // Text may go on behind its first word.
+  if (!p.words.empty() && p.kind != ValueKind::kText)
     problems.emplace_back([words = wordsOf(p)](const std::string& typed) { return noneOf(typed, words); });
   constexpr std::array kFiles{ValueKind::kFile, ValueKind::kNewFile, ValueKind::kNewScan};
   if (std::ranges::find(kFiles, p.kind) != kFiles.end()) problems.emplace_back(streamProblem);

@@ -82,8 +82,9 @@ struct Parameter {
   std::string text = {};  ///< what it does; no period at the end
   ValueKind kind = ValueKind::kByTarget;
   std::optional<Range> range = {};
-  std::string unit = {};         ///< of a number, in the plural: "samples"; of a length not the scan's
-  std::vector<Word> words = {};  ///< the only ones that are taken
+  std::string unit = {};  ///< of a number, in the plural: "samples"; of a length not the scan's
+  std::vector<Word> words =
+      {};  ///< the only ones that are taken; of a text those that it begins with, and `problem` checks it
   /// Words that completion offers among others that are taken; `problem` or the command refuses a wrong one.
   std::vector<std::string> proposed = {};
   std::string shown = {};  ///< its value in the help instead of that of the kind: "X[,Y]"

@@ -115,7 +115,7 @@ ReportKey layer() {
 Keys form() {
   return joined({{"form", "string", "none, mean, plane, poly2 to poly5, sphere, cylinder, cone"},
                  {"robust", "boolean", ""},
-                 {"region", "string", "all, marked, unmarked, measured"}},
+                 {"region", "string", "as typed: all, marked, unmarked, measured, or a shape"}},
                 formFigures());
 }
 

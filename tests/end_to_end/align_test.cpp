@@ -84,7 +84,8 @@ TEST(AlignCommand, SaysWhatItCannotDo) {
                              {{"align", a, a, "--compress", "zstd"}, "no scan is written"},
                              {{"align", a, a, "--to", "tif"}, "no scan is written"},
                              {{"compare", a, a, "--rotation", "5"}, "nothing is aligned"},
-                             {{"compare", a, a, "--region", "marked"}, "nothing is aligned"}}) {
+                             {{"compare", a, a, "--align-region", "marked"}, "nothing is aligned"},
+                             {{"compare", a, a, "--region", "marked"}, "no sample is in the region"}}) {
     std::vector<std::string> words = one.words;
     words.insert(words.end(), {"--unit", "mm"});
     const Outcome outcome = fettle(words);

@@ -362,6 +362,11 @@ class Level(unittest.TestCase):
         for field in (full, turned):
             self.assertEqual(field.measure(only=["hybrid"])["filled"], 60)
             self.assertEqual(field.measure(only=["hybrid"], region="measured")["samples"], 60 * 70 - 60)
+        # Millimetres from the lower left sample, with the samples on the sides.
+        self.assertEqual(full.measure(only=["height"], region="rectangle 10,0,20,5")["samples"], 11 * 6)
+        self.assertEqual(full.compare(turned.transformed(turn=270), region="polygon 0.5,0.5 9.5,0.5 9.5,4.5 0.5,4.5")["samples"], 9 * 4)
+        with self.assertRaises(fettle.InputError):
+            full.measure(region="rectangle 100,0,200,5")
 
     def test_changes_are_limited_from_the_levelled_heights(self):
         scan = fettle.synth(part="steps", size=(96, 80))
