@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct MeasureArguments {
   std::vector<std::string> groups;  // empty: all
   std::vector<std::string> at_heights;
   std::vector<double> at_ratios;
-  std::string csv;
+  std::string csv, surface;
   CurveFiles curves;
   int noise_trials = kUsualTrials;
   bool estimate = false;
@@ -89,15 +90,20 @@ engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& opti
   return areal;
 }
 
+engine::Status writeSurface(const MeasureArguments& options, const ScaleLimited& limited,
+                            const engine::Version& scan, engine::JobControl& job) {
+  if (options.surface.empty()) return {};
+  const auto surface = surfaceField(limited, regionOf(options.form.region), scan, job);
+  if (!surface) return tl::unexpected(surface.error());
+  return saveField(*surface, options.surface, job);
+}
+
 engine::Result<Report> measureOne(const MeasureArguments& options, const std::string& scan,
                                   engine::JobControl& job) {
   const auto imported = loadScan(scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = countedOf(imported->field, imported->original, scan, options.form, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto limitedOf = [&](const engine::Version& field) {
-    return scaleLimited(field, scan, *imported, options.form, options.scale, job);
-  };
   const engine::Grid& grid = imported->field.grid();
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
@@ -113,17 +119,20 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   auto foreseen = foresee(planned, shownInput(scan), options.estimate, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
-  const auto limited = limitedOf(*marked);
+  const auto limited = scaleLimited(*marked, scan, *imported, options.form, options.scale, job);
   if (!limited) return tl::unexpected(limited.error());
   const auto measured = engine::measureAreal(limited->field, limited->form, wanted, job);
   if (!measured) return tl::unexpected(measured.error());
   if (auto status = writeCurves(options.curves, *measured, grid); !status)
+    return tl::unexpected(status.error());
+  if (auto status = writeSurface(options, *limited, imported->field, job); !status)
     return tl::unexpected(status.error());
   Report report;
   addForm(report, options.form, limited->fit, grid);
   addLayer(report, imported->field);
   if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
   addScale(report, options.scale);
+  if (!options.surface.empty()) report["surface"] = options.surface;
   addAreal(report, *measured, options.groups, grid);
   if (areal->functional) {
     report["smr"] = Report::array();
@@ -136,16 +145,12 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;
   stated.heights.resize(areal->at_ratios.size());
-  const auto noise = arealNoise(
-      *marked, stated,
-      [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
-        const auto of = limitedOf(noisy);
-        if (!of) return tl::unexpected(of.error());
-        return engine::measureAreal(of->field, of->form, *areal, job);
-      },
-      options.noise_trials, job);
+  const auto noise =
+      noiseOfMeasured({*marked, scan, *imported, options.form, options.scale, *areal, options.noise_trials},
+                      *limited, stated, job);
   if (!noise) return tl::unexpected(noise.error());
-  if (*noise) addNoise(report, **noise, grid);
+  if (*noise) addNoise(report, (*noise)->noise, grid);
+  if (*noise && (*noise)->samples > 0) report["noise"]["part"] = (*noise)->samples;
   return report;
 }
 
@@ -198,7 +203,11 @@ engine::Result<Report> measure(const MeasureArguments& options, const std::vecto
   inputs.push_back(options.form.marks);
   if (auto status = checkCurves(options.curves, options.scans.size()); !status)
     return tl::unexpected(status.error());
+  if (!options.surface.empty() && options.scans.size() > 1)
+    return engine::inputError("a surface is written of one scan", "--surface",
+                              "leave it out, or measure one after another");
   std::vector<Output> outputs = outputsOf(options.curves);
+  outputs.push_back({options.surface, OutputKind::kField});
   outputs.push_back({options.csv, OutputKind::kText, ".csv"});
   if (auto status = checkOutputs(outputs, inputs, Replacing::kNoWork, job); !status)
     return tl::unexpected(status.error());
@@ -243,35 +252,41 @@ void addMeasure(Command root, Chosen& chosen) {
       root, chosen, "measure", "Surface texture parameters of ISO 25178-2, about a form",
       [options, &chosen](engine::JobControl& job) { return measure(*options, chosen.arguments, job); },
       printMeasured, Progress::kOwn, batchStatus);
-  command.add({{.name = "SCAN",
-                .to = &options->scans,
-                .text = "The scan, or several, each with a report of its own; - for standard input",
-                .kind = ValueKind::kInput,
-                .required = true},
-               {.name = "--only",
-                .to = &options->groups,
-                .text = "Only these groups, and that of heights: the others need more time and memory",
-                .words = groupWords(),
-                .shown = "GROUP[,GROUP...]",
-                .otherwise = "all groups",
-                .between = ','},
-               {.name = "--at-height",
-                .to = &options->at_heights,
-                .text = "Heights about the mean for the material ratio Smr(c), below it with -: 0,-0.5um",
-                .shown = "C[,C...]",
-                .between = ','},
-               {.name = "--at-ratio",
-                .to = &options->at_ratios,
-                .text = "Material ratios for the height Smc(mr)",
-                .range = Range{0.0, 100.0},
-                .unit = "%",
-                .shown = "MR[,MR...]",
-                .otherwise = "10,80",
-                .between = ','},
-               {.name = "--csv",
-                .to = &options->csv,
-                .text = "Write a row per scan and parameter, in the scan's units",
-                .kind = ValueKind::kOutput}});
+  command.add(
+      {{.name = "SCAN",
+        .to = &options->scans,
+        .text = "The scan, or several, each with a report of its own; - for standard input",
+        .kind = ValueKind::kInput,
+        .required = true},
+       {.name = "--only",
+        .to = &options->groups,
+        .text = "Only these groups, and that of heights: the others need more time and memory",
+        .words = groupWords(),
+        .shown = "GROUP[,GROUP...]",
+        .otherwise = "all groups",
+        .between = ','},
+       {.name = "--at-height",
+        .to = &options->at_heights,
+        .text = "Heights about the mean for the material ratio Smr(c), below it with -: 0,-0.5um",
+        .shown = "C[,C...]",
+        .between = ','},
+       {.name = "--at-ratio",
+        .to = &options->at_ratios,
+        .text = "Material ratios for the height Smc(mr)",
+        .range = Range{0.0, 100.0},
+        .unit = "%",
+        .shown = "MR[,MR...]",
+        .otherwise = "10,80",
+        .between = ','},
+       {.name = "--csv",
+        .to = &options->csv,
+        .text = "Write a row per scan and parameter, in the scan's units",
+        .kind = ValueKind::kOutput},
+       {.name = "--surface",
+        .to = &options->surface,
+        .text = "Write the surface that the parameters are those of: without the form, after --s-filter "
+                "(S-F surface) and --l-filter (S-L surface), holes where no sample counts",
+        .kind = ValueKind::kNewScan}});
   addNoiseOption(command, options->noise_trials);
   addEstimateOption(command, options->estimate);
   addCurveOptions(command, options->curves);
@@ -297,6 +312,8 @@ void addMeasure(Command root, Chosen& chosen) {
                      "Heights and spatial parameters of several scans, as a table"},
                     {"fettle measure scan.tif --s-filter 2.5 --l-filter 25",
                      "Of the S-L surface: waves between 2.5 and 25 mm"},
+                    {"fettle measure scan.tif --s-filter 2.5 --l-filter 25 --surface surface.tif",
+                     "The same, and the S-L surface as a scan"},
                     {"fettle measure scan.tif --abbott abbott.svg --spectrum spectrum.svg",
                      "With pictures of the material ratio curve and the power spectrum"},
                     {"fettle measure scan.tif --form poly2 --robust",

@@ -1,6 +1,5 @@
 #include "app/commands/measuring.h"
 
-#include "app/commands/noise_option.h"
 #include "app/terminal.h"
 #include "engine/field/piece.h"
 
@@ -36,6 +35,44 @@ PlannedOnPieces plannedMeasuring(const PlannedMeasuring& measuring) {
     return piece;
   };
   return pieces;
+}
+
+engine::Result<std::optional<PartNoise>> noiseOfMeasured(const PlannedMeasuring& measuring,
+                                                         const ScaleLimited& limited,
+                                                         const engine::ArealParameters& stated,
+                                                         engine::JobControl& job) {
+  const auto limitedOf = [&](const engine::Version& field, const FormArguments& form) {
+    return scaleLimited(field, measuring.scan, measuring.imported, form, measuring.scale, job);
+  };
+  const engine::Version& counted = measuring.counted;
+  const engine::ArealOptions& areal = measuring.areal;
+  if (measuring.trials != kUsualTrials || noiseTrials(kUsualTrials, counted.grid().samples()) > 0) {
+    auto noise = arealNoise(
+        counted, stated,
+        [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
+          const auto of = limitedOf(noisy, measuring.form);
+          if (!of) return tl::unexpected(of.error());
+          return engine::measureAreal(of->field, of->form, areal, job);
+        },
+        measuring.trials, job);
+    if (!noise) return tl::unexpected(noise.error());
+    return *noise ? std::optional<PartNoise>(PartNoise{**std::move(noise)}) : std::nullopt;
+  }
+  const auto surface = surfaceField(limited, areal.region, counted, job);
+  if (!surface) return tl::unexpected(surface.error());
+  // The difference that noise makes in a piece has next to none of any form: a plane does for all.
+  FormArguments form = measuring.form;
+  form.form = engine::infoOf(engine::FormKind::kPlane).word;
+  form.robust = false;
+  setThrough(std::nullopt, form);
+  return arealNoiseOfPart(
+      counted, *surface, stated, areal,
+      [&](const engine::Version& piece) -> engine::Result<engine::Version> {
+        const auto of = limitedOf(piece, form);
+        if (!of) return tl::unexpected(of.error());
+        return surfaceField(*of, areal.region, piece, job);
+      },
+      job);
 }
 
 }  // namespace fettle::app

@@ -10,6 +10,7 @@
 #include "app/terminal.h"
 #include "engine/inspect/noise_model.h"
 #include "engine/uncertainty/areal_figures.h"
+#include "engine/uncertainty/part_effects.h"
 
 namespace fettle::app {
 
@@ -34,7 +35,8 @@ void addNoiseOption(Command command, int& trials) {
         .text = "Measure so often with the scan's own noise added, for each parameter without noise and its "
                 "standard error; 0: leave these out",
         .range = Range{0.0, 1000.0},
-        .otherwise = "as many as measure 4 million samples, 16 at most, at least 4 or none"}});
+        .otherwise = "as many as measure 4 million samples, 16 at most; of more than 1 million 4 on a part "
+                     "that stands for all"}});
 }
 
 engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& field,
@@ -60,6 +62,19 @@ engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& fiel
   auto effects = engine::arealEffects(field, *noise, measured, measure, {.pairs = pairs}, job);
   if (!effects) return tl::unexpected(effects.error());
   return ArealNoise{noise->sigma, 2 * pairs, *std::move(effects)};
+}
+
+engine::Result<std::optional<PartNoise>> arealNoiseOfPart(
+    const engine::Version& field, const engine::Version& surface, const engine::ArealParameters& measured,
+    const engine::ArealOptions& options, const SurfaceOf& surface_of, engine::JobControl& job) {
+  const auto noise = engine::measureNoise(field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  if (std::isnan(noise->sigma)) return std::optional<PartNoise>();
+  const KeptMessages said;
+  const engine::PartOptions how;
+  auto part = engine::arealEffectsOfPart(field, *noise, surface, measured, options, surface_of, how, job);
+  if (!part) return tl::unexpected(part.error());
+  return PartNoise{{noise->sigma, 2 * how.pairs, std::move(part->effects)}, part->samples};
 }
 
 }  // namespace fettle::app

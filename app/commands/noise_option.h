@@ -12,7 +12,7 @@
 
 namespace fettle::app {
 
-/// --noise-trials. Without it as many as measure 4 million samples, 16 at most; none where that is less than 4.
+/// --noise-trials. Without it as many as measure 4 million samples, 16 at most; where that is less than 4 none, or of a part.
 void addNoiseOption(Command command, int& trials);
 /// Its value where it is not given.
 inline constexpr int kUsualTrials = -1;
@@ -30,5 +30,16 @@ using ArealOf = std::function<engine::Result<engine::ArealParameters>(const engi
                                                                    const engine::ArealParameters& measured,
                                                                    const ArealOf& measure, int trials,
                                                                    engine::JobControl& job);
+
+/// The same by 4 trials on a part of the field (engine::arealEffectsOfPart), whose time no size of the field changes. `surface` is what was
+/// measured, with holes where no sample counts; `surface_of` makes it of a piece of the field.
+struct PartNoise {
+  ArealNoise noise;
+  std::int64_t samples = 0;  ///< of the part, with a height
+};
+using SurfaceOf = std::function<engine::Result<engine::Version>(const engine::Version& piece)>;
+[[nodiscard]] engine::Result<std::optional<PartNoise>> arealNoiseOfPart(
+    const engine::Version& field, const engine::Version& surface, const engine::ArealParameters& measured,
+    const engine::ArealOptions& options, const SurfaceOf& surface_of, engine::JobControl& job);
 
 }  // namespace fettle::app

@@ -9,7 +9,9 @@
 
 #include "app/commands/typed_values.h"
 #include "engine/filter/catalogue.h"
+#include "engine/marks/chosen_marks.h"
 #include "engine/measure/form.h"
+#include "engine/measure/only_region.h"
 #include "engine/measure/scale_filter.h"
 
 namespace fettle::app {
@@ -102,6 +104,15 @@ engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const st
   result.field = *std::move(rough);
   result.form = engine::PolynomialForm{0, result.form.width(), result.form.height(), 0.0, {0.0}};
   return result;
+}
+
+engine::Result<engine::Version> surfaceField(const ScaleLimited& limited, engine::Region region,
+                                             const engine::Version& scan, engine::JobControl& job) {
+  const auto about = engine::withoutForm(limited.field, limited.form, job);
+  if (!about) return tl::unexpected(about.error());
+  const auto chosen = engine::onlyRegion(*about, *about, region, job);
+  if (!chosen) return tl::unexpected(chosen.error());
+  return engine::withMarksFrom(*chosen, scan, job);
 }
 
 std::string scaleText(const Report& report, std::string_view between) {

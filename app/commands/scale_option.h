@@ -39,6 +39,12 @@ struct ScaleLimited {
                                                         const FormArguments& form,
                                                         const ScaleArguments& scale, engine::JobControl& job);
 
+/// The S-F or S-L surface as a field of its own: heights about the form, rounded to float once, holes where `region` of
+/// `limited` has no sample. Marks are those of `scan`. Errors: kFailed without memory; kCancelled.
+[[nodiscard]] engine::Result<engine::Version> surfaceField(const ScaleLimited& limited, engine::Region region,
+                                                           const engine::Version& scan,
+                                                           engine::JobControl& job);
+
 /// s_filter and l_filter [mm], and their kinds where these are not areal-gaussian, of those that are there.
 void addScale(Report& report, const ScaleArguments& scale);
 /// Those of a report in words, "S-filter 2.5 mm, areal-gaussian", with `between` between them; empty without.

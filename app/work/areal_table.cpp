@@ -225,11 +225,16 @@ void printAreal(const Report& report) {
   const bool noise = report.contains("noise");
   if (noise)
     fmt::print(
-        "noise {:.4g} {}; the second figure is without noise, +- its standard error, by {} trials, which is "
+        "noise {:.4g} {}; the second figure is without noise, +- its standard error, by {} trials{}, which "
+        "is "
         "known to "
         "{:.0f} %\n",
         report["noise"]["sigma"].get<double>() / height.size, height.name,
-        report["noise"]["trials"].get<int>(), 100.0 * report["noise"]["error_of_errors"].get<double>());
+        report["noise"]["trials"].get<int>(),
+        report["noise"].contains("part")
+            ? fmt::format(" on {} samples of 16 parts", report["noise"]["part"].get<std::int64_t>())
+            : "",
+        100.0 * report["noise"]["error_of_errors"].get<double>());
   for (const ArealGroup& group : kArealGroups) {
     bool headed = false;
     for (const ArealRow& row : kArealRows) {

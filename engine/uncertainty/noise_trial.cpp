@@ -9,6 +9,7 @@
 #include "engine/field/tile.h"
 #include "engine/measure/lowered.h"
 #include "engine/suggest/noise_source.h"
+#include "engine/uncertainty/part_effects.h"
 
 namespace fettle::engine {
 
@@ -49,6 +50,57 @@ double mean(std::span<const double> values) noexcept {
   double sum = 0.0;
   for (const double v : values) sum += v;
   return sum / static_cast<double>(values.size());
+}
+
+// A figure as it grows with the variance of noise; an axis is taken near to `near`.
+double grownBy(NoiseGrowth growth, double value, double near) noexcept {
+  if (growth == NoiseGrowth::kAxis) return nearestAxis(value, near);
+  return ruleOf(growth).by_square ? value * value : value;
+}
+
+// Of trials on a part of the surface whose own figure is `of_part`, which has `share` of the samples: all of it is the whole.
+NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> pairs, NoiseGrowth growth,
+                       double share) {
+  if (std::isnan(found) || std::isnan(of_part)) return {kNone, kNone};
+  const GrowthRule& rule = ruleOf(growth);
+  std::vector<double> halves, means;
+  for (const TrialPair& pair : pairs) {
+    const double more = grownBy(growth, pair.more, of_part), less = grownBy(growth, pair.less, of_part);
+    if (std::isnan(more) || std::isnan(less)) continue;
+    halves.push_back(0.5 * (more - less));
+    means.push_back(0.5 * (more + less));
+  }
+  if (halves.size() < 2 || 4 * halves.size() < 3 * pairs.size()) return {kNone, kNone};
+  const auto n = static_cast<double>(halves.size());
+  const double whole = grownBy(growth, found, found), part = grownBy(growth, of_part, of_part);
+  const double middle = mean(means), raise = middle - part;
+  double scatter = 0.0, spread = 0.0;
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    scatter += halves[k] * halves[k] / n;
+    spread += (means[k] - middle) * (means[k] - middle) / (n - 1.0);
+  }
+  const double widened = rule.scatter * studentFactor(static_cast<int>(halves.size()));
+  // As far as the part's figure is another one the raise may be, too.
+  const double apart = growth == NoiseGrowth::kAxis ? nearestAxis(of_part, found) - found : part - whole;
+  const double size = growth == NoiseGrowth::kAxis ? 90.0 : std::max(std::abs(part), std::abs(whole));
+  const double unlike = share < 1.0 && size > 0.0 ? apart / size : 0.0;
+  const double doubt = std::hypot(rule.doubt, unlike) * raise, by_trials = widened * widened;
+  const double error = std::sqrt(by_trials * (share * scatter + spread * (share + 1.0 / n)) + doubt * doubt);
+  double without = whole - raise;
+  if (!rule.by_square) {
+    if (growth == NoiseGrowth::kAxis) without -= 180.0 * std::floor(without / 180.0);
+    return {without, error};
+  }
+  // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
+  without = std::sqrt(std::max(without, 0.0));
+  if (found - without > rule.most * found) return {kNone, kNone};
+  const double square = without * without;
+  // Rounding of the squares is no error: no trial changed the figure.
+  if (error <= 1e-12 * square) return {without, 0.0};
+  const double by = square > error ? without - std::sqrt(square - error)
+                                   : std::max(without, std::sqrt(square + error) - without);
+  if (by > kMostError * without && rule.most < kAny) return {kNone, kNone};
+  return {without, by};
 }
 
 }  // namespace
@@ -92,45 +144,12 @@ double errorOfErrors(int pairs) noexcept {
 }
 
 NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth) {
-  if (std::isnan(found)) return {kNone, kNone};
-  const GrowthRule& rule = ruleOf(growth);
-  const auto grown = [&](double value) {
-    if (growth == NoiseGrowth::kAxis) return nearestAxis(value, found);
-    return rule.by_square ? value * value : value;
-  };
-  std::vector<double> halves, means;
-  for (const TrialPair& pair : pairs) {
-    const double more = grown(pair.more), less = grown(pair.less);
-    if (std::isnan(more) || std::isnan(less)) continue;
-    halves.push_back(0.5 * (more - less));
-    means.push_back(0.5 * (more + less));
-  }
-  if (halves.size() < 2 || 4 * halves.size() < 3 * pairs.size()) return {kNone, kNone};
-  const auto n = static_cast<double>(halves.size());
-  const double middle = mean(means), raise = middle - grown(found);
-  double scatter = 0.0, spread = 0.0;
-  for (std::size_t k = 0; k < halves.size(); ++k) {
-    scatter += halves[k] * halves[k] / n;
-    spread += (means[k] - middle) * (means[k] - middle) / (n - 1.0);
-  }
-  const double widened = rule.scatter * studentFactor(static_cast<int>(halves.size()));
-  const double doubt = rule.doubt * raise, by_trials = widened * widened;
-  const double error = std::sqrt(by_trials * (scatter + spread * (1.0 + 1.0 / n)) + doubt * doubt);
-  double without = grown(found) - raise;
-  if (!rule.by_square) {
-    if (growth == NoiseGrowth::kAxis) without -= 180.0 * std::floor(without / 180.0);
-    return {without, error};
-  }
-  // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
-  without = std::sqrt(std::max(without, 0.0));
-  if (found - without > rule.most * found) return {kNone, kNone};
-  const double square = without * without;
-  // Rounding of the squares is no error: no trial changed the figure.
-  if (error <= 1e-12 * square) return {without, 0.0};
-  const double by = square > error ? without - std::sqrt(square - error)
-                                   : std::max(without, std::sqrt(square + error) - without);
-  if (by > kMostError * without && rule.most < kAny) return {kNone, kNone};
-  return {without, by};
+  return effectFrom(found, found, pairs, growth, 1.0);
+}
+
+NoiseEffect partEffectOf(double found, double of_part, std::span<const TrialPair> pairs, NoiseGrowth growth,
+                         double share) {
+  return effectFrom(found, of_part, pairs, growth, share);
 }
 
 Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,

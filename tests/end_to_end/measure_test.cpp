@@ -1,5 +1,6 @@
 // fettle level and fettle measure, as a metrologist types them.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/program.h"
@@ -61,6 +63,92 @@ TEST(Measure, OfALevelledScanIsThatOfTheScan) {
   EXPECT_NEAR(levelled["rms"], before["sq"], 1e-9);
   EXPECT_NEAR(after["mean"], 0.0, 1e-8);
   EXPECT_FALSE(after.contains("tilt_x"));
+}
+
+// The surface that is written has, measured as it is, the parameters that were stated, its holes, and no sample outside of the
+// region. Heights are rounded to float once more: 6e-8 of the greatest, of parameters of small differences a thousand times that.
+TEST(Measure, TheSurfaceThatIsWrittenHasTheParameters) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.asc"), surface = folder.file("surface.tif");
+  {
+    std::ofstream out(scan);
+    out << "ncols 120\nnrows 90\nxllcenter 0\nyllcenter 0\ndx 0.1\ndy 0.2\nNODATA_value -9999\n";
+    for (int r = 89; r >= 0; --r) {
+      for (int c = 0; c < 120; ++c)
+        out << ((c - 40) * (c - 40) + (r - 30) * (r - 30) < 30
+                    ? -9999.0
+                    : 0.01 * c - 0.02 * r + 0.05 * std::sin(0.8 * c) * std::cos(0.5 * r) +
+                          0.2 * std::sin(0.06 * c))
+            << ' ';
+      out << '\n';
+    }
+  }
+  for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{
+           {},
+           {"--form", "poly2", "--robust"},
+           {"--s-filter", "0.6"},
+           {"--s-filter", "0.6", "--l-filter", "4"},
+           {"--l-filter", "4", "--l-filter-kind", "spline", "--form", "poly3"},
+           {"--s-filter", "0.6", "--form", "sphere"},
+           {"--s-filter", "0.6", "--l-filter", "4", "--region", "rectangle 1,2,9,15"}}) {
+    std::vector<std::string> line{"measure",   scan,    "--unit",         "mm",
+                                  "--surface", surface, "--noise-trials", "0"};
+    line.insert(line.end(), how.begin(), how.end());
+    const std::string typed = how.empty() ? "" : how.back();
+    const auto stated = fettleJson(line);
+    EXPECT_EQ(stated["surface"], surface);
+    const auto again = fettleJson({"measure", surface, "--form", "none", "--noise-trials", "0"});
+    EXPECT_EQ(again["samples"], stated["samples"]) << typed;
+    EXPECT_EQ(again["cells"], stated["cells"]) << typed;
+    int compared = 0;
+    for (const char* key :
+         {"sq", "ssk", "sku", "sp",    "sv",    "sz",  "sa",  "sal", "str", "std", "sdq", "sdr",
+          "sk", "spk", "svk", "smrk1", "smrk2", "vmp", "vmc", "vvc", "vvv", "sxp", "spd", "spc"}) {
+      ASSERT_EQ(again[key].is_null(), stated[key].is_null()) << typed << " " << key;
+      if (again[key].is_null()) continue;
+      const double value = stated[key];
+      EXPECT_NEAR(again[key], value, 2e-5 * std::max(std::abs(value), 0.1)) << typed << " " << key;
+      ++compared;
+    }
+    EXPECT_GT(compared, 18) << typed;
+  }
+  expectRefused(fettle({"measure", scan, scan, "--unit", "mm", "--surface", surface}), "one scan");
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--surface", folder.file("s.what")}), "what");
+}
+
+// Above a million samples errors are those of a part that stands for all. White noise of 0.1 on waves: Sq without it is 1/sqrt 2 of
+// the amplitude.
+TEST(Measure, OfAMillionSamplesAndMoreHasErrorsToo) {
+  const TempFolder folder;
+  const std::string scan = folder.file("large.asc");
+  {
+    std::ofstream out(scan);
+    out << "ncols 1100\nnrows 1000\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal(0.0, 0.1);
+    for (int r = 999; r >= 0; --r) {
+      std::string row;
+      for (int c = 0; c < 1100; ++c)
+        row += fmt::format("{:.5f} ", std::sin(2.0 * kPi * c / 55.0) + 3e-4 * c + normal(random));
+      out << row << '\n';
+    }
+  }
+  const auto report = fettleJson({"measure", scan, "--unit", "mm", "--only", "hybrid,functional"});
+  EXPECT_EQ(report["noise"]["part"], 16 * 180 * 180);
+  int stated = 0;
+  for (const auto& figure : report["noise"]["figures"]) {
+    if (figure["error"].is_null()) continue;
+    ++stated;
+    EXPECT_GE(figure["error"], 0.0) << figure["parameter"];
+    const double off = figure["without"].get<double>() - 1.0 / std::sqrt(2.0);
+    if (figure["parameter"] != "sq") continue;
+    // The scatter alone is 1e-4; the noise that is measured is known to some per cent of 0.007.
+    EXPECT_LT(std::abs(off), std::max(4.0 * figure["error"].get<double>(), 5e-4));
+    EXPECT_LT(figure["error"], 3e-3);
+  }
+  EXPECT_GT(stated, 12);
+  EXPECT_FALSE(fettleJson({"measure", scan, "--unit", "mm", "--only", "height", "--noise-trials", "0"})
+                   .contains("noise"));
 }
 
 // A grating, even about the middle, with an offset for each line, as an AFM makes it, along x or along y.
