@@ -382,11 +382,6 @@ inline void formPreview(Parts& p) {
     p.form.preview(clientOf(p));
   p.picture.requestRedraw();
 }
-// What a preview is made with, and what it found, stands in its panel.
-inline void enterPanel(Parts& p, const char* name) {
-  p.settings.panels[name] = true;
-  p.enter_panel = name;
-}
 inline bool hasFits(const Parts& p) {
   return hasField(p) && p.fit.fits() != nullptr;
 }
