@@ -227,7 +227,7 @@ TEST_F(DevicePage, another_device_is_chosen_in_the_panel_and_gives_no_force_unti
     (void)user.look("list");
     user.tap(title);
   };
-  choose(mouse + ", no force", "Force Dimension");
+  choose(mouse + ", no force", "omega");
   const State omega = program->until("the other device", [&](const State& s) {
     return s["device"] != mouse && s["connected"] == true && s["settled"] == true;
   });
