@@ -286,7 +286,7 @@ TEST(Recipe, OfACommandsLayerIsThatOfItsNoteWhileItIsAStep) {
   const auto noteOf = [](std::vector<RecipeStep> steps) {
     return recipeText(Recipe{.steps = std::move(steps), .left_out = {}});
   };
-  const RecipeForm poly{"put", {"poly2", true, "all", {}}}, by_marks{"put", {"plane", false, "marked", {}}};
+  const RecipeForm poly{"put", {{}, "poly2", true}}, by_marks{"put", {{"marked"}, "plane", false}};
   const std::string put = noteOf({poly});
   EXPECT_TRUE(putsForm(put));
   EXPECT_FALSE(putsForm(noteOf({poly, RecipeForm{"remove", {}}})));

@@ -22,7 +22,7 @@
 namespace fettle::engine {
 namespace {
 
-constexpr int kSide = 512;
+constexpr int kWholeSide = 512;
 
 Version fieldOf(const std::vector<float>& z, int width, int height) {
   Grid grid;
@@ -36,8 +36,8 @@ std::vector<float> roughSteps(double sigma, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   std::vector<float> z;
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c)
+  for (int r = 0; r < kWholeSide; ++r)
+    for (int c = 0; c < kWholeSide; ++c)
       z.push_back(static_cast<float>(
           (c / 128 % 2 == 0 ? 0.6 : -0.6) +
           0.6 * std::sin(0.61 * c + 0.3 * std::sin(0.05 * r)) * std::sin(0.53 * r) +
@@ -52,7 +52,7 @@ Result<Version> planeOut(const Version& field) {
   return withoutForm(field, fit->form, job);
 }
 
-Result<ArealParameters> measuredOf(const Version& field) {
+Result<ArealParameters> parametersOf(const Version& field) {
   JobControl job;
   const auto fit = fitForm(field, {}, job);
   if (!fit) return tl::unexpected(fit.error());
@@ -167,13 +167,13 @@ struct Sums {
 TEST(PartEffects, CoverTheTruthAsTrialsOnTheWholeDo) {
   constexpr int kSeeds = 3;
   const double sigma = 0.08;
-  const auto truth = valuesOf(*measuredOf(fieldOf(roughSteps(0.0, 0), kSide, kSide)));
+  const auto truth = valuesOf(*parametersOf(fieldOf(roughSteps(0.0, 0), kWholeSide, kWholeSide)));
   Sums sums;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     JobControl job;
-    const Version field = fieldOf(roughSteps(sigma, seed), kSide, kSide);
+    const Version field = fieldOf(roughSteps(sigma, seed), kWholeSide, kWholeSide);
     const NoiseModel noise = whiteNoise(sigma);
-    const auto measured = measuredOf(field);
+    const auto measured = parametersOf(field);
     const auto surface = planeOut(field);
     ASSERT_TRUE(measured && surface);
     const auto part = arealEffectsOfPart(field, noise, *surface, *measured, {}, planeOut,
@@ -181,7 +181,7 @@ TEST(PartEffects, CoverTheTruthAsTrialsOnTheWholeDo) {
     ASSERT_TRUE(part) << part.error().line();
     EXPECT_EQ(part->samples, 16 * 64 * 64);
     const auto whole =
-        arealEffects(field, noise, *measured, measuredOf, {.pairs = 4, .seed = seed + 100U}, job);
+        arealEffects(field, noise, *measured, parametersOf, {.pairs = 4, .seed = seed + 100U}, job);
     ASSERT_TRUE(whole);
     const std::vector<double> found = valuesOf(*measured);
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -230,8 +230,8 @@ TEST(PartEffects, NoiseIsAsLargeAsItsMapSays) {
   noise.map.assign(NoiseModel::kMapSide * NoiseModel::kMapSide, 0.1);
   for (std::size_t i = 0; i < noise.map.size(); ++i)
     if (i % NoiseModel::kMapSide >= NoiseModel::kMapSide / 2) noise.map[i] = 0.3;
-  const Version field = fieldOf(roughSteps(0.0, 0), kSide, kSide);
-  const auto measured = measuredOf(field);
+  const Version field = fieldOf(roughSteps(0.0, 0), kWholeSide, kWholeSide);
+  const auto measured = parametersOf(field);
   const auto surface = planeOut(field);
   ASSERT_TRUE(measured && surface);
   const auto part = arealEffectsOfPart(field, noise, *surface, *measured,
