@@ -604,6 +604,8 @@ void Workstation::setDevice(const std::string& words) {
     end_ = set;
   else if (!set)
     parts_.feedback.message(set.error().line(), "the device is used as before");
+  else
+    parts_.feedback.status = fmt::format("the device is the {} now", client.device().profile().name);
   parts_.picture.requestRedraw();
 }
 

@@ -232,7 +232,8 @@ TEST_F(DevicePage, another_device_is_chosen_in_the_panel_and_gives_no_force_unti
     return s["device"] != mouse && s["connected"] == true && s["settled"] == true;
   });
   EXPECT_EQ(omega["safety"], "uncalibrated") << "nobody has armed it";
-  EXPECT_NE(omega["notices"].dump().find("is the"), std::string::npos) << omega["notices"];
+  EXPECT_NE(omega["status"].get<std::string>().find("the device is the"), std::string::npos)
+      << omega["status"];
   (void)user.look("another device");
   (void)user.press("a");
   program->until("armed", [](const State& s) { return s["safety"] == "active" || s["safety"] == "ramping"; });
