@@ -133,6 +133,7 @@ TEST_F(ResultFiles, sections_are_written_as_the_command_writes_them) {
 
 TEST_F(ResultFiles, a_report_has_the_bytes_of_the_command_for_the_same_session) {
   openPanel("Section", "light");
+  command({"synth", scan, "--size", "96x96"});  // a page of a large one takes its time
   const std::string work = folder.file("work.fettle"), page = folder.file("window.html");
   {
     const auto program = start({scan});
@@ -211,7 +212,7 @@ TEST_F(ResultFiles, shapes_are_fitted_and_written_as_the_command_does) {
   by_command.erase("warnings");
   EXPECT_EQ(State::parse(bytes(folder.file("window.json"))), by_command);
   // The colours are the surface's again without them.
-  (void)user.click("colours show the distances");
+  (void)user.click("colours show the distances from it");
   user.at({20, 890});
   (void)user.same("without distances", before);
   (void)user.key("alt+r");

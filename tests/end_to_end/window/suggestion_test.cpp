@@ -34,12 +34,13 @@ class SuggestionTest : public WindowTest {
   }
   // The first line of a name on the panels, as it is written.
   static std::string firstLine(ViewProgram& program, const std::string& name) {
-    for (const State& text : program.now()["texts"]) {
-      const std::string line = text["text"];
-      if (line.size() > 3 && name.starts_with(line)) return line;
-    }
-    ADD_FAILURE() << name << " is not there: " << program.now()["texts"].dump();
-    return name;
+    std::string first;
+    program.until(name, [&](const State& s) {
+      for (const State& text : s["texts"])
+        if (const std::string line = text["text"]; line.size() > 3 && name.starts_with(line)) first = line;
+      return !first.empty() && s["settled"] == true;
+    });
+    return first;
   }
 };
 
