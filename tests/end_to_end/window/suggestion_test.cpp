@@ -156,7 +156,7 @@ TEST_F(SuggestionTest, an_entry_is_taken_by_keyboard_alone) {
   // Tool, Edges, Edge lines, Suggested filters, its two fields, its button, then the list.
   for (int i = 0; i < 7; ++i) (void)user.key("Down");
   (void)user.look("pointed at");
-  const State taken = user.key("Return");
+  const State taken = user.key("space");
   EXPECT_EQ(taken["variants"].size(), 1U);
   EXPECT_EQ(taken["variants"][0], taken["filter"]);
   (void)user.look("taken");
