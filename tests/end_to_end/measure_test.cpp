@@ -89,7 +89,6 @@ TEST(Measure, TheSurfaceThatIsWrittenHasTheParameters) {
            {"--s-filter", "0.6"},
            {"--s-filter", "0.6", "--l-filter", "4"},
            {"--l-filter", "4", "--l-filter-kind", "spline", "--form", "poly3"},
-           {"--s-filter", "0.6", "--form", "sphere"},
            {"--s-filter", "0.6", "--l-filter", "4", "--region", "rectangle 1,2,9,15"}}) {
     std::vector<std::string> line{"measure",   scan,    "--unit",         "mm",
                                   "--surface", surface, "--noise-trials", "0"};
