@@ -321,7 +321,9 @@ Report waitedFor(const Parts& p, const Input& input) {
   } else {
     waits("a movement", isActive(p, input));
     waits("a finer picture", p.document.isOpen() && p.picture.refining());
-    waits("the pen's shadow", p.document.isOpen() && p.spared_shadow.pending());
+    // A device that moves by itself comes to no rest.
+    waits("the pen's shadow",
+          p.document.isOpen() && p.document.client()->mouse() != nullptr && p.spared_shadow.pending());
   }
   if (!p.document.isOpen()) return names;
   const LoopClient& client = *p.document.client();
