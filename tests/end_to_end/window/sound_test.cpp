@@ -30,7 +30,7 @@ Heard heardIn(const std::string& path, std::uintmax_t from_byte = 0) {
 // High enough for all of the panel Haptics.
 class SoundTest : public WindowTest {
  protected:
-  SoundTest() : WindowTest(1100, 1100) {}
+  SoundTest() : WindowTest(1100, 1500) {}
   // That panel alone.
   static State openHaptics(User& user) {
     (void)user.key("7");
