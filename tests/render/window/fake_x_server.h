@@ -31,8 +31,8 @@ struct FakeEvent {
 /// The event as it goes over the wire (X.Org, XI2proto: xXIDeviceEvent).
 [[nodiscard]] std::vector<std::uint8_t> wireOf(const FakeEvent& event);
 
-/// An X server with nothing but input devices: it answers, over a pair of sockets, what a reader of tablets asks, and sends events
-/// when it is told to. The protocol is the real one, and so is the client's library. Threading: any.
+/// An X server with input devices only: it answers, over a pair of sockets, what a reader of tablets asks, and sends events when it
+/// is told to. Clients connect with libxcb and speak the X protocol. Threading: any.
 class FakeXServer {
  public:
   enum class Input { kVersion2, kVersion1, kNone };
