@@ -142,7 +142,7 @@ TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
   (void)user.key("Escape");
   (void)program->until(
       "both", [](const State& s) { return s["section_before"] == true && s["taking_section"] == false; });
-  EXPECT_TRUE(user.readsScrolled("the same of the scan"));
+  EXPECT_TRUE(user.readsScrolled("the same of the scan:"));
   user.at({20, 790});
   (void)user.look("before and after");
   (void)user.key("ctrl+z");

@@ -37,6 +37,13 @@ class SoundTest : public WindowTest {
     for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
     return user.click("Haptics");
   }
+  // A stroke over the middle of the part, so many pixels long.
+  static State strokeOver(User& user, int length, int steps) {
+    const State picture = user.program().now()["picture"];
+    const int x = picture[0].get<int>() + picture[2].get<int>() / 2 - length / 2;
+    const int y = picture[1].get<int>() + picture[3].get<int>() / 2;
+    return user.stroke({x, y}, {x + length, y}, steps);
+  }
 };
 
 TEST_F(SoundTest, sound_is_ticked_heard_and_muted) {
@@ -52,12 +59,12 @@ TEST_F(SoundTest, sound_is_ticked_heard_and_muted) {
   EXPECT_EQ(on["notices"], State::array());
   EXPECT_EQ(on["muted"], false);
   (void)user.key("s");
-  (void)user.stroke({240, 332}, {440, 332}, 12);
+  (void)strokeOver(user, 200, 12);
   (void)user.look("playing");
   EXPECT_GT(heardIn(raw).loudest, 0.005);
   EXPECT_EQ(user.click("mute")["muted"], true);
   const std::uintmax_t muted_from = std::filesystem::file_size(raw) + 16384;
-  (void)user.stroke({240, 332}, {440, 332}, 12);
+  (void)strokeOver(user, 200, 12);
   const Heard muted = heardIn(raw, muted_from);
   EXPECT_GT(muted.samples, 4800U);
   EXPECT_EQ(muted.loudest, 0.0);
@@ -89,7 +96,7 @@ TEST_F(SoundTest, the_volume_is_heard_and_kept_for_the_next_start) {
   };
   const auto strokeHeard = [&] {
     const std::uintmax_t from = std::filesystem::file_size(raw) + 16384;
-    (void)user.stroke({240, 332}, {440, 332}, 12);
+    (void)strokeOver(user, 200, 12);
     return heardIn(raw, from).loudest;
   };
   (void)user.key("t");  // feels, and leaves no work to be asked about
@@ -127,7 +134,7 @@ TEST_F(SoundTest, without_an_audio_device_a_notice_says_so_and_the_hand_still_wo
   EXPECT_EQ(user.click("friction")["notices"].size(), 1U);
   (void)user.look("notice");
   (void)user.key("s");
-  EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 3)["steps"], 1);
+  EXPECT_EQ(strokeOver(user, 100, 3)["steps"], 1);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
