@@ -298,6 +298,7 @@ std::vector<int> UiLayer::holdShortPresses() {
 }
 
 void UiLayer::noteButton(int button, bool down, float x, float y) {
+  leaving_ = 0;  // a click may enter another field
   if (button < 0 || button >= static_cast<int>(down_.size())) return;
   // What is dragged follows to where it is let go, before it is let go.
   const ImVec2 last = clicks_.empty() ? ImGui::GetIO().MousePos : ImVec2(clicks_.back().x, clicks_.back().y);
@@ -384,6 +385,16 @@ void UiLayer::beginFrame() {
   const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
   for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;
+  if (leaving_ > 0 && pressed_.empty()) --leaving_;
+}
+
+bool UiLayer::typing() const noexcept {
+  return leaving_ == 0 && ImGui::GetIO().WantTextInput;
+}
+
+// ImGui gets the press in the next frame and says in the one after it that no field has the keyboard.
+void UiLayer::leaveField() noexcept {
+  if (ImGui::GetIO().WantTextInput) leaving_ = 2;
 }
 
 void UiLayer::leavePanels() noexcept {

@@ -71,6 +71,10 @@ class UiLayer {
   [[nodiscard]] bool entered() const noexcept { return entered_; }
   void enterPanels() noexcept { entered_ = true; }
   void leavePanels() noexcept;
+  /// Whether a text field takes the keys that are pressed now. One that Escape or Return leaves has the keyboard until the frame
+  /// after: leaveField() says of such a press that those after it are not the field's.
+  [[nodiscard]] bool typing() const noexcept;
+  void leaveField() noexcept;
   /// Whether a panel, or a menu that waits for a click outside it, has the mouse at this position of the
   /// window (GLFW's coordinates): at the current cursor, not at that of the last frame's beginning.
   [[nodiscard]] bool panelsHaveMouse(double x, double y) const noexcept;
@@ -116,6 +120,7 @@ class UiLayer {
   Context* context_ = nullptr;
   Theme theme_ = Theme::kDark;
   bool entered_ = false;
+  int leaving_ = 0;  // frames until a field that a key leaves has the keyboard no more
   GLFWwindow* window_;
   std::vector<Press> pressed_;                  // since the last frame began, or waiting for the next one
   std::vector<Click> clicks_;                   // the same

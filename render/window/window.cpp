@@ -128,8 +128,7 @@ struct Window::Impl {
   }
   // `x`, `y`: GLFW's.
   void noteAt(InputEvent event, double x, double y) {
-    const ImGuiIO& io = ImGui::GetIO();
-    event.panels_key = io.WantTextInput || ui->entered();
+    event.panels_key = ui->typing() || ui->entered();
     event.panels_mouse = ui->panelsHaveMouse(x, y);
     input.push_back(event);
   }
@@ -198,7 +197,9 @@ void Window::Impl::listen() {
     if (event.key == Key::kNone) return;
     of(w).note(event);
     // Before the frame in which ImGui gets it.
-    if (event.kind == InputKind::kKeyDown && event.key == Key::kEscape) of(w).ui->leavePanels();
+    if (event.kind != InputKind::kKeyDown) return;
+    if (event.key == Key::kEscape) of(w).ui->leavePanels();
+    if (event.key == Key::kEscape || event.key == Key::kEnter) of(w).ui->leaveField();
   });
   glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
     InputEvent event;

@@ -155,8 +155,7 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
   const std::string said = refused["notices"][0];
   EXPECT_NE(said.find("more than the simulated hand holds at 1000 Hz"), std::string::npos) << said;
   EXPECT_NE(said.find("99999 N/mm"), std::string::npos) << said;
-  EXPECT_TRUE(user.reads("simulated hand holds at 1000 Hz: at most"))
-      << program->now()["texts"].dump();
+  EXPECT_TRUE(user.reads("simulated hand holds at 1000 Hz: at most")) << program->now()["texts"].dump();
   user.tap("Understood");
   program->until("the panels without it", [](const State& s) {
     return s["notices"].empty() && s["texts"].dump().find("Understood") == std::string::npos;

@@ -109,8 +109,8 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
   });
   (void)user.look("depth");
   for (int i = 0; i < 3; ++i) (void)user.press("BackSpace");
-  user.write("99km");
-  program->until("that it is at its largest", [](const State& s) { return says(s, "(the largest) [99km]"); });
+  user.write("98km");
+  program->until("that it is at its largest", [](const State& s) { return says(s, "(the largest) [98km]"); });
   EXPECT_EQ(user.key("Escape")["press_mm"], scale.other_mm);
   (void)user.click("Tool");  // strokes have a limit, too
   (void)user.click("Filters");

@@ -118,8 +118,7 @@ void User::draw(Place from, Place to, int steps) {
   up(1);
 }
 
-std::optional<User::Place> User::readable(const std::string& text) {
-  const State now = program_.now();
+std::optional<User::Place> User::readable(const State& now, const std::string& text) {
   for (const State& t : now["texts"]) {
     if (t["text"] != text) continue;
     const State& box = t["at"];
@@ -137,20 +136,19 @@ std::optional<User::Place> User::readable(const std::string& text) {
 }
 
 std::optional<User::Place> User::scrolledTo(const std::string& text) {
-  if (const auto place = readable(text)) return place;
-  const State picture = program_.now()["picture"];
+  const State now = program_.now();
+  if (const auto place = readable(now, text)) return place;
+  const State& picture = now["picture"];
   // Without panels nothing can be scrolled: it is still to come.
-  if (picture[0].get<int>() + picture[2].get<int>() >= program_.now()["frame"][0].get<int>()) {
-    (void)waitFor("words: " + text, [&](const State&) { return readable(text).has_value(); });
-    return readable(text);
-  }
+  if (picture[0].get<int>() + picture[2].get<int>() >= now["frame"][0].get<int>())
+    return readable(waitFor("words: " + text, [&](const State& s) { return readable(s, text).has_value(); }),
+                    text);
   at({picture[0].get<int>() + picture[2].get<int>() + kLine,
       picture[1].get<int>() + picture[3].get<int>() / 2});
   for (const int notch : {-1, 1})  // to the panels' end, then back to their top
     for (State before; before != program_.now()["texts"];) {
       before = program_.now()["texts"];
-      (void)wheel(notch);
-      if (const auto place = readable(text)) return place;
+      if (const auto place = readable(wheel(notch), text)) return place;
     }
   return std::nullopt;
 }
@@ -161,7 +159,9 @@ bool User::pointAt(const std::string& text) {
     const auto place = scrolledTo(text);
     if (!place) break;
     at(*place);
-    if (const auto still = readable(text); still && still->x == place->x && still->y == place->y) return true;
+    if (const auto still = readable(program_.now(), text);
+        still && still->x == place->x && still->y == place->y)
+      return true;
   }
   ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << program_.now()["texts"].dump();
   return false;

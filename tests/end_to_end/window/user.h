@@ -72,7 +72,7 @@ class User {
 
  private:
   /// The middle of what reads `text`, where the mouse can take it.
-  [[nodiscard]] std::optional<Place> readable(const std::string& text);
+  [[nodiscard]] static std::optional<Place> readable(const State& now, const std::string& text);
   /// The same, after scrolling the panels as far as that takes.
   [[nodiscard]] std::optional<Place> scrolledTo(const std::string& text);
   /// Whether there is such a text; the cursor is on it then.

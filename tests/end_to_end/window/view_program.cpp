@@ -123,8 +123,14 @@ ViewProgram::State ViewProgram::until(const std::string& what, const std::functi
   const auto end = std::chrono::steady_clock::now() + kPatience;
   std::unique_lock lock(mutex_);
   for (;;) {
-    for (; seen_ < states_.size(); ++seen_)
-      if (is(states_[seen_])) return states_[seen_];
+    while (seen_ < states_.size()) {
+      // Looked at without the lock: who looks may ask for what there is now.
+      State state = states_[seen_];
+      lock.unlock();
+      if (is(state)) return state;
+      lock.lock();
+      ++seen_;
+    }
     if (ended_) throw std::runtime_error("the program ended before: " + what + "\n" + err_);
     if (reported_.wait_until(lock, end) == std::cv_status::timeout) {
       throw std::runtime_error("never reported: " + what + "\n" + lastReported());
