@@ -1,10 +1,12 @@
 #include "app/commands/report_texture.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "app/commands/measuring.h"
 #include "app/commands/surface_plots.h"
 #include "app/plots/gnuplot.h"
 #include "app/terminal.h"
@@ -20,7 +22,8 @@ namespace {
 // Of each state.
 struct MeasuredStates {
   std::vector<engine::ArealParameters> measured;
-  int trials = 0;  // with noise, for errors
+  int trials = 0;         // with noise, for errors
+  std::int64_t part = 0;  // samples they were made on; 0: all
 };
 
 // Surface texture, of one or several states side by side; `states` names them.
@@ -41,13 +44,15 @@ ReportPage::Table textureTable(const std::vector<ArealLine>& lines, const std::v
 
 // The same without noise, with standard errors.
 ReportPage::Table noiseTable(const std::vector<ArealLine>& lines, std::vector<std::string> heads,
-                             int trials) {
+                             const MeasuredStates& found) {
   ReportPage::Table table{
       "Surface texture without noise",
       fmt::format(
-          "+- the standard error that the noise of the scan puts on it, by {} trials with more of it. Noise "
+          "+- the standard error that the noise of the scan puts on it, by {} trials with more of it{}. "
+          "Noise "
           "that neighbours share in both directions, as in filtered scans, is not counted.",
-          trials),
+          found.trials,
+          found.part > 0 ? fmt::format(" on {} samples of the scan, which stand for all", found.part) : ""),
       std::move(heads),
       {}};
   table.heads.emplace_back("Unit");
@@ -67,11 +72,8 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
     const auto counted =
         countedOf(state.field, draft.imported.original, draft.options.scan, draft.options.form, draft.job);
     if (!counted) return tl::unexpected(counted.error());
-    const auto limitedOf = [&](const engine::Version& field) {
-      return scaleLimited(field, draft.options.scan, draft.imported, draft.options.form, draft.options.scale,
-                          draft.job);
-    };
-    const auto limited = limitedOf(*counted);
+    const auto limited = scaleLimited(*counted, draft.options.scan, draft.imported, draft.options.form,
+                                      draft.options.scale, draft.job);
     if (!limited) return tl::unexpected(limited.error());
     engine::ArealOptions areal;
     areal.region = formChoiceOf(draft.options.form).region;
@@ -86,18 +88,14 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
     stated.heights.clear();
     areal.at_ratios.clear();
     areal.analysis = false;
-    const auto noise = arealNoise(
-        *counted, stated,
-        [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
-          const auto of = limitedOf(noisy);
-          if (!of) return tl::unexpected(of.error());
-          return engine::measureAreal(of->field, of->form, areal, draft.job);
-        },
-        draft.options.noise_trials, draft.job);
+    const auto noise = noiseOfMeasured({*counted, draft.options.scan, draft.imported, draft.options.form,
+                                        draft.options.scale, areal, draft.options.noise_trials},
+                                       *limited, stated, draft.job);
     if (!noise) return tl::unexpected(noise.error());
     if (*noise) {
-      addNoise(reports.back(), **noise, state.field.grid());
-      found.trials = (*noise)->trials;
+      addNoise(reports.back(), (*noise)->noise, state.field.grid());
+      found.trials = (*noise)->noise.trials;
+      found.part = (*noise)->samples;
     }
     found.measured.push_back(*std::move(parameters));
     draft.report[reports.size() == draft.states.size() ? "sq" : "sq_before"] = reports.back()["sq"];
@@ -117,8 +115,7 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
                   draft.options.form.robust ? " (robust)" : "",
                   draft.options.form.region == "all" ? "all" : "the " + draft.options.form.region,
                   scale.empty() ? "" : "; ", scale, tilt)));
-  if (found.trials > 0)
-    draft.page.parts.emplace_back(noiseTable(lines, draft.heads({"Parameter"}), found.trials));
+  if (found.trials > 0) draft.page.parts.emplace_back(noiseTable(lines, draft.heads({"Parameter"}), found));
   return {};
 }
 

@@ -165,9 +165,7 @@ Error noHeight(const Grid& grid, const Path& path, const SectionOptions& options
                  fmt::format("the scan reaches from 0,0 to {:.6g},{:.6g} mm, from the lower left sample",
                              end.x, end.y));
   if (options.region != Region::kAll)
-    return error(fmt::format("the section meets no {} sample",
-                             options.region == Region::kMarked ? "marked" : "unmarked"),
-                 "give another line, or take all samples");
+    return error("the section meets no sample of the region", "give another line, or take all samples");
   return error("the section runs through holes alone", "give another line");
 }
 

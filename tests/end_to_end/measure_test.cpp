@@ -148,6 +148,9 @@ TEST(Measure, OfAMillionSamplesAndMoreHasErrorsToo) {
   EXPECT_GT(stated, 12);
   EXPECT_FALSE(fettleJson({"measure", scan, "--unit", "mm", "--only", "height", "--noise-trials", "0"})
                    .contains("noise"));
+  const std::string page = folder.file("large.html");
+  (void)fettleJson({"report", scan, page, "--unit", "mm"});
+  EXPECT_NE(bytesOf(page).find("by 4 trials with more of it on 518400 samples of the scan"), std::string::npos);
 }
 
 // A grating, even about the middle, with an offset for each line, as an AFM makes it, along x or along y.
