@@ -167,16 +167,22 @@ class Table {
 };
 
 // Gwyddion's Rtm: m sampling lengths of n / m samples each, none of them in two, where ISO 21920-2 has lengths whose ends are those of
-// their neighbours; and samples that are left over at the end are in none.
+// their neighbours; samples that are left over at the end are in none; and of a length that lies above the mean line alone it counts
+// no valley, of one below it no peak: each mean is of the lengths that have one.
 double heightOfSamplings(const std::vector<double>& profile, int m) {
   const std::size_t n = profile.size(), lengths = static_cast<std::size_t>(m);
-  double sum = 0.0;
+  double up = 0.0, down = 0.0;
+  int peaks = 0, valleys = 0;
   for (std::size_t k = 0; k < lengths; ++k) {
     const auto from = profile.begin() + static_cast<std::ptrdiff_t>(k * n / lengths),
                to = profile.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / lengths);
-    sum += (*std::max_element(from, to) - *std::min_element(from, to)) / m;
+    const auto [low, high] = std::minmax_element(from, to);
+    up += std::max(*high, 0.0);
+    peaks += *high > 0.0;
+    down += std::max(-*low, 0.0);
+    valleys += *low < 0.0;
   }
-  return sum;
+  return up / std::max(peaks, 1) + down / std::max(valleys, 1);
 }
 
 // The row with the longest part without a hole, filtered by Fettle: Gwyddion's library has the parameters of a profile, its
@@ -210,8 +216,10 @@ void compareProfile(const Version& field, Table& table) {
   std::copy(profile->heights.begin(), profile->heights.end(), gwy_data_line_get_data(data));
   table.row("Ra", rough->ra, gwy_data_line_get_ra(data));
   table.row("Rq", rough->rq, gwy_data_line_get_rms(data));
-  table.row("Rsk", rough->rsk, gwy_data_line_get_skew(data));
-  table.row("Rku", rough->rku, gwy_data_line_get_kurtosis(data), rough->rku - 3.0);
+  // Its moments of lines are of n + 1 samples' worth for each square of Rq, those of fields are not.
+  const double more = (n + 1.0) / n;
+  table.row("Rsk", rough->rsk, gwy_data_line_get_skew(data), std::sqrt(more) * rough->rsk);
+  table.row("Rku", rough->rku, gwy_data_line_get_kurtosis(data), more * rough->rku - 3.0);
   table.row("Rz", rough->rz, gwy_data_line_get_xtm(data, profile->lengths, 1),
             heightOfSamplings(profile->heights, profile->lengths));
   g_object_unref(data);
