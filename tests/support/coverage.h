@@ -11,13 +11,13 @@
 
 namespace fettle::tests {
 
-/// Simulated scans in a test of standard errors: FETTLE_TRIALS, else 200 [1 ..]. Under a sanitizer 5, for their paths alone.
+/// Simulated scans in a test of standard errors: FETTLE_TRIALS, else 100 [1 ..]. Under a sanitizer 5, for their paths alone.
 [[nodiscard]] inline int coverageSeeds() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return 5;
 #else
   const char* const typed = std::getenv("FETTLE_TRIALS");
-  return typed != nullptr ? std::max(std::atoi(typed), 1) : 200;
+  return typed != nullptr ? std::max(std::atoi(typed), 1) : 100;
 #endif
 }
 

@@ -124,8 +124,9 @@ void howToClean() {
         fmt::format("2. Drag and wheel turn and zoom it; {} shows all of it.", keysOf(kViewAll)),
         fmt::format("3. {} suggests edges to keep and {} takes them; or {} and draw along one.",
                     keysOf(kEdges), keysOf(kFilterApply), tool(haptic::Tool::kMark)),
-        fmt::format("4. Choose a filter at the right: {} previews it, {} applies it; {} smooths by hand.",
-                    keysOf(kFilterPreview), keysOf(kFilterApply), tool(haptic::Tool::kSmooth)),
+        fmt::format("4. {} suggests filters, or choose one at the right: {} previews it, {} applies it;",
+                    keysOf(kFilterSuggest), keysOf(kFilterPreview), keysOf(kFilterApply)),
+        fmt::format("   {} smooths by hand.", tool(haptic::Tool::kSmooth)),
         fmt::format(
             "5. Look at what changed: {} colours it, {} held shows the scan before; {} takes it back.",
             keysOf(kDeviation), keysOf(kShowBefore), keysOf(kUndo)),
