@@ -150,7 +150,8 @@ TEST(Measure, OfAMillionSamplesAndMoreHasErrorsToo) {
                    .contains("noise"));
   const std::string page = folder.file("large.html");
   (void)fettleJson({"report", scan, page, "--unit", "mm"});
-  EXPECT_NE(bytesOf(page).find("by 4 trials with more of it on 518400 samples of the scan"), std::string::npos);
+  EXPECT_NE(bytesOf(page).find("by 4 trials with more of it on 518400 samples of the scan"),
+            std::string::npos);
 }
 
 // A grating, even about the middle, with an offset for each line, as an AFM makes it, along x or along y.
