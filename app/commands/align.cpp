@@ -208,7 +208,8 @@ void addAlign(Command root, Chosen& chosen) {
         "The second at the samples of the first, without tilting it"},
        {"fettle align scan.tif clean.tif level.tif --moves level --region unmarked --marks marks.png",
         "Height and tilt alone, by what is not marked"},
-       {"fettle align scan.tif clean.tif --region \"rectangle 1,1,6,4\"", "By what lies between two corners"},
+       {"fettle align scan.tif clean.tif --region \"rectangle 10,10,60,40\"",
+        "By what lies between two corners"},
        {"fettle align scan.tif nominal.stl nominal.tif", "The nominal shape at the samples of the part"}});
 }
 

@@ -276,36 +276,26 @@ std::int32_t blockFor(double side, double spacing) noexcept {
   return std::max(1, static_cast<std::int32_t>(side / spacing * (1.0 + 1e-9)));
 }
 
-// Both fields at one resolution.
+// Both fields at one resolution; `side` is the spacing that is wished for.
 struct Maps {
   HeightMap first, second;
-  std::optional<HeightMap> chosen;  // of the first what counts; none: all of it
   double sigma = 0.0;
-
-  [[nodiscard]] const HeightMap& counting() const noexcept { return chosen ? *chosen : first; }
 };
-// `side`: the spacing that is wished for.
-Result<HeightMap> mapAt(const Version& field, Region region, double side, double base, JobControl& job) {
-  const Grid& grid = field.grid();
-  auto map = heightMapOf(field, region, std::min(grid.width, blockFor(side, grid.spacingXMm())),
-                         std::min(grid.height, blockFor(side, grid.spacingYMm())), base, job);
-  if (map) dropSpikes(*map);
-  return map;
-}
 Result<Maps> mapsAt(const Version& first, const Version& second, const AlignOptions& options, double side,
                     double base_first, double base_second, JobControl& job) {
-  auto of_first = mapAt(first, Region::kAll, side, base_first, job);
-  if (!of_first) return tl::unexpected(of_first.error());
-  auto of_second = mapAt(second, Region::kAll, side, base_second, job);
-  if (!of_second) return tl::unexpected(of_second.error());
-  Maps maps{*std::move(of_first), *std::move(of_second), std::nullopt, 0.0};
-  if (options.region != Region::kAll) {
-    auto chosen = mapAt(first, options.region, side, base_first, job);
-    if (!chosen) return tl::unexpected(chosen.error());
-    maps.chosen = *std::move(chosen);
-  }
-  for (const HeightMap* map : {&maps.first, &maps.second})
+  Maps maps;
+  for (const bool of_first : {true, false}) {
+    const Version& field = of_first ? first : second;
+    const Grid& grid = field.grid();
+    auto map = heightMapOf(field, of_first ? options.region : Region::kAll,
+                           std::min(grid.width, blockFor(side, grid.spacingXMm())),
+                           std::min(grid.height, blockFor(side, grid.spacingYMm())),
+                           of_first ? base_first : base_second, job);
+    if (!map) return tl::unexpected(map.error());
+    dropSpikes(*map);
     maps.sigma = std::max({maps.sigma, kSigmas * map->spacing_x, kSigmas * map->spacing_y});
+    (of_first ? maps.first : maps.second) = *std::move(map);
+  }
   return maps;
 }
 
@@ -375,7 +365,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
     const Stopwatch watch;
     const auto maps = mapsAt(first, second, options, sides[k], base_first, base_second, job);
     if (!maps) return tl::unexpected(maps.error());
-    level.emplace(maps->first, maps->chosen ? &*maps->chosen : nullptr, maps->second, maps->sigma);
+    level.emplace(maps->first, maps->second, maps->sigma);
     sigma = maps->sigma;
     whole = level->points().size();
     const double map_seconds = watch.seconds();
@@ -390,7 +380,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
       starts.push_back(stated);
       if (options.search && options.moves.shift)
         for (RigidMotion& motion :
-             likelyMotions(maps->counting(), maps->second,
+             likelyMotions(maps->first, maps->second,
                            options.moves.rotation ? options.most_rotation_deg : 0.0, frame.centre, job))
           starts.push_back(motion);
     } else {

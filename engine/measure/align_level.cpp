@@ -12,7 +12,6 @@ namespace fettle::engine {
 namespace {
 
 constexpr std::size_t kMostPoints = 300'000;
-constexpr double kLeastChosen = 0.95;  // of a window about a place that counts
 
 }  // namespace
 
@@ -21,14 +20,9 @@ std::int32_t AlignLevel::strideFor(std::size_t places) noexcept {
                          std::sqrt(static_cast<double>(places) / static_cast<double>(kMostPoints)))));
 }
 
-AlignLevel::AlignLevel(const HeightMap& first, const HeightMap* chosen, const HeightMap& second, double sigma)
+AlignLevel::AlignLevel(const HeightMap& first, const HeightMap& second, double sigma)
     : sigma_(sigma), spline_(smoothed(second, sigma, AtHoles::kFill, Borders::kLeftOut).value) {
-  SmoothMap smooth = smoothed(first, sigma, AtHoles::kStay, Borders::kLeftOut);
-  if (chosen != nullptr) {
-    const HeightMap inside = smoothed(*chosen, sigma, AtHoles::kStay, Borders::kLeftOut, kLeastChosen).value;
-    for (std::size_t i = 0; i < inside.z.size(); ++i)
-      if (std::isnan(inside.z[i])) smooth.value.z[i] = inside.z[i];
-  }
+  const SmoothMap smooth = smoothed(first, sigma, AtHoles::kStay, Borders::kLeftOut);
   std::size_t count = 0;
   for (const double z : smooth.value.z) count += std::isnan(z) ? 0 : 1;
   const std::int32_t stride = strideFor(count);

@@ -41,10 +41,8 @@ class AlignLevel {
   /// Every n-th place of a map in each direction is used, so that these are 300,000 at most.
   [[nodiscard]] static std::int32_t strideFor(std::size_t places) noexcept;
 
-  /// `chosen`: the places of the first map that count, no holes there. Heights near their border are those of the whole map,
-  /// as the second's are, and few of them are of places that do not count: less than 5 % of the window of a large region.
   /// `sigma`: of the window. At most 300,000 places are used. Throws std::bad_alloc.
-  AlignLevel(const HeightMap& first, const HeightMap* chosen, const HeightMap& second, double sigma);
+  AlignLevel(const HeightMap& first, const HeightMap& second, double sigma);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }
   /// About so many of `points` points have noise of their own: their area over that of the window's correlation.

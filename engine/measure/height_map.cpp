@@ -182,8 +182,9 @@ void dropSpikes(HeightMap& map) {
     if (apart[i].distance > kOfRange * apart[i].range + kOfMedian * median) map.z[i] = kNoHeight;
 }
 
-SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders borders, double least_weight) {
-  constexpr double kFromBorder = 1.7;
+SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders borders) {
+  // Where the window is cut off it shifts the height by the curvature, and noise counts more.
+  constexpr double kLeastWeight = 0.8, kFromBorder = 1.7;
   const auto left = [sigma](double own) { return std::sqrt(std::max(0.0, sigma * sigma - own * own)); };
   const HeightWindow across(left(map.own_x), map.spacing_x), up(left(map.own_y), map.spacing_y);
   const std::size_t places = map.z.size();
@@ -209,25 +210,10 @@ SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders bo
   out.value = map;
   out.slope_x.assign(places, kNoHeight);
   out.slope_y.assign(places, kNoHeight);
-  std::vector<double> held(places);  // weight of the window about each place
-  tbb::parallel_for(std::int32_t{0}, map.height, [&](std::int32_t row) {
-    for (std::int32_t c = 0; c < map.width; ++c) {
-      double n = 0.0;
-      for (int j = std::max(-up.reach, -row); j <= std::min(up.reach, map.height - 1 - row); ++j)
-        n += up.at(j) * sums[0][map.index(c, row + j)];
-      held[map.index(c, row)] = n;
-    }
-  });
-  // Of the places that are there: of a small region most windows are whole, of scattered samples none is.
-  const double usual = [&] {
-    std::vector<double> of_places;
-    for (std::size_t i = 0; i < places; ++i)
-      if (!std::isnan(map.z[i])) of_places.push_back(held[i]);
-    if (of_places.empty()) return 0.0;
-    const auto middle = of_places.begin() + static_cast<std::ptrdiff_t>(of_places.size() / 2);
-    std::ranges::nth_element(of_places, middle);
-    return *middle;
-  }();
+  const auto there =
+      static_cast<double>(std::ranges::count_if(map.z, [](double z) { return !std::isnan(z); }));
+  const double whole =
+      across.sum() * up.sum() * there / static_cast<double>(std::max<std::size_t>(1, places));
   tbb::parallel_for(std::int32_t{0}, map.height, [&](std::int32_t row) {
     for (std::int32_t c = 0; c < map.width; ++c) {
       const std::size_t at = map.index(c, row);
@@ -237,12 +223,11 @@ SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders bo
           (std::min(c, map.width - 1 - c) * map.spacing_x < kFromBorder * sigma - 0.5 * map.spacing_x ||
            std::min(row, map.height - 1 - row) * map.spacing_y < kFromBorder * sigma - 0.5 * map.spacing_y))
         continue;
-      const double n = held[at];
-      if (!(n >= least_weight * usual && n > 0.0)) continue;
-      double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, z = 0.0, xz = 0.0, yz = 0.0;
+      double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, z = 0.0, xz = 0.0, yz = 0.0;
       for (int j = std::max(-up.reach, -row); j <= std::min(up.reach, map.height - 1 - row); ++j) {
         const std::size_t line = map.index(c, row + j);
         const double w = up.at(j);
+        n += w * sums[0][line];
         x += w * sums[1][line];
         xx += w * sums[2][line];
         y += w * j * sums[0][line];
@@ -252,6 +237,7 @@ SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders bo
         xz += w * sums[4][line];
         yz += w * j * sums[3][line];
       }
+      if (n < kLeastWeight * whole) continue;
       // The plane about the window's mean.
       const double mx = x / n, my = y / n, mz = z / n;
       const double sxx = xx / n - mx * mx, sxy = xy / n - mx * my, syy = yy / n - my * my;

@@ -49,19 +49,16 @@ struct HeightsAround {
 /// stay but for the corners of walls.
 void dropSpikes(HeightMap& map);
 
-/// A map through a Gaussian window that makes its blocks' own up to a standard deviation sigma [mm]: the value in the middle
-/// of the plane that fits the window's heights best: holes and borders shift it by the curvature alone. Places whose window
-/// holds less than `least_weight` (0 .. 1) of what it holds about the median place that is no hole are holes - where the window
-/// is cut off noise counts more, too -, with kLeftOut also those nearer than 1.7 sigma to the border; other holes are filled
-/// where `holes` says so. Throws std::bad_alloc.
+/// A map through a Gaussian window that makes its blocks' own up to a standard deviation sigma [mm]: the value in the middle of the plane that fits
+/// the window's heights best: holes and borders shift it by the curvature alone. Places whose window holds less than 0.8
+/// of what it holds in the mean are holes, with kLeftOut also those nearer than 1.7 sigma to the border; other holes are filled where `fill` says so. Throws std::bad_alloc.
 enum class AtHoles : std::uint8_t { kStay, kFill };
 enum class Borders : std::uint8_t { kStay, kLeftOut };
 struct SmoothMap {
   HeightMap value;
   std::vector<double> slope_x, slope_y;  ///< of the plane
 };
-[[nodiscard]] SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders borders,
-                                 double least_weight = 0.8);
+[[nodiscard]] SmoothMap smoothed(const HeightMap& map, double sigma, AtHoles holes, Borders borders);
 
 /// Cubic B-splines through the heights of a map (M. Unser, Splines: a perfect fit for signal and image processing, 1999):
 /// smooth heights between its places, with their slopes.

@@ -243,36 +243,6 @@ TEST(Align, WallsOnASmoothPartCountAtEveryAngle) {
   }
 }
 
-// About a region's border both fields are smoothed alike: what lies beyond it is heights of the first, too.
-TEST(Align, AFieldLiesOnItselfInARegionWithHoles) {
-  const Grid grid = squareGrid(120, 100, 0.1, 0.1);
-  const auto curved = [](double x, double y) { return hilly(x, y) + 0.05 * (x * x + y * y); };
-  const auto field = [&](std::uint64_t seed) {
-    return sampledField(grid, curved, {}, 0.002, seed, [](int c, int r, double z) {
-      return std::hypot(c - 30, r - 40) < 6 || (c > 55 && c < 60) ? kNoSample : z;
-    });
-  };
-  const Version plain = field(3);
-  std::vector<float> heights;
-  std::vector<std::uint8_t> marks;
-  for (int r = 0; r < grid.height; ++r)
-    for (int c = 0; c < grid.width; ++c) {
-      heights.push_back(plain.reader().heightAt(c, r));
-      marks.push_back(c > 20 && c < 70 && r > 25 && r < 85 ? 1 : 0);
-    }
-  const Version marked = makeField(grid, heights, marks);
-  JobControl job;
-  AlignOptions options;
-  options.region = Region::kMarked;
-  const auto itself = alignFields(marked, plain, options, job);
-  ASSERT_TRUE(itself) << itself.error().line();
-  EXPECT_LT(apart(itself->motion, {}, grid), 1e-9);
-  // And another scan of it, within the errors that are stated.
-  const auto other = alignFields(marked, field(4), options, job);
-  ASSERT_TRUE(other) << other.error().line();
-  EXPECT_LT(std::abs(other->motion.shift.z), 4.0 * other->shift_error.z);
-}
-
 TEST(Align, PositionsFarAwayAndOtherUnitsAreTheSame) {
   Grid a = squareGrid(100, 100, 0.1, 0.1), b = a;
   const RigidMotion truth = motionOf(a, {0.3, 0.1, 0.0}, {0.0, 0.2, 1.0});
