@@ -461,7 +461,7 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   w.target.image = w.picture.image();
   w.target.view = w.picture.view();
   w.target.extent = extent;
-  w.target.leaves_as = ImageLayout::eTransferSrcOptimal;
+  w.target.leaves_as = vk::ImageLayout::eTransferSrcOptimal;
   w.drawn = w.picture_changed = true;
   return &w.target;
 } catch (const std::exception& error) {
