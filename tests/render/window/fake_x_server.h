@@ -32,7 +32,7 @@ struct FakeEvent {
 [[nodiscard]] std::vector<std::uint8_t> wireOf(const FakeEvent& event);
 
 /// An X server with input devices only: it answers, over a pair of sockets, what a reader of tablets asks, and sends events when it
-/// is told to. Clients connect with libxcb and speak the X protocol. Threading: any.
+/// is told to. Clients are real ones: libxcb, over the X protocol. Thread: any.
 class FakeXServer {
  public:
   enum class Input { kVersion2, kVersion1, kNone };
