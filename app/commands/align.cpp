@@ -86,9 +86,10 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::I
 engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine::Imported& read,
                                        engine::JobControl& job) {
   const engine::Version& a = read.field;
-  const auto nominal =
+  const auto loaded =
       loadNominal(options.b, options.nominal, options.reading.from, a.grid(), Sides::kNotNeeded, job);
-  if (!nominal) return tl::unexpected(nominal.error());
+  if (!loaded) return tl::unexpected(loaded.error());
+  const engine::NominalMesh* const nominal = &loaded->mesh;
   auto foreseen = foreseeAlign(
       options, a, plannedAlignment(a, *nominal, options.how),
       [&](const engine::SampleRect& r, engine::JobControl& own) {
@@ -102,7 +103,7 @@ engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine
   if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
   const auto alignment = alignmentOf(read, *nominal, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
-  PlacedB placed{.alignment = *alignment, .nominal = nominalReport(options.nominal, *nominal)};
+  PlacedB placed{.alignment = *alignment, .nominal = nominalReport(*loaded)};
   if (options.out.empty()) return placed;
   auto heights = engine::nominalHeights(
       engine::NominalSurface(*nominal, alignment->motion, engine::slackOn(a.grid())), a.grid(), job);

@@ -192,6 +192,8 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   }
   const auto of_a = chosenOf(a->field, a->original, options.a, options.counted, job);
   if (!of_a) return tl::unexpected(of_a.error());
+  warnOfFilled(*of_a, a->original, options.a);
+  if (!options.aligned) warnOfFilled(b->field, b->original, options.b);
   const auto of_b = chosenLike(b->field, *of_a, options.counted, job);
   if (!of_b) return tl::unexpected(of_b.error());
   const auto deviation = engine::compareFields(*of_a, *of_b, job);

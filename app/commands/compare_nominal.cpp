@@ -119,10 +119,11 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
     if (!tolerance) return tl::unexpected(tolerance.error());
     options.tolerance = *tolerance;
   }
-  const auto mesh = loadNominal(
+  const auto loaded = loadNominal(
       nominal, arguments.nominal, reading.from, grid,
       options.distance == engine::NominalDistance::kShortest ? Sides::kNeeded : Sides::kNotNeeded, job);
-  if (!mesh) return tl::unexpected(mesh.error());
+  if (!loaded) return tl::unexpected(loaded.error());
+  const engine::NominalMesh* const mesh = &loaded->mesh;
   auto foreseen = foreseeNominal(comparison, a->field, *mesh, options, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
@@ -130,6 +131,7 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
   if (!placed) return tl::unexpected(placed.error());
   const auto region = chosenOf(a->field, a->original, part, counted, job);
   if (!region) return tl::unexpected(region.error());
+  warnOfFilled(*region, a->original, part);
   auto found = engine::deviationFromNominal(*region, *mesh, placed->motion, options, job);
   if (!found) return tl::unexpected(found.error());
   // Holes are in no region, and what is left out is no hole of the part.
@@ -137,6 +139,11 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
   if (found->samples == 0)
     return engine::inputError("no sample of the part lies over or under a triangle", shownInput(nominal),
                               "give --align all, or state its unit with --nominal-unit");
+  if (found->no_nominal > found->samples)
+    warn(
+        fmt::format("{}: {} samples lie over no triangle, {} over one: does it lie where {} does? --align "
+                    "all brings it there",
+                    shownInput(nominal), found->no_nominal, found->samples, shownInput(part)));
   if (found->turned)
     warn(fmt::format(
         "{}: its triangles are wound clockwise seen from above: inside and outside were exchanged",
@@ -161,7 +168,7 @@ engine::Result<Report> compareNominal(const NominalComparison& comparison, engin
                    {"above", found->above},
                    {"below", found->below}});
   if (counted.region != "all") report["region"] = counted.region;
-  report["nominal"] = nominalReport(arguments.nominal, *mesh);
+  report["nominal"] = nominalReport(*loaded);
   if (placed->alignment) report["align"] = *std::move(placed->alignment);
   if (deviation.empty()) return report;
   if (auto status = saveField(found->field, deviation, job, {}, to); !status)

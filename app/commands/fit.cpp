@@ -156,6 +156,7 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = countedOf(imported->field, imported->original, options.scan, options, job);
   if (!marked) return tl::unexpected(marked.error());
+  warnOfFilled(*marked, imported->original, options.scan);
   const auto field = withLines(*marked, options.lines, job);
   if (!field) return tl::unexpected(field.error());
   if (imported->in_perspective)

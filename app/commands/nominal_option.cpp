@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include "app/work/streams.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/import.h"
-#include "engine/io/mesh/nominal_file.h"
 
 namespace fettle::app {
 
@@ -44,7 +44,7 @@ void addNominalOptions(Command command, NominalArguments& arguments) {
                     "Unit of the numbers of a nominal mesh B; with it a .ply is one, and not a scan: {}",
                     fmt::join(engine::lengthUnitNames(), ", ")),
                 .proposed = engine::lengthUnitNames(),
-                .otherwise = "mm of an .stl"}},
+                .otherwise = "as an .stl says, else mm"}},
               "A nominal mesh as B");
 }
 
@@ -53,26 +53,27 @@ bool isNominal(const std::string& path, const ScanOptions& reading, const Nomina
   return extension == kNominalExtension || (extension == kEitherExtension && !arguments.unit.empty());
 }
 
-engine::Result<engine::NominalMesh> loadNominal(const std::string& path, const NominalArguments& arguments,
+engine::Result<engine::NominalFile> loadNominal(const std::string& path, const NominalArguments& arguments,
                                                 const std::string& from, const engine::Grid& part,
                                                 Sides sides, engine::JobControl& job) {
-  engine::LengthUnit unit;
+  std::optional<engine::LengthUnit> unit;
   if (!arguments.unit.empty()) {
     const auto named = engine::lengthUnitFromName(arguments.unit);
     if (!named)
       return engine::inputError(fmt::format("unknown unit {}", arguments.unit), "--nominal-unit",
                                 fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
-    unit = *named;
+    unit = named;
   }
-  auto nominal = [&]() -> engine::Result<engine::NominalMesh> {
+  auto read = [&]() -> engine::Result<engine::NominalFile> {
     if (!isStream(path)) return engine::readNominal(path, unit, job);
     const auto input = StandardInput::read(withDot(from), job);
     if (!input) return tl::unexpected(input.error());
-    auto read = engine::readNominal(input->path(), unit, job);
-    if (!read) return tl::unexpected(input->renamed(read.error()));
-    return read;
+    auto piped = engine::readNominal(input->path(), unit, job);
+    if (!piped) return tl::unexpected(input->renamed(piped.error()));
+    return piped;
   }();
-  if (!nominal) return nominal;
+  if (!read) return read;
+  const engine::NominalMesh* const nominal = &read->mesh;
   const std::string name = shownInput(path);
   if (nominal->withoutArea() > 0)
     warn(fmt::format("{}: {} triangles without an area were left out", name, nominal->withoutArea()));
@@ -82,15 +83,14 @@ engine::Result<engine::NominalMesh> loadNominal(const std::string& path, const N
                     "those the side on which a "
                     "sample lies may be wrong",
                     name, nominal->oddSides()));
-  warnOfSize(*nominal, part, name, unit.name);
-  return nominal;
+  warnOfSize(*nominal, part, name, read->unit.name);
+  return read;
 }
 
-Report nominalReport(const NominalArguments& arguments, const engine::NominalMesh& nominal) {
-  const auto unit = engine::lengthUnitFromName(arguments.unit.empty() ? "mm" : arguments.unit);
-  return {{"triangles", nominal.triangles().size()},
-          {"unit", unit ? unit->name : std::string()},
-          {"open_sides", nominal.openSides()}};
+Report nominalReport(const engine::NominalFile& nominal) {
+  return {{"triangles", nominal.mesh.triangles().size()},
+          {"unit", nominal.unit.name},
+          {"open_sides", nominal.mesh.openSides()}};
 }
 
 }  // namespace fettle::app

@@ -7,13 +7,13 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/grid.h"
-#include "engine/nominal/nominal_mesh.h"
+#include "engine/io/mesh/nominal_file.h"
 
 namespace fettle::app {
 
 /// A nominal mesh in the place of a scan B.
 struct NominalArguments {
-  std::string unit;  ///< of the mesh's numbers; empty: mm
+  std::string unit;  ///< of the mesh's numbers; empty: as its file says, else mm
 };
 
 /// --nominal-unit.
@@ -26,13 +26,13 @@ void addNominalOptions(Command command, NominalArguments& arguments);
 /// engine::readNominal() of B; `from`: the format of standard input. Warns of triangles without an area, of sides at which a mesh does not say what is outside, where
 /// that is needed, of one whose size is another than the part's by a factor of 20, as a wrong unit makes it.
 enum class Sides : bool { kNotNeeded, kNeeded };
-[[nodiscard]] engine::Result<engine::NominalMesh> loadNominal(const std::string& path,
+[[nodiscard]] engine::Result<engine::NominalFile> loadNominal(const std::string& path,
                                                               const NominalArguments& arguments,
                                                               const std::string& from,
                                                               const engine::Grid& part, Sides sides,
                                                               engine::JobControl& job);
 
 /// "nominal": triangles, unit, open_sides.
-[[nodiscard]] Report nominalReport(const NominalArguments& arguments, const engine::NominalMesh& nominal);
+[[nodiscard]] Report nominalReport(const engine::NominalFile& nominal);
 
 }  // namespace fettle::app

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/commands/scan_files.h"
+#include "app/terminal.h"
 #include "app/work/section_report.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
@@ -241,6 +243,14 @@ engine::Result<engine::Version> chosenOf(const engine::Version& field,
         fmt::format("no sample is in the region '{}'", arguments.region), shownInput(scan),
         fmt::format("give marks with {}, or take {} all", arguments.marks_option, arguments.option));
   return chosen;
+}
+
+void warnOfFilled(const engine::Version& counted, const std::optional<engine::Version>& original,
+                  const std::string& scan) {
+  const std::int64_t filled = original ? engine::countFilled(counted, *original) : 0;
+  if (filled > 0)
+    warn(fmt::format("{}: {} of its samples were filled, not measured: --region measured leaves them out",
+                     shownInput(scan), filled));
 }
 
 engine::Result<engine::Version> chosenLike(const engine::Version& other, const engine::Version& chosen,

@@ -67,6 +67,10 @@ void addRegionOptions(Command command, RegionArguments& arguments, const std::st
                                                        const RegionArguments& arguments,
                                                        engine::JobControl& job);
 
+/// Warns where samples of a session that count were filled, not measured.
+void warnOfFilled(const engine::Version& counted, const std::optional<engine::Version>& original,
+                  const std::string& scan);
+
 /// Another field at the samples of `chosen`, what chosenOf() made of `field`: with holes wherever that has some, but of all
 /// samples as it is. A field of other sides is returned as it is.
 [[nodiscard]] engine::Result<engine::Version> chosenLike(const engine::Version& other,

@@ -95,22 +95,16 @@ ReportPage::Table figuresOf(const std::vector<engine::Section>& sections,
     }
     rough.push_back(*std::move(figures));
   }
-  struct Kind {
-    const char* name;
-    double engine::Roughness::*figure;
-    const ReadAs* unit;  // null: a number without one
-  };
   const ReadAs fine = readLengthAs(rough.front().ra, 1.0, "mm");
-  for (const Kind& kind : {Kind{"Ra", &engine::Roughness::ra, &fine},
-                           {"Rq", &engine::Roughness::rq, &fine},
-                           {"Rz", &engine::Roughness::rz, &fine},
-                           {"Rsk", &engine::Roughness::rsk, nullptr},
-                           {"Rku", &engine::Roughness::rku, nullptr},
-                           {"RSm", &engine::Roughness::rsm, &along}}) {
-    std::vector<std::string> cells = {kind.name};
-    for (const engine::Roughness& r : rough)
-      cells.push_back(shownIn(r.*kind.figure, kind.unit != nullptr ? *kind.unit : ReadAs{"", 1.0}));
-    cells.push_back(kind.unit != nullptr ? kind.unit->name : "");
+  for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
+    using Unit = engine::RoughnessInfo::Unit;
+    const ReadAs in = info.unit == Unit::kHeight  ? fine
+                      : info.unit == Unit::kAlong ? along
+                      : info.unit == Unit::kRatio ? ReadAs{"%", 0.01}
+                                                  : ReadAs{"", 1.0};
+    std::vector<std::string> cells = {std::string(info.symbol)};
+    for (const engine::Roughness& r : rough) cells.push_back(shownIn(r.*info.figure, in));
+    cells.push_back(in.name);
     table.rows.push_back(std::move(cells));
   }
   table.note = fmt::format("ISO 21920-2 over {} section lengths of {:.6g} mm.", rough.front().lengths,

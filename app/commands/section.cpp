@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@
 #include "app/work/section_files.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/around.h"
@@ -83,7 +85,8 @@ engine::Result<std::vector<Points>> pathsOf(const SectionArguments& options, con
 struct ReadScan {
   engine::Version field;
   double noise_mm = 0.0;
-  std::string sections;  // kept in the session
+  std::string sections;                     // kept in the session
+  std::optional<engine::Version> measured;  // without the samples that were filled, where there are any
 };
 
 engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments& options,
@@ -94,8 +97,14 @@ engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments
   if (!marked) return tl::unexpected(marked.error());
   const auto noise = engine::estimateNoise(*marked, job);
   if (!noise) return tl::unexpected(noise.error());
-  const double noise_mm = noise->sigma * marked->grid().height_unit.mm;
-  return ReadScan{*std::move(marked), noise_mm, imported->sections};
+  ReadScan scan{*std::move(marked), 0.0, imported->sections, std::nullopt};
+  scan.noise_mm = noise->sigma * scan.field.grid().height_unit.mm;
+  if (imported->original && engine::countFilled(scan.field, *imported->original) > 0) {
+    auto measured = engine::withoutFilled(scan.field, *imported->original, job);
+    if (!measured) return tl::unexpected(measured.error());
+    scan.measured = *std::move(measured);
+  }
+  return scan;
 }
 
 engine::SectionOptions sectionOptionsOf(const SectionArguments& options) {
@@ -147,6 +156,19 @@ Report describedSection(std::size_t index, const Section& section) {
           {"lanes", section.lanes},
           {"low_mm", low},
           {"high_mm", high}};
+}
+
+// How many places of a section have heights of samples that were filled: without these they have fewer lanes, or none.
+engine::Result<std::int64_t> filledPlaces(const engine::Version& measured, const Points& points,
+                                          const engine::SectionOptions& of, const Section& section,
+                                          engine::JobControl& job) {
+  const auto without = engine::sectionAlong(measured, points, of, job);
+  if (!without && without.error().kind != engine::ErrorKind::kInput) return tl::unexpected(without.error());
+  std::int64_t places = 0;
+  for (std::size_t i = 0; i < section.size(); ++i)
+    places += !std::isnan(section.height[i]) &&
+              (!without || std::isnan(without->height[i]) || without->share[i] < section.share[i]);
+  return places;
 }
 
 engine::Result<Report> probed(const SectionArguments& options, const ReadScan& scan) {
@@ -249,16 +271,19 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     drawn.push_back({fmt::format("section {}", i), *std::move(section), {}, {}, {}});
     DrawnSection& last = drawn.back();
     Report one = describedSection(i, last.section);
-    for (const std::string_view key : sectionFigureKeys()) {
-      if (!wantsFigure(plan.wants, key)) continue;
-      auto figure = sectionFigure(key, plan.wants, last.section, scan->noise_mm, last.marks);
-      // Of several sections one may be too short for what others show.
-      if (!figure && planned->size() == 1 && !options.kept) return tl::unexpected(figure.error());
-      if (figure)
-        one[std::string(key)] = *std::move(figure);
-      else
-        warn(fmt::format("section {}, {}: {}", i, key, figure.error().line()));
+    if (scan->measured) {
+      const auto filled = filledPlaces(*scan->measured, plan.points, of, last.section, job);
+      if (!filled) return tl::unexpected(filled.error());
+      one["filled"] = *filled;
     }
+    std::vector<FailedFigure> failed;
+    Report figures = sectionFigures(plan.wants, last.section, scan->noise_mm, last.marks, failed);
+    // Of several sections, and of several figures, one may be undetermined where others are not.
+    if (figures.empty() && !failed.empty() && planned->size() == 1 && !options.kept)
+      return tl::unexpected(failed.front().error);
+    for (const FailedFigure& each : failed)
+      warn(fmt::format("section {}, {}: {}", i, each.key, each.error.line()));
+    one.update(figures);
     for (const ReadScan& other : others) {
       auto beside = engine::sectionAlong(other.field, plan.points, of, job);
       if (!beside) {
@@ -272,11 +297,11 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
                                   "fettle convert gives one the other's grid");
       one["deviation"] = deviationOf(last.section, last.other);
       std::vector<SectionMark> unused;
-      auto of_other = sectionFigures(plan.wants, last.other, other.noise_mm, unused);
-      if (of_other)
-        one["other"] = *std::move(of_other);
-      else
-        warn(fmt::format("{}, section {}: {}", shownInput(options.compare), i, of_other.error().line()));
+      failed.clear();
+      one["other"] = sectionFigures(plan.wants, last.other, other.noise_mm, unused, failed);
+      for (const FailedFigure& each : failed)
+        warn(fmt::format("{}, section {}, {}: {}", shownInput(options.compare), i, each.key,
+                         each.error.line()));
     }
     report["sections"].push_back(std::move(one));
   }

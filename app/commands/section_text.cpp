@@ -59,6 +59,10 @@ void printSections(const Report& report) {
     if (one["partial"].get<int>() > 0)
       fmt::print("  {} places are means of fewer lanes, the others lie at holes or outside\n",
                  one["partial"].get<int>());
+    if (one.value("filled", 0) > 0)
+      fmt::print(
+          "  {} places have heights that were filled, not measured: --region measured leaves them out\n",
+          one["filled"].get<std::int64_t>());
     printFigures(one, "  ", units);
     if (one.contains("deviation")) {
       const Report& d = one["deviation"];

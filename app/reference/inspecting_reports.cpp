@@ -1,4 +1,6 @@
 #include "app/reference/report_keys.h"
+#include "app/work/section_report.h"
+#include "engine/measure/roughness.h"
 
 namespace fettle::app::reports {
 
@@ -12,6 +14,20 @@ Keys fittedLine() {
           {"height_error_mm", "number", ""},
           {"rms_mm", "number", ""},
           {"places", "integer", ""}};
+}
+
+Keys roughnessKeys() {
+  Keys keys = {{"cutoff_mm", "number", ""},
+               {"lambda_s_mm?", "number", "with --lambda-s"},
+               {"evaluated", "[number]", "from and to"},
+               {"lengths", "integer", "section lengths of one cut-off"}};
+  for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
+    const RoughnessKeys names = keysOf(info);
+    keys.push_back({names.value, "number", info.text});
+    keys.push_back({names.without, "number", "without noise"});
+    keys.push_back({names.error, "number", "standard error of that"});
+  }
+  return keys;
 }
 
 // What is measured in a section, of the scan and of that of --compare.
@@ -75,31 +91,7 @@ Keys sectionFigures() {
             {"hollow", "boolean", "the centre is above the surface"},
             {"rms_mm", "number", ""},
             {"places", "integer", ""}}},
-          {"roughness?",
-           "object",
-           "with --cutoff, ISO 21920-2",
-           {{"cutoff_mm", "number", ""},
-            {"lambda_s_mm?", "number", "with --lambda-s"},
-            {"evaluated", "[number]", "from and to"},
-            {"lengths", "integer", "section lengths of one cut-off"},
-            {"ra_mm", "number", ""},
-            {"ra_without_mm", "number", "without noise"},
-            {"ra_error_mm", "number", "standard error of that"},
-            {"rq_mm", "number", ""},
-            {"rq_without_mm", "number", "without noise"},
-            {"rq_error_mm", "number", "standard error of that"},
-            {"rz_mm", "number", ""},
-            {"rz_without_mm", "number", "without noise"},
-            {"rz_error_mm", "number", "standard error of that"},
-            {"rsk", "number", ""},
-            {"rsk_without", "number", "without noise"},
-            {"rsk_error", "number", "standard error of that"},
-            {"rku", "number", ""},
-            {"rku_without", "number", "without noise"},
-            {"rku_error", "number", "standard error of that"},
-            {"rsm_mm", "number", ""},
-            {"rsm_without_mm", "number", "without noise"},
-            {"rsm_error_mm", "number", "standard error of that"}}}};
+          {"roughness?", "object", "with --cutoff, ISO 21920-2", roughnessKeys()}};
 }
 
 // A motion of one scan onto another.
@@ -148,6 +140,7 @@ Keys sectionKeys() {
        {"without_height", "integer", "places at holes and outside"},
        {"partial", "integer", "places whose height is the mean of fewer lanes: some lie at holes or outside"},
        {"lanes", "integer", "lines side by side that were averaged"},
+       {"filled?", "integer", "of a session: places with heights that were filled, not measured"},
        {"low_mm", "number", ""},
        {"high_mm", "number", ""},
        {"deviation?",

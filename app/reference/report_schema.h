@@ -14,7 +14,7 @@ namespace fettle::app {
 
 /// A key of an object.
 struct ReportKey {
-  std::string_view name;  ///< with "?" at the end: not always there; "*": every other key
+  std::string name;  ///< with "?" at the end: not always there; "*": every other key
   /// "string", "integer", "number", "boolean", "object", or a list of one of these, "[number]", "any"; with "?" at the end
   /// null as well. A number may always be null: where it cannot be measured.
   std::string_view type;

@@ -12,6 +12,8 @@
 namespace fettle::app {
 namespace {
 
+constexpr const char* kMostlyBeside = ", more than lie over one: does the mesh lie where the field does?";
+
 std::vector<std::string> remarksOn(const engine::NominalMesh& mesh, const engine::NominalDeviation& found,
                                    bool shortest) {
   std::vector<std::string> remarks;
@@ -29,7 +31,8 @@ std::vector<std::string> remarksOn(const engine::NominalMesh& mesh, const engine
     remarks.push_back(
         fmt::format("{} samples lie over triangles that are wound the other way round", found.face_down));
   if (found.no_nominal > 0)
-    remarks.push_back(fmt::format("{} samples lie over no triangle", found.no_nominal));
+    remarks.push_back(fmt::format("{} samples lie over no triangle{}", found.no_nominal,
+                                  found.no_nominal > found.samples ? kMostlyBeside : ""));
   return remarks;
 }
 
@@ -44,9 +47,9 @@ engine::Result<NominalCompared> compareWithNominal(const engine::Version& part, 
                                                    const std::optional<engine::AlignOptions>& how,
                                                    engine::JobControl& job) {
   constexpr const char* kMove = "let it be moved, or say its unit";
-  const auto mesh =
-      engine::readNominal(path, engine::lengthUnitFromName(choice.unit).value_or(engine::LengthUnit()), job);
-  if (!mesh) return tl::unexpected(mesh.error());
+  const auto read = engine::readNominal(path, engine::lengthUnitFromName(choice.unit), job);
+  if (!read) return tl::unexpected(read.error());
+  const engine::NominalMesh* const mesh = &read->mesh;
   NominalCompared compared;
   engine::RigidMotion motion;
   if (how) {

@@ -15,7 +15,8 @@ namespace fettle::app {
 
 /// How a field is compared with a nominal mesh.
 struct NominalChoice {
-  std::string unit = "mm";  ///< of the mesh's numbers, one of engine::lengthUnitNames()
+  std::string
+      unit;  ///< of the mesh's numbers, one of engine::lengthUnitNames(); empty: as its file says, else mm
   bool shortest =
       false;  ///< distances to the nearest place of the mesh, above 0 outside; else heights over its topmost surface
   double tolerance = 0.0;  ///< on both sides [height_unit]; 0: none

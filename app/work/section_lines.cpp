@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "app/work/estimate_text.h"
+#include "app/work/section_report.h"
+#include "engine/measure/roughness.h"
 
 namespace fettle::app {
 
@@ -78,29 +80,20 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                                  r.contains("lambda_s_mm")
                                      ? fmt::format(", lambda s {}", shownLength(r["lambda_s_mm"], along))
                                      : ""));
-    struct Kind {
-      const char* name;
-      const char* key;
-      const char* unit;
-      const ReadAs* as;
-    };
-    const ReadAs plain{"", 1.0};
-    for (const Kind& kind : {Kind{"Ra", "ra", "_mm", &as},
-                             {"Rq", "rq", "_mm", &as},
-                             {"Rz", "rz", "_mm", &as},
-                             {"RSm", "rsm", "_mm", &along},
-                             {"Rsk", "rsk", "", &plain},
-                             {"Rku", "rku", "", &plain}}) {
-      const Report &value = r[fmt::format("{}{}", kind.key, kind.unit)],
-                   &without = r[fmt::format("{}_without{}", kind.key, kind.unit)],
-                   &error = r[fmt::format("{}_error{}", kind.key, kind.unit)];
-      std::string text = shownLength(value, *kind.as);
-      if (!without.is_null()) {
-        const double by = error.get<double>() / kind.as->size;
-        text += fmt::format(", without noise {} +- {:.2g}",
-                            shownTo(without.get<double>() / kind.as->size, by), by);
+    for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
+      const RoughnessKeys keys = keysOf(info);
+      if (!r.contains(keys.value)) continue;  // of a session of before it was measured
+      using Unit = engine::RoughnessInfo::Unit;
+      const ReadAs in = info.unit == Unit::kHeight  ? as
+                        : info.unit == Unit::kAlong ? along
+                        : info.unit == Unit::kRatio ? ReadAs{"%", 0.01}
+                                                    : ReadAs{"", 1.0};
+      std::string text = shownLength(r[keys.value], in);
+      if (const Report& without = r[keys.without], &error = r[keys.error]; !without.is_null()) {
+        const double by = error.get<double>() / in.size;
+        text += fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);
       }
-      row("", fmt::format("{:<4} {}", kind.name, text));
+      row("", fmt::format("{:<5} {}", info.symbol, text));
     }
   }
   return lines;

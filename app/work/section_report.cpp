@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/measure/roughness.h"
 #include "engine/uncertainty/roughness_noise.h"
 
 namespace fettle::app {
@@ -172,18 +171,13 @@ class SectionMeasurement {
                   {"evaluated", stretchOf(figures->evaluated)},
                   {"lengths", figures->lengths}};
     if (options_.lambda_s) report["lambda_s_mm"] = *options_.lambda_s;
-    const auto add = [&report](const std::string& key, const char* unit, double value,
-                               const engine::NoiseEffect& effect) {
-      report[key + unit] = numberOrNull(value);
-      report[key + "_without" + unit] = numberOrNull(effect.without);
-      report[key + "_error" + unit] = numberOrNull(effect.error);
-    };
-    add("ra", "_mm", figures->ra, noise->ra);
-    add("rq", "_mm", figures->rq, noise->rq);
-    add("rz", "_mm", figures->rz, noise->rz);
-    add("rsk", "", figures->rsk, noise->rsk);
-    add("rku", "", figures->rku, noise->rku);
-    add("rsm", "_mm", figures->rsm, noise->rsm);
+    const std::span<const engine::RoughnessInfo> infos = engine::roughnessInfos();
+    for (std::size_t f = 0; f < infos.size(); ++f) {
+      const RoughnessKeys keys = keysOf(infos[f]);
+      report[keys.value] = numberOrNull((*figures).*infos[f].figure);
+      report[keys.without] = numberOrNull((*noise)[f].without);
+      report[keys.error] = numberOrNull((*noise)[f].error);
+    }
     return report;
   }
 
@@ -235,6 +229,13 @@ engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text, cons
   return points;
 }
 
+RoughnessKeys keysOf(const engine::RoughnessInfo& info) {
+  using Unit = engine::RoughnessInfo::Unit;
+  const char* ending = info.unit == Unit::kHeight || info.unit == Unit::kAlong ? "_mm" : "";
+  return {fmt::format("{}{}", info.key, ending), fmt::format("{}_without{}", info.key, ending),
+          fmt::format("{}_error{}", info.key, ending)};
+}
+
 std::span<const std::string_view> sectionFigureKeys() noexcept {
   return kSectionKeys;
 }
@@ -254,14 +255,16 @@ engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& w
   return SectionMeasurement(wants, noise_mm).of(key, section, marks);
 }
 
-engine::Result<Report> sectionFigures(const SectionWants& wants, const Section& section, double noise_mm,
-                                      std::vector<SectionMark>& marks) {
+Report sectionFigures(const SectionWants& wants, const Section& section, double noise_mm,
+                      std::vector<SectionMark>& marks, std::vector<FailedFigure>& failed) {
   Report report = Report::object();
   for (const std::string_view key : kSectionKeys) {
     if (!wantsFigure(wants, key)) continue;
     auto figure = sectionFigure(key, wants, section, noise_mm, marks);
-    if (!figure) return tl::unexpected(figure.error());
-    report[std::string(key)] = *std::move(figure);
+    if (figure)
+      report[std::string(key)] = *std::move(figure);
+    else
+      failed.push_back({std::string(key), figure.error()});
   }
   return report;
 }

@@ -10,6 +10,7 @@
 
 #include "app/report.h"
 #include "engine/base/error.h"
+#include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 #include "engine/measure/section_figures.h"
 
@@ -44,15 +45,26 @@ struct SectionMark {
                                                    const engine::Section& section, double noise_mm,
                                                    std::vector<SectionMark>& marks);
 
-/// All that is wanted, a key each. Errors: the first of sectionFigure().
-[[nodiscard]] engine::Result<Report> sectionFigures(const SectionWants& wants, const engine::Section& section,
-                                                    double noise_mm, std::vector<SectionMark>& marks);
+/// All that is wanted, a key each, but for what the heights do not determine: that is in `failed`.
+struct FailedFigure {
+  std::string key;
+  engine::Error error;
+};
+[[nodiscard]] Report sectionFigures(const SectionWants& wants, const engine::Section& section,
+                                    double noise_mm, std::vector<SectionMark>& marks,
+                                    std::vector<FailedFigure>& failed);
 
 /// Numbers with commas between them, exactly so many; none when the text is something else.
 [[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
 /// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
 [[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
                                                                  const std::string& option);
+
+/// Of a figure in a section's "roughness": what it is, without noise, and the standard error of that.
+struct RoughnessKeys {
+  std::string value, without, error;
+};
+[[nodiscard]] RoughnessKeys keysOf(const engine::RoughnessInfo& info);
 
 /// A number of a report; null for NaN.
 [[nodiscard]] Report numberOrNull(double value);

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "engine/measure/material_ratio.h"
 
 namespace fettle::engine {
 
@@ -41,32 +44,81 @@ void takeLineOut(std::vector<double>& heights) {
     heights[i] -= mean + slope * (static_cast<double>(i) - 0.5 * (n - 1.0));
 }
 
-// Mean width of elements: crossings of the mean line that lead from beyond one threshold to beyond the other.
-double meanWidth(std::span<const double> heights, double step_mm, double threshold) {
-  double width = 0.0;
+// Mean over a profile by the trapezoidal rule, of one place and more.
+double meanAlong(std::span<const double> profile, const auto& of) {
+  if (profile.size() == 1) return of(profile.front());
+  const double n = static_cast<double>(profile.size()) - 1.0;
+  double sum = 0.5 * (of(profile.front()) + of(profile.back())) / n;
+  for (const double z : profile.subspan(1, profile.size() - 2)) sum += of(z) / n;
+  return sum;
+}
+
+// Elements: between crossings of the mean line that lead from beyond one threshold to beyond the other. Means of rising and
+// of falling ones.
+struct Elements {
+  double width_mm = std::numeric_limits<double>::quiet_NaN(), height = width_mm;
+};
+Elements elementsOf(std::span<const double> heights, double step_mm, double threshold) {
+  double width = 0.0, height = 0.0;
   int elements = 0;
   for (const double sign : {1.0, -1.0}) {
-    bool below = false;
-    double crossing = 0.0, first = 0.0, last = 0.0;
-    int count = 0;
+    bool below = false, begun = false;
+    double crossing = 0.0, last = 0.0;
+    std::size_t at = 0, from = 0;  // the place behind each crossing
     for (std::size_t i = 0; i < heights.size(); ++i) {
       const double z = sign * heights[i];
-      if (i > 0 && z >= 0.0 && sign * heights[i - 1] < 0.0)
+      if (i > 0 && z >= 0.0 && sign * heights[i - 1] < 0.0) {
         crossing = static_cast<double>(i) - z / (z - sign * heights[i - 1]);
-      if (z < -threshold) below = true;
-      if (z > threshold && below) {
-        below = false;
-        if (count++ == 0) first = crossing;
-        last = crossing;
+        at = i;
       }
-    }
-    if (count > 1) {
-      width += (last - first) * step_mm;
-      elements += count - 1;
+      if (z < -threshold) below = true;
+      if (!(z > threshold && below)) continue;
+      below = false;
+      if (std::exchange(begun, true)) {
+        const auto [least, most] = std::ranges::minmax(heights.subspan(from, at - from));
+        width += (crossing - last) * step_mm;
+        height += most - least;
+        ++elements;
+      }
+      last = crossing;
+      from = at;
     }
   }
-  return elements > 0 ? width / elements : std::numeric_limits<double>::quiet_NaN();
+  return elements > 0 ? Elements{width / elements, height / elements} : Elements();
 }
+
+double slopeOf(std::span<const double> z, double step_mm) {
+  double squares = 0.0;
+  for (std::size_t i = 3; i + 3 < z.size(); ++i) {
+    const double slope =
+        (45.0 * (z[i + 1] - z[i - 1]) - 9.0 * (z[i + 2] - z[i - 2]) + (z[i + 3] - z[i - 3])) /
+        (60.0 * step_mm);
+    squares += slope * slope;
+  }
+  return z.size() > 6 ? std::sqrt(squares / static_cast<double>(z.size() - 6))
+                      : std::numeric_limits<double>::quiet_NaN();
+}
+
+using Unit = RoughnessInfo::Unit;
+
+constexpr RoughnessInfo kRoughness[] = {
+    {"ra", "Ra", Unit::kHeight, &Roughness::ra, "mean height, signs left out"},
+    {"rq", "Rq", Unit::kHeight, &Roughness::rq, "root mean square height"},
+    {"rz", "Rz", Unit::kHeight, &Roughness::rz, "mean of the section lengths' heights"},
+    {"rp", "Rp", Unit::kHeight, &Roughness::rp, "mean of their highest peaks"},
+    {"rv", "Rv", Unit::kHeight, &Roughness::rv, "mean of their deepest dales"},
+    {"rt", "Rt", Unit::kHeight, &Roughness::rt, "height of the whole profile"},
+    {"rc", "Rc", Unit::kHeight, &Roughness::rc, "mean height of the profile elements"},
+    {"rsm", "RSm", Unit::kAlong, &Roughness::rsm, "mean width of the profile elements"},
+    {"rsk", "Rsk", Unit::kNone, &Roughness::rsk, "skewness"},
+    {"rku", "Rku", Unit::kNone, &Roughness::rku, "kurtosis"},
+    {"rdq", "Rdq", Unit::kNone, &Roughness::rdq, "root mean square slope"},
+    {"rk", "Rk", Unit::kHeight, &Roughness::rk, "core height"},
+    {"rpk", "Rpk", Unit::kHeight, &Roughness::rpk, "reduced peak height"},
+    {"rvk", "Rvk", Unit::kHeight, &Roughness::rvk, "reduced dale height"},
+    {"rmrk1", "Rmrk1", Unit::kRatio, &Roughness::rmrk1, "material ratio of the peaks"},
+    {"rmrk2", "Rmrk2", Unit::kRatio, &Roughness::rmrk2, "material ratio where the dales begin"},
+};
 
 }  // namespace
 
@@ -147,12 +199,14 @@ Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch&
     result.lengths_begin.push_back(placeAt(start + k * cutoff_mm) - from);
   result.heights.assign(heights.begin() + static_cast<std::ptrdiff_t>(from),
                         heights.begin() + static_cast<std::ptrdiff_t>(to) + 1);
-  const auto n = static_cast<double>(result.heights.size());
-  double mean = 0.0;
-  for (const double z : result.heights) mean += z / n;
   // The mean line of all is not exactly the mean of the evaluated part.
+  const double mean = meanAlong(result.heights, [](double z) { return z; });
   for (double& z : result.heights) z -= mean;
   return result;
+}
+
+std::span<const RoughnessInfo> roughnessInfos() noexcept {
+  return kRoughness;
 }
 
 Result<Roughness> roughnessOf(const Section& section, const Stretch& within, const ProfileFilters& filters) {
@@ -162,24 +216,36 @@ Result<Roughness> roughnessOf(const Section& section, const Stretch& within, con
   Roughness result;
   result.evaluated = found->evaluated;
   result.lengths = found->lengths;
-  const auto n = static_cast<double>(profile.size());
-  double second = 0.0, third = 0.0, fourth = 0.0;
-  for (const double z : profile) {
-    result.ra += std::abs(z) / n;
-    second += z * z / n;
-    third += z * z * z / n;
-    fourth += z * z * z * z / n;
-  }
+  const double second = meanAlong(profile, [](double z) { return z * z; });
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  result.ra = meanAlong(profile, [](double z) { return std::abs(z); });
   result.rq = std::sqrt(second);
-  result.rsk = second > 0.0 ? third / (second * result.rq) : std::numeric_limits<double>::quiet_NaN();
-  result.rku = second > 0.0 ? fourth / (second * second) : std::numeric_limits<double>::quiet_NaN();
+  result.rsk =
+      second > 0.0 ? meanAlong(profile, [](double z) { return z * z * z; }) / (second * result.rq) : kNone;
+  result.rku =
+      second > 0.0 ? meanAlong(profile, [](double z) { return z * z * z * z; }) / (second * second) : kNone;
   for (std::size_t k = 0; k + 1 < found->lengths_begin.size(); ++k) {
     const auto low = static_cast<std::ptrdiff_t>(found->lengths_begin[k]),
                high = static_cast<std::ptrdiff_t>(found->lengths_begin[k + 1]);
     const auto [least, most] = std::minmax_element(profile.begin() + low, profile.begin() + high + 1);
-    result.rz += (*most - *least) / result.lengths;
+    result.rp += *most / result.lengths;
+    result.rv -= *least / result.lengths;
   }
-  result.rsm = meanWidth(profile, section.step_mm, 0.1 * result.rz);
+  result.rz = result.rp + result.rv;
+  const auto [lowest, highest] = std::ranges::minmax(profile);
+  result.rt = highest - lowest;
+  const Elements elements = elementsOf(profile, section.step_mm, 0.1 * result.rz);
+  result.rsm = elements.width_mm;
+  result.rc = elements.height;
+  result.rdq = slopeOf(profile, section.step_mm);
+  std::vector<float> sorted(profile.begin(), profile.end());
+  std::ranges::sort(sorted);
+  const MaterialRatio ratio = materialRatio(sorted);
+  result.rk = ratio.sk;
+  result.rpk = ratio.spk;
+  result.rvk = ratio.svk;
+  result.rmrk1 = ratio.smrk1;
+  result.rmrk2 = ratio.smrk2;
   return result;
 }
 

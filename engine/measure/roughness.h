@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -28,7 +30,7 @@ struct ProfileFilters {
 struct RoughnessProfile {
   Stretch evaluated;            ///< a whole number of section lengths, each one cut-off
   int lengths = 0;              ///< of these
-  std::vector<double> heights;  ///< about their mean [mm]
+  std::vector<double> heights;  ///< about their mean by the trapezoidal rule [mm]
   std::vector<std::size_t>
       lengths_begin;  ///< places at which section lengths begin, and where the last one ends: lengths + 1
 };
@@ -42,16 +44,40 @@ struct RoughnessProfile {
 [[nodiscard]] Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch& within,
                                                         const ProfileFilters& filters);
 
-/// Profile roughness of ISO 21920-2:2021 [mm]. NaN where the profile does not determine a figure.
+/// Profile roughness of ISO 21920-2:2021 [mm]. NaN where the profile does not determine a figure. Means along the profile are integrals by
+/// the trapezoidal rule: the places at both ends count half.
 struct Roughness {
   Stretch evaluated;  ///< as of RoughnessProfile
   int lengths = 0;
-  double ra = 0.0, rq = 0.0, rz = 0.0;  ///< rz: mean of the section lengths' highest less lowest
+  double ra = 0.0, rq = 0.0;
+  /// Means of the section lengths' highest (rp), of their lowest below the mean line (rv), and the sum of both (rz).
+  double rz = 0.0, rp = 0.0, rv = 0.0;
+  double rt = 0.0;  ///< from the lowest to the highest of the evaluation length
   double rsk = 0.0, rku = 0.0;
-  /// Mean width of the profile elements, from one rise (fall) through the mean line to the next, over all of the evaluation
+  /// Mean width and height of the profile elements, from one rise (fall) through the mean line to the next, over all of the evaluation
   /// length; peaks and dales lower than a tenth of rz count to their neighbours.
-  double rsm = 0.0;
+  double rsm = 0.0, rc = 0.0;
+  /// Root mean square of the slope, found at each place from three on either side (the formula of ISO 4287:1997, 4.4.1).
+  double rdq = 0.0;
+  /// Of the material ratio curve (material_ratio.h); ratios 0 .. 1.
+  double rk = 0.0, rpk = 0.0, rvk = 0.0, rmrk1 = 0.0, rmrk2 = 0.0;
 };
+
+/// One row per figure of Roughness, in the order in which they are shown.
+struct RoughnessInfo {
+  enum class Unit : std::uint8_t {
+    kHeight,
+    kAlong,
+    kNone,
+    kRatio
+  };                        ///< mm in z, mm along the line, a number, 0 .. 1
+  std::string_view key;     ///< "ra"
+  std::string_view symbol;  ///< "Ra"
+  Unit unit;
+  double Roughness::*figure;
+  std::string_view text;  ///< what it is, for the user
+};
+[[nodiscard]] std::span<const RoughnessInfo> roughnessInfos() noexcept;
 
 /// Of roughnessProfile(), with its errors.
 [[nodiscard]] Result<Roughness> roughnessOf(const Section& section, const Stretch& within,

@@ -9,10 +9,8 @@
 
 namespace fettle::engine {
 
-/// What noise does to the roughness of a section.
-struct RoughnessNoise {
-  NoiseEffect ra, rq, rz, rsk, rku, rsm;
-};
+/// What noise does to the roughness of a section, a row for each of roughnessInfos().
+using RoughnessNoise = std::vector<NoiseEffect>;
 
 /// By trials (noise_trial.h) in which heights of the section get noise with the covariance that independent noise of standard deviation
 /// `noise_mm` in every sample gives them (Section::covariance), drawn through its banded Cholesky factor. `found` is roughnessOf(section, within,

@@ -100,6 +100,43 @@ TEST(NominalCommand, MeasuresAPartWhereTheFilesPlaceIt) {
 }
 
 // A PLY may be a scan: it is a nominal where its unit is stated, and measures as the same mesh in an STL does.
+// A mesh that Fettle wrote lies where its scan lay: at half a cell, where both worlds overlap and only the header tells them apart, far
+// away, and of a part of the scan.
+TEST(NominalCommand, AMeshOfAScanLiesWhereTheScanLay) {
+  const TempFolder folder;
+  const std::string part = folder.file("part.asc"), mesh = folder.file("part.stl"),
+                    cut = folder.file("cut.tif");
+  for (const double origin : {0.0, 0.05, -3.0, 5e6}) {
+    writePart(part, 0.0, 0.0, 0.0, origin);
+    ASSERT_EQ(fettle({"convert", part, mesh, "--unit", "mm", "--force"}).status, 0);
+    const Outcome said = fettle({"compare", part, mesh, "--unit", "mm", "--json"});
+    ASSERT_EQ(said.status, 0) << said.err;
+    const auto report = nlohmann::json::parse(said.out);
+    // Sampled at its own corners, with seven digits.
+    EXPECT_LT(report["max_abs"].get<double>(), 1e-6) << origin;
+    EXPECT_LE(report["no_nominal"].get<int>(), 1) << origin;
+    EXPECT_EQ(report["warnings"].dump().find("triangle"), std::string::npos) << report["warnings"].dump();
+    EXPECT_EQ(report["warnings"].dump().find("beside"), std::string::npos) << report["warnings"].dump();
+    ASSERT_EQ(fettle({"transform", part, cut, "--crop", "2,3,7.9,7.9", "--unit", "mm", "--force"}).status, 0);
+    EXPECT_LT(fettleJson({"compare", cut, mesh})["max_abs"].get<double>(), 1e-6) << origin;
+  }
+  // Micrometres say so themselves.
+  ASSERT_EQ(fettle({"convert", part, mesh, "--unit", "um", "--force"}).status, 0);
+  const auto small = fettleJson({"compare", part, mesh, "--unit", "um"});
+  EXPECT_EQ(small["nominal"]["unit"], "um");
+  EXPECT_LT(small["max_abs"].get<double>(), 1e-6);
+}
+
+TEST(NominalCommand, SaysWhereMostOfThePartLiesBeside) {
+  const TempFolder folder;
+  const std::string part = folder.file("part.asc"), nominal = folder.file("nominal.stl");
+  writePart(part, 0.0, 0.0, 0.0);
+  writeNominal(nominal, 6.0);
+  const Outcome said = fettle({"compare", part, nominal, "--unit", "mm"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("samples lie over no triangle"), std::string::npos) << said.err;
+}
+
 TEST(NominalCommand, TakesThePlyOfAMeshWhoseUnitIsStated) {
   const TempFolder folder;
   const std::string part = folder.file("part.tif"), truth = folder.file("truth.tif"),

@@ -114,6 +114,56 @@ TEST(SectionCommand, RefusesWhatItCannotMeasure) {
   refused({"--line", "1,2:7,2", "--spacing", "1", "--spacing", "2"}, "more than once");
 }
 
+TEST(SectionCommand, AFigureThatIsNotDeterminedLeavesTheOthers) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  const Outcome outcome = fettle({"section", scan, "--unit", "mm", "--line", "1,2:7,2", "--arc", "0,1",
+                                  "--cursors", "1,4", "--cutoff", "5", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  const auto section = report["sections"][0];
+  EXPECT_TRUE(section.contains("cursors"));
+  EXPECT_FALSE(section.contains("arc"));
+  EXPECT_FALSE(section.contains("roughness"));
+  ASSERT_EQ(report["warnings"].size(), 2U) << report["warnings"].dump();
+  EXPECT_EQ(report["warnings"][0].get<std::string>().find("section 0, arc: "), 0U)
+      << report["warnings"].dump();
+  EXPECT_EQ(report["warnings"][1].get<std::string>().find("section 0, roughness: "), 0U)
+      << report["warnings"].dump();
+  // Nothing of what was wanted is no result.
+  expectRefused(
+      fettle({"section", scan, "--unit", "mm", "--line", "1,2:7,2", "--arc", "0,1", "--cutoff", "5"}),
+      "curvature");
+}
+
+TEST(SectionCommand, NamesPlacesThatWereFilled) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc"), filled = folder.file("filled.fettle");
+  writeGroove(scan);
+  ASSERT_EQ(fettle({"fill", scan, filled, "--unit", "mm"}).status, 0);
+  const auto at = [&](const char* line, std::vector<std::string> more) {
+    std::vector<std::string> words{"section", filled, "--line", line};
+    words.insert(words.end(), more.begin(), more.end());
+    return fettleJson(words)["sections"][0];
+  };
+  EXPECT_EQ(at("0,1:7.9,1", {})["filled"], 1);
+  EXPECT_EQ(at("0,1.05:7.9,1.05", {})["filled"], 1) << "between two rows one of which is filled";
+  EXPECT_EQ(at("0,1:7.9,1", {"--width", "1"})["filled"], 1) << "one lane of eleven";
+  EXPECT_EQ(at("0,2:7.9,2", {})["filled"], 0);
+  const auto measured = at("0,1:7.9,1", {"--region", "measured"});
+  EXPECT_EQ(measured["without_height"], 1);
+  EXPECT_FALSE(measured.contains("filled"));
+  const Outcome text = fettle({"section", filled, "--line", "0,1:7.9,1"});
+  EXPECT_NE(text.out.find("1 places have heights that were filled"), std::string::npos) << text.out;
+  for (const auto& words :
+       {std::vector<std::string>{"fit", filled, "--shape", "plane"}, {"compare", filled, filled}}) {
+    const Outcome said = fettle(words);
+    ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_NE(said.err.find("1 of its samples were filled, not measured"), std::string::npos) << said.err;
+  }
+}
+
 // Each reason for a section without heights is another remedy.
 TEST(SectionCommand, SaysWhyThereIsNoHeight) {
   const TempFolder folder;

@@ -211,18 +211,28 @@ void compareProfile(const Version& field, Table& table) {
   const auto profile = roughnessProfile(*section, all, filters);
   const auto rough = roughnessOf(*section, all, filters);
   if (!profile || !rough) return;
-  const auto n = static_cast<int>(profile->heights.size());
+  // There and back again, which gives the ends half the weight of the others, as the integrals of ISO 21920-2 do: Gwyddion counts
+  // all places alike.
+  const auto places = profile->heights.size();
+  const auto n = static_cast<int>(2 * places - 2);
   GwyDataLine* const data = gwy_data_line_new(n, n * section->step_mm, TRUE);
-  std::copy(profile->heights.begin(), profile->heights.end(), gwy_data_line_get_data(data));
+  std::ranges::copy(profile->heights, gwy_data_line_get_data(data));
+  std::copy(profile->heights.rbegin() + 1, profile->heights.rend() - 1,
+            gwy_data_line_get_data(data) + static_cast<std::ptrdiff_t>(places));
   table.row("Ra", rough->ra, gwy_data_line_get_ra(data));
   table.row("Rq", rough->rq, gwy_data_line_get_rms(data));
   // Its moments of lines are of n + 1 samples' worth for each square of Rq, those of fields are not.
   const double more = (n + 1.0) / n;
   table.row("Rsk", rough->rsk, gwy_data_line_get_skew(data), std::sqrt(more) * rough->rsk);
   table.row("Rku", rough->rku, gwy_data_line_get_kurtosis(data), more * rough->rku - 3.0);
-  table.row("Rz", rough->rz, gwy_data_line_get_xtm(data, profile->lengths, 1),
-            heightOfSamplings(profile->heights, profile->lengths));
+  table.row("Rt", rough->rt, gwy_data_line_get_max(data) - gwy_data_line_get_min(data));
   g_object_unref(data);
+  GwyDataLine* const once =
+      gwy_data_line_new(static_cast<int>(places), static_cast<double>(places) * section->step_mm, TRUE);
+  std::ranges::copy(profile->heights, gwy_data_line_get_data(once));
+  table.row("Rz", rough->rz, gwy_data_line_get_xtm(once, profile->lengths, 1),
+            heightOfSamplings(profile->heights, profile->lengths));
+  g_object_unref(once);
 }
 
 bool compare(const std::string& path) {

@@ -15,8 +15,11 @@ constexpr int kComparedLines = 15, kUncomparedLines = 3;
 
 // What counts where a nominal mesh is compared.
 void meshFields(const PanelContext& context, NominalChoice& nominal) {
-  (void)field("mesh in", "The unit of the numbers of an .stl, which does not say it.", [&] {
-    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.c_str())) return false;
+  (void)field("mesh in", "The unit of the numbers of an .stl; only one that Fettle wrote says it.", [&] {
+    constexpr const char* kAsStated = "as it says, else mm";
+    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.empty() ? kAsStated : nominal.unit.c_str()))
+      return false;
+    if (ImGui::Selectable(kAsStated, nominal.unit.empty())) nominal.unit.clear();
     for (const std::string& unit : engine::lengthUnitNames())
       if (ImGui::Selectable(unit.c_str(), unit == nominal.unit)) nominal.unit = unit;
     ImGui::EndCombo();

@@ -14,6 +14,7 @@
 #include "engine/io/files/little_endian.h"
 #include "engine/io/format.h"
 #include "engine/io/mesh/ply_header.h"
+#include "engine/io/mesh/stl_file.h"
 #include "engine/io/mesh/surface_mesh.h"
 
 namespace fettle::engine {
@@ -84,9 +85,7 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  // The header must not begin with "solid", otherwise readers take the file for text.
-  out.text = fmt::format("surface of a height field, units {}", grid.lateral_unit.name);
-  out.text.resize(80, ' ');
+  out.text = stlHeader(grid);
   appendLittle(out.text, static_cast<std::uint32_t>(all->triangles));
   const double z_unit = grid.height_unit.mm / grid.lateral_unit.mm;
   const auto width = static_cast<std::uint64_t>(grid.width);
@@ -116,7 +115,8 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   warnings.push_back(fmt::format("STL has no units, all lengths are in {}", grid.lateral_unit.name));
   if (grid.origin_x != 0.0 || grid.origin_y != 0.0)
     warnings.push_back(
-        fmt::format("STL has few digits: x and y are relative to the field's corner, not to {}, {}",
+        fmt::format("STL has few digits: x and y are relative to the field's corner at {}, {}, which its "
+                    "header states for Fettle alone",
                     grid.origin_x, grid.origin_y));
   return Exported{"STL", std::move(warnings)};
 }

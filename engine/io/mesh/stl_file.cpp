@@ -4,6 +4,7 @@
 #include "engine/io/mesh/stl_file.h"
 
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -11,12 +12,15 @@
 
 #include "engine/io/files/little_endian.h"
 #include "engine/io/files/text_reader.h"
+#include "engine/io/units.h"
 
 namespace fettle::engine {
 
 namespace {
 
-constexpr std::uint64_t kStlHeader = 84;
+constexpr std::size_t kHeaderText = 80;
+constexpr std::uint64_t kStlHeader = kHeaderText + 4;
+constexpr std::string_view kZeroAt = ", zero at ";
 constexpr std::uint64_t kTriangle = 50;
 constexpr std::uint64_t kLook = 65536;
 
@@ -85,6 +89,34 @@ Status readText(const InputFile& file, TriangleMesh& mesh, JobControl& job) {
 
 }  // namespace
 
+std::string stlHeader(const Grid& grid) {
+  // It must not begin with "solid", otherwise readers take the file for text.
+  std::string text = fmt::format("field, units {}", grid.lateral_unit.name);
+  if (text.size() > kHeaderText) text = "field";
+  if (grid.origin_x != 0.0 || grid.origin_y != 0.0) {
+    // The shortest digits that give the same doubles: 80 bytes hold them beside any unit of ours.
+    const std::string zero = fmt::format("{}{} {}", kZeroAt, grid.origin_x, grid.origin_y);
+    if (text.size() + zero.size() <= kHeaderText) text += zero;
+  }
+  text.resize(kHeaderText, ' ');
+  return text;
+}
+
+StlHeader stlHeaderOf(std::string_view bytes) {
+  StlHeader header;
+  bytes = bytes.substr(0, kHeaderText);
+  if (!looksLikeText(bytes)) return header;
+  const std::size_t at = bytes.find(kZeroAt);
+  header.unit = lengthUnitFromComment(bytes.substr(0, at));
+  if (at == std::string_view::npos) return header;
+  const char *p = bytes.data() + at + kZeroAt.size(), *end = bytes.data() + bytes.size();
+  glm::dvec2 zero{0.0};
+  if (!parseNumber(p, end, zero.x) || p == end || *p++ != ' ' || !parseNumber(p, end, zero.y)) return header;
+  constexpr double kFarthest = 1e15;
+  if (std::abs(zero.x) <= kFarthest && std::abs(zero.y) <= kFarthest) header.zero = zero;
+  return header;
+}
+
 Result<StlMesh> readStlMesh(const InputFile& file, JobControl& job) {
   StlMesh read;
   read.mesh.corners.organized = true;
@@ -104,7 +136,10 @@ Result<StlMesh> readStlMesh(const InputFile& file, JobControl& job) {
   else
     status = readBytes(file, count, read.mesh, job);
   if (!status) return tl::unexpected(status.error());
-  if (!text) read.not_counted = (file.size() - kStlHeader - count * kTriangle) / kTriangle;
+  if (!text) {
+    read.header = stlHeaderOf({head.data(), head.size()});
+    read.not_counted = (file.size() - kStlHeader - count * kTriangle) / kTriangle;
+  }
   return read;
 }
 

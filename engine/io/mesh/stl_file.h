@@ -1,16 +1,34 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <glm/vec2.hpp>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/grid.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/mesh/mesh_sampling.h"
 
 namespace fettle::engine {
 
+/// The 80 bytes before the triangles of a binary STL, in which the format says nothing: the unit of the numbers, and where
+/// their zero lies in the world, as far as both fit.
+[[nodiscard]] std::string stlHeader(const Grid& grid);
+
+/// What such a header states; of another program's, nothing but a unit named as "units mm".
+struct StlHeader {
+  std::optional<LengthUnit> unit;
+  glm::dvec2 zero{0.0};  ///< to be added to x and y [unit of the file]
+};
+[[nodiscard]] StlHeader stlHeaderOf(std::string_view bytes);
+
 struct StlMesh {
   TriangleMesh mesh;
+  StlHeader header;  ///< of a binary file
   /// Of a binary file: how many triangles more than its header counts would be in its bytes. They were not read.
   std::uint64_t not_counted = 0;
 };

@@ -20,7 +20,14 @@ bool looksLikeStl(std::string_view head, std::string_view extension) {
 Result<Imported> readStl(const InputFile& file, const ImportOptions& options, JobControl& job) {
   Result<StlMesh> read = readStlMesh(file, job);
   if (!read) return tl::unexpected(read.error());
-  return sampleMesh(std::move(read->mesh), options, "STL", file.path(), job);
+  read->mesh.corners.unit = read->header.unit;
+  Result<Imported> field = sampleMesh(std::move(read->mesh), options, "STL", file.path(), job);
+  if (!field || read->header.zero == glm::dvec2(0.0)) return field;
+  Grid grid = field->field.grid();
+  grid.origin_x += read->header.zero.x;
+  grid.origin_y += read->header.zero.y;
+  field->field = field->field.withGrid(grid);
+  return field;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "engine/measure/roughness.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -133,6 +134,97 @@ TEST(Roughness, LambdaSHasNoEndsInWhatIsEvaluated) {
   // A spike at an end that the S-filter spreads does not reach over half of it.
   heights.front() = 1e6;
   EXPECT_LT(measured(profileOf(heights, 0.001), 0.25, 0.02).rz, measured(profileOf(heights, 0.001), 0.25).rz);
+}
+
+// Integrals of ISO 21920-2 over whole waves: the trapezoidal rule is exact for them, while a mean over all places, which has one end too
+// many, is not by 1 / 80 of the places here.
+TEST(Roughness, EndsCountHalf) {
+  // A square wave of 8 places, sampled twice as high and as low as its steps; the cut-off is far longer.
+  std::vector<double> heights(241);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 8 == 0 ? 4.0 : 0.0;
+  const Section section = profileOf(heights, 1.0);
+  const auto profile = roughnessProfile(section, {0.0, 240.0}, {80.0});
+  ASSERT_TRUE(profile);
+  ASSERT_EQ(profile->heights.size(), 161U);
+  ASSERT_NEAR(profile->heights.front(), profile->heights.back(), 1e-3) << "whole waves";
+  // A peak in eight places: 3.5 over the mean, the others 0.5 below.
+  EXPECT_NEAR(measured(section, 80.0).ra, 2.0 * 3.5 / 8.0, 2e-4);
+  EXPECT_NEAR(measured(section, 80.0).rq, std::sqrt((3.5 * 3.5 + 7.0 * 0.25) / 8.0), 2e-4);
+}
+
+// Closed formulas of a sine of amplitude a and wavelength L. Rdq: 2 pi a / (L sqrt 2). Its material ratio curve is a cos(pi x), which is
+// flattest at the top: the equivalent line is that of least squares from 0 to 40 %, and no peak stands over it.
+TEST(Roughness, PeaksSlopesAndMaterialRatiosOfASine) {
+  const double step = 0.0005, wavelength = 0.08, a = 0.001;
+  std::vector<double> heights(11201);
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = a * std::sin(kTurn * static_cast<double>(i) * step / wavelength);
+  const Roughness r = measured(profileOf(heights, step), 0.8);
+  const double near = 2e-3 * a;
+  EXPECT_NEAR(r.rp, a, near);
+  EXPECT_NEAR(r.rv, a, near);
+  EXPECT_DOUBLE_EQ(r.rz, r.rp + r.rv);
+  EXPECT_NEAR(r.rt, 2.0 * a, near);
+  EXPECT_NEAR(r.rc, 2.0 * a, near);
+  EXPECT_NEAR(r.rdq, kTurn * a / wavelength / std::numbers::sqrt2, 1e-3);
+  using std::numbers::pi;
+  const double w = 0.4, mean = std::sin(pi * w) / (pi * w);
+  const double slope =
+      (0.5 * w * std::sin(pi * w) / pi - (1.0 - std::cos(pi * w)) / (pi * pi)) / (w * w * w / 12.0);
+  EXPECT_NEAR(r.rk, -slope * a, 3.0 * near);
+  EXPECT_EQ(r.rmrk1, 0.0);
+  EXPECT_EQ(r.rpk, 0.0);
+  const double level = mean + slope * (1.0 - 0.5 * w), from = std::acos(level) / pi;
+  EXPECT_NEAR(r.rmrk2, from, 1e-3);
+  // A triangle as wide as what lies below the line and as large.
+  EXPECT_NEAR(r.rvk, 2.0 * a * (level + std::sin(pi * from) / (pi * (1.0 - from))), 5.0 * near);
+}
+
+// Section lengths of unlike heights: Rz, Rp and Rv are means of theirs, Rt is of all.
+TEST(Roughness, MeansAreOfSectionLengthsAndTheTotalIsOfAll) {
+  std::vector<double> heights(501);
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = 0.01 * std::sin(kTurn * static_cast<double>(i) / 10.0);
+  const Section section = [&] {
+    heights[120] = 3.0;
+    heights[330] = -2.0;
+    return profileOf(heights, 1.0);
+  }();
+  const auto profile = roughnessProfile(section, {0.0, 500.0}, {100.0});
+  ASSERT_TRUE(profile);
+  ASSERT_EQ(profile->lengths, 4);
+  double up = 0.0, down = 0.0, most = -1e9, least = 1e9;
+  for (int k = 0; k < 4; ++k) {
+    double high = -1e9, low = 1e9;
+    for (std::size_t i = profile->lengths_begin[static_cast<std::size_t>(k)];
+         i <= profile->lengths_begin[static_cast<std::size_t>(k) + 1]; ++i) {
+      high = std::max(high, profile->heights[i]);
+      low = std::min(low, profile->heights[i]);
+    }
+    up += high / 4.0;
+    down -= low / 4.0;
+    most = std::max(most, high);
+    least = std::min(least, low);
+  }
+  const Roughness r = measured(section, 100.0);
+  EXPECT_DOUBLE_EQ(r.rp, up);
+  EXPECT_DOUBLE_EQ(r.rv, down);
+  EXPECT_DOUBLE_EQ(r.rt, most - least);
+  EXPECT_GT(r.rt, 1.5 * r.rz);
+}
+
+// What is flat, and what is too short for a slope, has a figure or none, never infinity.
+TEST(Roughness, FlatProfilesHaveNoRatios) {
+  const Roughness flat = measured(profileOf(std::vector<double>(101, 0.0), 0.01), 0.1);
+  EXPECT_EQ(flat.rt, 0.0);
+  EXPECT_EQ(flat.rdq, 0.0);
+  EXPECT_TRUE(std::isnan(flat.rc));
+  std::vector<double> few(10, 0.0);
+  few[4] = 1.0;
+  const Roughness shorter = measured(profileOf(few, 1.0), 4.0);
+  EXPECT_TRUE(std::isnan(shorter.rdq)) << "five places";
+  for (const RoughnessInfo& info : roughnessInfos())
+    EXPECT_FALSE(std::isinf(shorter.*info.figure)) << info.key;
 }
 
 TEST(Roughness, RefusesWhatACutOffDoesNotFit) {

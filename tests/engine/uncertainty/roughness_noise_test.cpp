@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -75,15 +76,7 @@ struct Shares {
 TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
   const char* const typed = std::getenv("FETTLE_NOISE_SEEDS");
   const int seeds = typed == nullptr ? 40 : std::atoi(typed);
-  struct Figure {
-    const char* name;
-    double Roughness::*value;
-    NoiseEffect RoughnessNoise::*effect;
-  };
-  constexpr Figure kFigures[] = {
-      {"Ra", &Roughness::ra, &RoughnessNoise::ra},    {"Rq", &Roughness::rq, &RoughnessNoise::rq},
-      {"Rz", &Roughness::rz, &RoughnessNoise::rz},    {"Rsk", &Roughness::rsk, &RoughnessNoise::rsk},
-      {"Rku", &Roughness::rku, &RoughnessNoise::rku}, {"RSm", &Roughness::rsm, &RoughnessNoise::rsm}};
+  const std::span<const RoughnessInfo> infos = roughnessInfos();
   for (const auto& [sigma, to_y, width] :
        {std::tuple(0.02, 12.0, 0.0), {0.1, 12.0, 0.0}, {0.1, 30.0, 0.0}, {0.1, 30.0, 3.0}}) {
     const Section clean = sectionOf(groundField(0.0, 1), to_y, width);
@@ -91,7 +84,7 @@ TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
     constexpr double kCutoff = 40.0;
     const auto truth = roughnessOf(clean, all, {kCutoff});
     ASSERT_TRUE(truth);
-    std::vector<Shares> shares(std::size(kFigures));
+    std::vector<Shares> shares(infos.size());
     for (int s = 0; s < seeds; ++s) {
       const Section noisy = sectionOf(groundField(sigma, 100U + static_cast<unsigned>(s)), to_y, width);
       const auto found = roughnessOf(noisy, all, {kCutoff});
@@ -99,19 +92,19 @@ TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
       const auto noise = roughnessNoise(noisy, all, {kCutoff}, *found, sigma,
                                         {.pairs = 16, .seed = 5000 + 100 * static_cast<std::uint64_t>(s)});
       ASSERT_TRUE(noise);
-      for (std::size_t f = 0; f < std::size(kFigures); ++f) {
-        const NoiseEffect& effect = *noise.*kFigures[f].effect;
+      for (std::size_t f = 0; f < infos.size(); ++f) {
+        const NoiseEffect& effect = (*noise)[f];
         if (std::isnan(effect.error)) continue;
         ++shares[f].n;
         for (int k = 0; k < 3; ++k)
           shares[f].within[k] +=
-              std::abs(effect.without - *truth.*kFigures[f].value) <= (k + 1) * effect.error ? 1 : 0;
+              std::abs(effect.without - (*truth).*infos[f].figure) <= (k + 1) * effect.error ? 1 : 0;
       }
     }
-    for (std::size_t f = 0; f < std::size(kFigures); ++f) {
+    for (std::size_t f = 0; f < infos.size(); ++f) {
       const Shares& of = shares[f];
       const std::string name =
-          fmt::format("{}, noise {}, to {}, width {}: {} {} {} of {}", kFigures[f].name, sigma, to_y, width,
+          fmt::format("{}, noise {}, to {}, width {}: {} {} {} of {}", infos[f].symbol, sigma, to_y, width,
                       of.within[0], of.within[1], of.within[2], of.n);
       fmt::print("{}\n", name);
       EXPECT_EQ(of.n, seeds) << name;
@@ -131,7 +124,7 @@ TEST(RoughnessNoise, WithoutNoiseHasNoEffect) {
   for (const double none : {0.0, std::nan("")}) {
     const auto noise = roughnessNoise(section, all, {40.0}, *found, none, {});
     ASSERT_TRUE(noise);
-    EXPECT_TRUE(std::isnan(noise->ra.error));
+    for (const NoiseEffect& effect : *noise) EXPECT_TRUE(std::isnan(effect.error));
   }
 }
 

@@ -143,6 +143,9 @@ TEST(Mesh, AWholeMeshBringsEverySampleBack) {
   EXPECT_EQ(from_stl.format, "STL");
   EXPECT_EQ(contentHash(from_stl.field), contentHash(field));
   EXPECT_EQ(from_stl.field.grid().spacing_x, 0.25);
+  EXPECT_EQ(from_stl.field.grid().origin_x, field.grid().origin_x);
+  EXPECT_EQ(from_stl.field.grid().origin_y, field.grid().origin_y);
+  EXPECT_EQ(from_stl.field.grid().lateral_unit, field.grid().lateral_unit);
   EXPECT_EQ(readBytes(folder.file("a.stl")).size(), 84U + 50U * 2 * 89 * 69);
 }
 

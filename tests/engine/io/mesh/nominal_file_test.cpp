@@ -48,9 +48,15 @@ std::string textStl(const std::string& first = "0", const std::string& end = "en
       first, end);
 }
 
-Result<NominalMesh> nominalOf(const std::string& path, const LengthUnit& unit = {}) {
+Result<NominalFile> fileOf(const std::string& path, const std::optional<LengthUnit>& unit = {}) {
   JobControl job;
   return readNominal(path, unit, job);
+}
+
+Result<NominalMesh> nominalOf(const std::string& path, const std::optional<LengthUnit>& unit = {}) {
+  Result<NominalFile> read = fileOf(path, unit);
+  if (!read) return tl::unexpected(read.error());
+  return std::move(read->mesh);
 }
 
 TEST(NominalFile, TrianglesAreCountedBeforeTheyAreRead) {
@@ -76,7 +82,7 @@ TEST(NominalFile, ReadsBytesAndTextAlike) {
     EXPECT_EQ(mesh->corners().size(), 4U);
     EXPECT_EQ(mesh->openSides(), 4U);
     EXPECT_EQ(mesh->box().high, glm::dvec3(10, 10, 2));
-    const auto inches = nominalOf(folder.file(name), {"in", 25.4});
+    const auto inches = nominalOf(folder.file(name), LengthUnit{"in", 25.4});
     ASSERT_TRUE(inches);
     EXPECT_EQ(inches->box().high, glm::dvec3(254, 254, 50.8));
   }
@@ -84,6 +90,58 @@ TEST(NominalFile, ReadsBytesAndTextAlike) {
   const auto far = nominalOf(folder.file("far.stl"));
   ASSERT_TRUE(far);
   EXPECT_EQ(far->corner().x, -4999990.0);
+}
+
+TEST(NominalFile, AHeaderSaysUnitAndZeroToTheLastDigit) {
+  Grid grid;
+  grid.lateral_unit = grid.height_unit = {"ftUS", 304.8006096012192};
+  for (const double x : {0.0, 0.1, -5000000.125, -1.2345678901234567e-105, 1e15})
+    for (const double y : {0.0, 1.0 / 3.0, -1.2345678901234567e-105}) {
+      grid.origin_x = x;
+      grid.origin_y = y;
+      const std::string text = stlHeader(grid);
+      ASSERT_EQ(text.size(), 80U);
+      EXPECT_NE(text.substr(0, 5), "solid");
+      const StlHeader read = stlHeaderOf(text);
+      EXPECT_EQ(read.unit, grid.lateral_unit) << text;
+      EXPECT_EQ(read.zero, glm::dvec2(x, y)) << text;
+    }
+  grid.lateral_unit.name = std::string(90, 'u');
+  grid.origin_x = 7.0;
+  EXPECT_EQ(stlHeaderOf(stlHeader(grid)).zero, glm::dvec2(7.0, -1.2345678901234567e-105));
+  EXPECT_FALSE(stlHeaderOf(stlHeader(grid)).unit);
+}
+
+TEST(NominalFile, OtherHeadersMoveNothing) {
+  for (const char* text : {"", "exported", "field, units mm, zero at ", "field, zero at 1",
+                           "field, zero at 1,2", "field, zero at 1 x", "field, zero at nan 1",
+                           "field, zero at 1 inf", "field, zero at 1e16 0", "field, zero at 1 -1e300"}) {
+    std::string head = text;
+    head.resize(80, ' ');
+    EXPECT_EQ(stlHeaderOf(head).zero, glm::dvec2(0.0)) << text;
+    EXPECT_EQ(stlHeaderOf(text).zero, glm::dvec2(0.0)) << text;
+  }
+  std::string padded = "units in, zero at 1 2";
+  padded.resize(80, '\0');
+  EXPECT_FALSE(stlHeaderOf(padded).unit);
+  EXPECT_EQ(stlHeaderOf(padded).zero, glm::dvec2(0.0));
+}
+
+TEST(NominalFile, TheUnitIsTheTypedOneElseTheStatedElseMillimetres) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.stl"), binaryStl(2, 0.0F, "field, units um, zero at -4 1000.5"));
+  writeBytes(folder.file("b.stl"), binaryStl(2));
+  const auto stated = fileOf(folder.file("a.stl")),
+             typed = fileOf(folder.file("a.stl"), LengthUnit{"in", 25.4}),
+             none = fileOf(folder.file("b.stl"));
+  ASSERT_TRUE(stated && typed && none);
+  EXPECT_EQ(stated->unit.name, "um");
+  EXPECT_EQ(stated->mesh.corner(), glm::dvec3(-4e-3, 1000.5e-3, 0.0));
+  EXPECT_DOUBLE_EQ(stated->mesh.box().high.x, 10e-3);
+  EXPECT_EQ(typed->unit.name, "in");
+  EXPECT_EQ(typed->mesh.corner(), 25.4 * glm::dvec3(-4, 1000.5, 0.0));
+  EXPECT_EQ(none->unit.name, "mm");
+  EXPECT_EQ(none->mesh.corner(), glm::dvec3(0.0));
 }
 
 TEST(NominalFile, RefusesDamagedFilesByWhatIsWrong) {
