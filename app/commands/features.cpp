@@ -288,19 +288,21 @@ void printFeatures(const Report& report) {
   constexpr std::size_t kShown = 12;
   const ReadAs height = readLengthAs(report["sz"].get<double>(), report["unit_mm"], report["unit"]);
   const std::string length = report["lateral_unit"];
+  const std::string volume =
+      height.name == length ? length + "3" : fmt::format("{}2 {}", length, height.name);
   const Report& all = report["features"];
   fmt::print("{} {} at least {:.4g} {} high\n", all.size(), report["kind"].get<std::string>(),
              report["least_height"].get<double>() / height.size, height.name);
   printLayer(report);
   if (const std::string scale = scaleText(report, "\n"); !scale.empty()) fmt::print("{}\n", scale);
   if (!report["mean_area"].is_null())
-    fmt::print("closed ones in the mean: height {:.4g} {}, area {:.4g} {}2, volume {:.4g} {}2 {}\n",
+    fmt::print("closed ones in the mean: height {:.4g} {}, area {:.4g} {}2, volume {:.4g} {}\n",
                report["mean_height"].get<double>() / height.size, height.name,
                report["mean_area"].get<double>(), length, report["mean_volume"].get<double>() / height.size,
-               length, height.name);
+               volume);
   if (all.empty()) return;
   fmt::print("{:>6} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "number", "x " + length, "y " + length,
-             "z " + height.name, "height", "area " + length + "2", "volume");
+             "z " + height.name, "height " + height.name, "area " + length + "2", "volume " + volume);
   for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i) {
     const Report& f = all[i];
     fmt::print("{:>6} {:>12.6g} {:>12.6g} {:>12.5g} {:>12.5g} {:>12.5g} {:>12.5g}{}\n",

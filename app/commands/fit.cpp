@@ -56,6 +56,9 @@ engine::Status checkFit(const FitArguments& options) {
   if (!options.between.empty() && options.between[0] == options.between[1])
     return engine::inputError("nothing lies between a fit and itself", "--between",
                               "name two regions, as 1,2");
+  if (const std::string extension = engine::extensionOf(options.step);
+      !options.step.empty() && extension != ".step" && extension != ".stp")
+    return engine::inputError("a STEP file is written to it", options.step, "name it .step or .stp");
   return {};
 }
 
@@ -102,6 +105,7 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
     return regions;
   }
   std::vector<engine::FitRegion> chosen;
+  std::vector<int> numbers;
   for (const std::string& text : options.at) {
     const std::vector<double> xy = numbersOf(text, 2);
     const int found =
@@ -109,6 +113,10 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
     if (found < 0)
       return engine::inputError(fmt::format("no region holds the place {}", text), "--at",
                                 "is it a hole, next to a line, or outside?");
+    if (const auto before = std::ranges::find(numbers, found); before != numbers.end())
+      warn(fmt::format("--at {} and --at {} lie in the same region, which is fitted twice",
+                       options.at[static_cast<std::size_t>(before - numbers.begin())], text));
+    numbers.push_back(found);
     chosen.push_back((*regions)[static_cast<std::size_t>(found)]);
   }
   return chosen;

@@ -4,12 +4,15 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/commands/estimate_option.h"
 #include "app/commands/known_steps.h"
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
+#include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
@@ -149,6 +152,9 @@ engine::Result<Report> changeLayer(const LayerChange& change, const BatchTask& t
   Report report{{"layer", layer}};
   engine::Version result = *samples;
   if (layer == kLayerPut) {
+    if (imported->field.seenOf() != nullptr)
+      warn(fmt::format("{}: the form that lay over it, {}, is replaced", shownInput(task.in),
+                       formWordOf(*imported->field.seenOf()->form())));
     const auto fit = fitOver(*samples, original, form, *imported, task.in, job);
     if (!fit) return tl::unexpected(fit.error());
     const auto over = std::make_shared<const engine::NominalForm>(fit->form);

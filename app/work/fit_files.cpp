@@ -115,8 +115,9 @@ Report relationReport(int first, int second, const engine::ShapeRelation& relati
   addFigure(report, "angle", "deg", relation.angle_deg.value, relation.angle_deg.error);
   addFigure(report, "distance", "mm", relation.distance_mm.value, relation.distance_mm.error);
   addFigure(report, "between_axes", "mm", relation.between_axes_mm.value, relation.between_axes_mm.error);
-  for (const char* key : {"angle_deg", "between_axes_mm"})
-    if (std::isnan(report[key].get<double>())) report[key] = Report();
+  for (const auto& [key, error] :
+       {std::pair("angle_deg", "angle_error_deg"), {"between_axes_mm", "between_axes_error_mm"}})
+    if (std::isnan(report[key].get<double>())) report[key] = report[error] = Report();
   return report;
 }
 

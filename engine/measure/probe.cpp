@@ -48,6 +48,10 @@ Result<ProbeFigures> probeAt(const Version& field, glm::dvec2 at, double radius_
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(1e-8);
   if (n >= kQuadratic) qr.compute(rows);
+  const glm::dvec2 size((grid.width - 1) * spacing.x, (grid.height - 1) * spacing.y);
+  if (n == 0 && (at.x < 0.0 || at.y < 0.0 || at.x > size.x || at.y > size.y))
+    return inputError(fmt::format("{:.6g},{:.6g} lies outside of the scan", at.x, at.y), "probe",
+                      fmt::format("the scan is from 0,0 to {:.6g},{:.6g} mm", size.x, size.y));
   if (n < kQuadratic || qr.rank() < kQuadratic)
     return inputError(fmt::format("{} samples within {:.6g} mm of {:.6g},{:.6g} show no curved surface", n,
                                   radius_mm, at.x, at.y),

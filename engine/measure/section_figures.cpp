@@ -151,6 +151,11 @@ struct LinePart {
   double middle = 0.0;
 };
 
+// What of a stretch lies on the section: beyond its ends there is nothing to be in the middle of.
+Stretch onSection(const Section& section, const Stretch& stretch) {
+  return {std::max(stretch.from_mm, 0.0), std::min(stretch.to_mm, section.lengthMm())};
+}
+
 LineFigures figuresOf(const Solved& fit, Eigen::Index first, const Stretch& stretch, const LinePart& part) {
   const double slope = fit.x[first + 1], away = middleOf(stretch) - part.middle;
   LineFigures line;
@@ -284,7 +289,7 @@ Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch, 
   std::vector<LinePart> parts;
   const auto fit = linesThrough(section, {stretch}, parts, noise_mm);
   if (!fit) return tl::unexpected(fit.error());
-  return figuresOf(*fit, 0, stretch, parts.front());
+  return figuresOf(*fit, 0, onSection(section, stretch), parts.front());
 }
 
 Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, const Stretch& second,
@@ -293,8 +298,8 @@ Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, 
   const auto fit = linesThrough(section, {first, second}, parts, noise_mm);
   if (!fit) return tl::unexpected(fit.error());
   AngleFigures figures;
-  figures.first = figuresOf(*fit, 0, first, parts[0]);
-  figures.second = figuresOf(*fit, 2, second, parts[1]);
+  figures.first = figuresOf(*fit, 0, onSection(section, first), parts[0]);
+  figures.second = figuresOf(*fit, 2, onSection(section, second), parts[1]);
   const double a = fit->x[1], b = fit->x[3];
   const double by_a = -1.0 / (1.0 + a * a), by_b = 1.0 / (1.0 + b * b);
   const double variance = by_a * by_a * fit->covariance(1, 1) + 2.0 * by_a * by_b * fit->covariance(1, 3) +

@@ -28,7 +28,7 @@ struct Estimate {
 struct LineFigures {
   Estimate slope;            ///< height over length [mm/mm]
   Estimate inclination_deg;  ///< atan of it
-  Estimate height_mm;        ///< in the middle of the stretch
+  Estimate height_mm;        ///< in the middle of what of the stretch lies on the section
   double rms_mm = 0.0;       ///< of the heights about the line
   int places = 0;
 };

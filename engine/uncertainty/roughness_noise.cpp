@@ -1,5 +1,6 @@
 #include "engine/uncertainty/roughness_noise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -27,6 +28,12 @@ NoiseGrowth growthOf(const RoughnessInfo& info) {
   if (info.unit == RoughnessInfo::Unit::kRatio) return NoiseGrowth::kShare;
   const bool square = info.unit == RoughnessInfo::Unit::kHeight || info.figure == &Roughness::rdq;
   return square ? NoiseGrowth::kSquare : NoiseGrowth::kPlain;
+}
+
+const NoiseEffect& effectOf(double Roughness::*figure, const RoughnessNoise& noise) {
+  const std::span<const RoughnessInfo> infos = roughnessInfos();
+  return noise[static_cast<std::size_t>(std::ranges::find(infos, figure, &RoughnessInfo::figure) -
+                                        infos.begin())];
 }
 
 // The lower factor of the covariance: row i holds those of places i - band + 1 .. i. A place whose variance is in those
@@ -102,7 +109,16 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
     if (growth.back() == NoiseGrowth::kRank || growth.back() == NoiseGrowth::kShare)
       result[f].error *= kFewRanks;
   }
-  addRankDoubt(result, growth, found.rq > 0.0 ? noise_mm / found.rq : 0.0);
+  // The noise in the profile over its heights: what the trials took off Rq by square, which lanes and filters have made smaller.
+  const double less = effectOf(&Roughness::rq, result).without / found.rq;
+  addRankDoubt(result, growth, std::isnan(less) ? 0.0 : std::sqrt(std::max(0.0, 1.0 - less * less)));
+  // A size with an error as large as itself, and a share with one larger than that of all shares alike, are not determined.
+  for (std::size_t f = 0; f < infos.size(); ++f) {
+    const double most = growth[f] == NoiseGrowth::kShare  ? 1.0 / std::sqrt(12.0)
+                        : growth[f] == NoiseGrowth::kRank ? found.*infos[f].figure
+                                                          : std::numeric_limits<double>::infinity();
+    if (result[f].error > most) result[f] = {kNone, kNone};
+  }
   return result;
 }
 

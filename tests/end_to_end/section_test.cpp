@@ -104,6 +104,7 @@ TEST(SectionCommand, RefusesWhatItCannotMeasure) {
   refused({"--line", "1,2:7,2", "--cursors", "1,9"}, "cursor");
   refused({"--line", "1,2:7,2", "--plot", folder.file("p.bmp")}, ".svg");
   refused({"--probe", "1"}, "--probe");
+  refused({"--probe", "50,2"}, "the scan is from 0,0 to 7.9,3.9 mm");
   // What would have no effect, and what is given twice.
   refused({"--line", "1,2:7,2", "--within", "1,4"}, "--groove");
   refused({"--line", "1,2:7,2", "--probe-radius", "1"}, "add --probe");
@@ -135,6 +136,18 @@ TEST(SectionCommand, AFigureThatIsNotDeterminedLeavesTheOthers) {
   expectRefused(
       fettle({"section", scan, "--unit", "mm", "--line", "1,2:7,2", "--arc", "0,1", "--cutoff", "5"}),
       "curvature");
+}
+
+// The middle of what lies on the section: a stretch that was typed beyond its end is not extrapolated.
+TEST(SectionCommand, ALinesMiddleIsOnTheSection) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  const auto line = [&](const char* stretch) {
+    return fettleJson({"section", scan, "--unit", "mm", "--line", "0,2:7.9,2", "--fit-line",
+                       stretch})["sections"][0]["line"];
+  };
+  EXPECT_EQ(line("5.5,7.9")["height_mm"], line("5.5,70")["height_mm"]);
 }
 
 TEST(SectionCommand, NamesPlacesThatWereFilled) {

@@ -107,7 +107,7 @@ TEST(RoughnessNoise, ErrorsCoverTheTruthOfAKnownProfile) {
           fmt::format("{}, noise {}, to {}, width {}: {} {} {} of {}", infos[f].symbol, sigma, to_y, width,
                       of.within[0], of.within[1], of.within[2], of.n);
       fmt::print("{}\n", name);
-      EXPECT_EQ(of.n, seeds) << name;
+      EXPECT_GE(of.n, 0.95 * seeds) << name;
       // Of 40 draws with a chance of 0.68, 0.95: 3.5 standard deviations below, and 1 in 1,000.
       EXPECT_GE(of.within[0], 0.42 * of.n) << name;
       EXPECT_GE(of.within[1], 0.80 * of.n) << name;
