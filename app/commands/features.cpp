@@ -1,12 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,18 +15,14 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
+#include "app/work/field_features.h"
 #include "app/work/layer_over.h"
 #include "app/work/memory_places.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
-#include "engine/field/builder.h"
 #include "engine/field/piece.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/marks/change_marks.h"
-#include "engine/measure/areal.h"
-#include "engine/measure/hills.h"
-#include "engine/measure/surface.h"
 
 namespace fettle::app {
 
@@ -48,159 +41,24 @@ struct FeatureRun {
   engine::ExportOptions writing;
 };
 
-// The segments of a surface, and where it lies in the field. Heights of dales are below it.
-struct Segments {
-  engine::Surface surface;
-  engine::HillMap map;
-  std::vector<engine::HillFigures> figures;
-  double sz = 0.0, least = 0.0;
-  bool dales = false;
-};
-
-engine::Result<Segments> segmentsOf(const FeatureRun& options, const ScaleLimited& limited,
-                                    engine::JobControl& job) {
-  engine::ArealOptions height;
-  height.region = formChoiceOf(options.form).region;
-  height.hybrid = height.functional = height.spatial = height.feature = false;
-  const auto measured = engine::measureAreal(limited.field, limited.form, height, job);
-  if (!measured) return tl::unexpected(measured.error());
-  auto surface = engine::surfaceOf(limited.field, limited.form, measured->mean, height.region, job);
-  if (!surface) return tl::unexpected(surface.error());
-  if (surface->heights.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    return engine::inputError("more than 2 147 483 647 samples", shownInput(options.scan), "crop it first");
-  Segments segments;
-  segments.dales = options.kind == "dales";
-  if (segments.dales)
-    for (float& z : surface->heights) z = -z;
-  segments.sz = measured->sz;
-  segments.least = 0.01 * options.prune * measured->sz;
-  auto map = engine::mapHills(*surface, segments.least, job);
-  if (!map) return tl::unexpected(map.error());
-  segments.figures = engine::figuresOfHills(*surface, *map);
-  segments.surface = *std::move(surface);
-  segments.map = *std::move(map);
-  return segments;
-}
-
-// The number of its segment at each sample, from 1; a hole where there is none.
-engine::Result<engine::Version> labelled(const Segments& segments, const engine::Grid& of,
+engine::Result<FieldFeatures> segmentsOf(const FeatureRun& options, const ScaleLimited& limited,
                                          engine::JobControl& job) {
-  // Labels are samples, and those are floats: above this, neighbours would share a number.
-  constexpr std::size_t kMostLabels = std::size_t{1} << std::numeric_limits<float>::digits;
-  if (segments.figures.size() > kMostLabels)
-    return engine::inputError(
-        fmt::format("{} segments, and a label has {} values", segments.figures.size(), kMostLabels),
-        "--labels", "give a larger --prune");
-  engine::Grid grid = of;
-  grid.height_per_count = 0.0;
-  auto builder = engine::FieldBuilder::create(std::move(grid), "the labels");
-  if (!builder) return tl::unexpected(builder.error());
-  const engine::Surface& surface = segments.surface;
-  std::vector<float> row(static_cast<std::size_t>(surface.width));
-  for (std::int32_t r = 0; r < surface.height; ++r) {
-    if (job.cancelled()) return engine::cancelled();
-    for (std::int32_t c = 0; c < surface.width; ++c) {
-      const std::int32_t number =
-          segments.map.of[static_cast<std::size_t>(r) * row.size() + static_cast<std::size_t>(c)];
-      row[static_cast<std::size_t>(c)] = number == engine::HillMap::kNone
-                                             ? std::numeric_limits<float>::quiet_NaN()
-                                             : static_cast<float>(number + 1);
-    }
-    builder->writeHeights(surface.first_column, surface.first_row + r, surface.width, 1, row.data(),
-                          surface.width);
-  }
-  return std::move(*builder).build();
+  return featuresOf(
+      limited.field, limited.form,
+      {.dales = options.kind == "dales", .prune = options.prune, .region = formChoiceOf(options.form).region},
+      shownInput(options.scan), job);
 }
 
-// The field with the samples marked that have a neighbour of another segment along their row or column, with a higher number: one sample wide.
-engine::Result<engine::Version> outlined(const Segments& segments, const engine::Version& field,
-                                         engine::JobControl& job) {
-  const engine::Surface& surface = segments.surface;
-  const auto number = [&](std::int32_t column, std::int32_t row) {
-    const std::int32_t c = column - surface.first_column, r = row - surface.first_row;
-    if (c < 0 || r < 0 || c >= surface.width || r >= surface.height) return engine::HillMap::kNone;
-    return segments.map.of[static_cast<std::size_t>(r) * static_cast<std::size_t>(surface.width) +
-                           static_cast<std::size_t>(c)];
-  };
-  const auto on_edge = [&](std::int32_t column, std::int32_t row) {
-    const std::int32_t own = number(column, row);
-    if (own == engine::HillMap::kNone) return false;
-    for (const auto& [c, r] :
-         {std::pair(column + 1, row), {column, row + 1}, {column - 1, row}, {column, row - 1}})
-      if (number(c, r) > own) return true;
-    return false;
-  };
-  return engine::changeMarks(
-      field, engine::allTiles(field.grid()),
-      [&](std::int32_t tc, std::int32_t tr, const engine::Tile&, engine::MarkRows& rows) {
-        for (int r = 0; r < engine::kTileSide; ++r) {
-          std::uint64_t bits = 0;
-          for (int c = 0; c < engine::kTileSide; ++c)
-            if (on_edge(tc * engine::kTileSide + c, tr * engine::kTileSide + r))
-              bits |= std::uint64_t{1} << c;
-          rows[static_cast<std::size_t>(r)] = bits;
-        }
-      },
-      job);
-}
-
-Report featureReport(const Segments& segments, const engine::Grid& grid) {
-  Report features = Report::array();
-  const double mm = grid.lateral_unit.mm, sign = segments.dales ? -1.0 : 1.0;
-  for (std::size_t i = 0; i < segments.figures.size(); ++i) {
-    const engine::HillFigures& of = segments.figures[i];
-    features.push_back({{"number", i + 1},
-                        {"x", (of.hill.column + segments.surface.first_column) * grid.spacing_x},
-                        {"y", (of.hill.row + segments.surface.first_row) * grid.spacing_y},
-                        {"z", sign * of.hill.peak},
-                        {"height", of.hill.height},
-                        {"samples", of.samples},
-                        {"area", of.area_mm2 / (mm * mm)},
-                        {"area_above", of.area_above_mm2 / (mm * mm)},
-                        {"volume", of.volume_mm3 / (mm * mm * grid.height_unit.mm)},
-                        {"open", of.open}});
-  }
-  return features;
-}
-
-// Of those that do not reach the border, as ISO 25178-2 has it of closed features; null without one.
-Report closedMean(const Report& features, const char* key) {
-  double sum = 0.0;
-  int count = 0;
-  for (const Report& feature : features)
-    if (!feature["open"].get<bool>()) {
-      sum += feature[key].get<double>();
-      ++count;
-    }
-  return count > 0 ? Report(sum / count) : Report();
-}
-
-std::string featureCsv(const Report& report) {
-  const std::string height = report["unit"], length = report["lateral_unit"];
-  std::string text = fmt::format(
-      "number,x [{1}],y [{1}],z [{0}],height [{0}],samples,area [{1}2],area above saddle [{1}2],volume above "
-      "saddle "
-      "[{1}2 {0}],open,layer\n",
-      height, length);
-  for (const Report& f : report["features"])
-    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g},{},{}\n",
-                        f["number"].get<int>(), f["x"].get<double>(), f["y"].get<double>(),
-                        f["z"].get<double>(), f["height"].get<double>(), f["samples"].get<std::int64_t>(),
-                        f["area"].get<double>(), f["area_above"].get<double>(), f["volume"].get<double>(),
-                        f["open"].get<bool>() ? "yes" : "no", layerOf(report));
-  return text;
-}
-
-engine::Status writeFeatures(const FeatureRun& options, const Segments& segments,
+engine::Status writeFeatures(const FeatureRun& options, const FieldFeatures& segments,
                              const engine::Version& field, const Report& report, engine::JobControl& job) {
   if (!options.labels.empty()) {
-    const auto labels = labelled(segments, field.grid(), job);
+    const auto labels = featureLabels(segments, field.grid(), job);
     if (!labels) return tl::unexpected(labels.error());
     if (auto status = saveField(*labels, options.labels, job, options.writing, options.to); !status)
       return status;
   }
   if (!options.edges.empty()) {
-    const auto edges = outlined(segments, field, job);
+    const auto edges = featureOutlines(segments, field, job);
     if (!edges) return tl::unexpected(edges.error());
     if (auto status = saveMarks(*edges, options.edges, job); !status) return status;
   }
@@ -228,7 +86,7 @@ engine::Result<Foreseen> foreseeFeatures(const FeatureRun& options, const engine
     if (!limited) return taken(limited.error());
     const auto segments = segmentsOf(options, *limited, own);
     if (!segments) return taken(segments.error());
-    return options.labels.empty() ? piece : labelled(*segments, piece.grid(), own);
+    return options.labels.empty() ? piece : featureLabels(*segments, piece.grid(), own);
   };
   PlannedOnPieces segmenting{.work = segmentsOfPiece, .memory_each = kSegmentingMemory};
   // The picture of --edges and the table are small beside labels.
@@ -266,18 +124,7 @@ engine::Result<Report> features(const FeatureRun& options, engine::JobControl& j
   addForm(report, options.form, limited->fit, grid);
   addLayer(report, imported->field);
   addScale(report, options.scale);
-  report["kind"] = options.kind;
-  report["unit"] = grid.height_unit.name;
-  report["unit_mm"] = grid.height_unit.mm;
-  report["lateral_unit"] = grid.lateral_unit.name;
-  report["lateral_unit_mm"] = grid.lateral_unit.mm;
-  report["sz"] = segments->sz;
-  report["least_height"] = segments->least;
-  report["count"] = segments->figures.size();
-  report["features"] = featureReport(*segments, grid);
-  for (const auto& [key, of] :
-       {std::pair("mean_height", "height"), {"mean_area", "area"}, {"mean_volume", "volume"}})
-    report[key] = closedMean(report["features"], of);
+  report.update(featureReport(*segments, grid));
   if (auto status = writeFeatures(options, *segments, imported->field, report, job); !status)
     return tl::unexpected(status.error());
   return report;

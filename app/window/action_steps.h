@@ -391,6 +391,15 @@ inline void fitShapes(Parts& p) {
   enterPanel(p, "Fit");
   p.picture.requestRedraw();
 }
+inline bool hasFeatures(const Parts& p) {
+  return hasField(p) && p.features.found() != nullptr;
+}
+inline void findFeatures(Parts& p) {
+  p.features.find(clientOf(p));
+  p.settings.side_panel = true;
+  enterPanel(p, "Features");
+  p.picture.requestRedraw();
+}
 inline bool expectsPlanePoint(const Parts& p) {
   return p.plane_points.next().has_value();
 }

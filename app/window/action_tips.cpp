@@ -59,6 +59,10 @@ constexpr Tip kTips[] = {
     {Action::kFitShapes,
      "To all samples that count, or to each region between edge lines: sizes and places with standard "
      "errors."},
+    {Action::kFindFeatures,
+     "By watersheds, as ISO 25178-2 segments a surface: place, height over the saddle, area and volume of "
+     "each."},
+    {Action::kExportFeatures, "As a table with a row for each."},
     {Action::kExportFits, "As a table, as the report of fettle fit, or as STEP for a CAD program."},
     {Action::kPlanePoints,
      "For a part whose drawing names three level places: click them one after the other. The heights around "

@@ -90,6 +90,8 @@ enum class Action : std::uint8_t {
   kLevelLines,
   kFitShapes,
   kExportFits,
+  kFindFeatures,
+  kExportFeatures,
   kSectionFrom,
   kSectionTo,
   kSectionNew,

@@ -43,6 +43,8 @@ std::optional<engine::Version> comparedWith(Parts& parts) {
   if (const auto& form = parts.form.previewed()) return form->surface;
   if (parts.fit.shown)
     if (const auto* surface = parts.fit.surface(parts.document.client()->field())) return *surface;
+  if (parts.features.shown)
+    if (const auto* saddles = parts.features.saddles(parts.document.client()->field())) return *saddles;
   if (parts.compare.shown)
     if (const auto* other = parts.compare.beside(parts.document.client()->field())) return *other;
   if (parts.settings.display.deviation) return parts.document.client()->original();

@@ -144,6 +144,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (auto kept = section.takeKept()) document.keepSections(*std::move(kept));
   section.reset();
   fit.clear();
+  features.clear();
   transform.cancel();
   compare.clear();
   marking.reset();

@@ -32,6 +32,7 @@
 #include "app/work/compare_tool.h"
 #include "app/work/device_check.h"
 #include "app/work/device_lister.h"
+#include "app/work/feature_tool.h"
 #include "app/work/filter_preview.h"
 #include "app/work/filter_suggester.h"
 #include "app/work/fit_tool.h"
@@ -99,6 +100,7 @@ struct Parts {
   MeasureTool measure;
   SectionTool section;
   FitTool fit;
+  FeatureTool features;
   TransformTool transform;
   CompareTool compare;
   ChangeFigures change;

@@ -40,6 +40,8 @@ constexpr std::array kKinds{
     KindInfo{Kind::kExportReport, "export report", "Export a report", "", true, true,
              ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kExportFits, "export fits", "Export fits", "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kExportFeatures, "export features", "Export features", "", true, true,
+             ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kUnsaved, "unsaved", "Unsaved changes", "N", true, true, ImGuiWindowFlags_AlwaysAutoResize,
              Key::kDelete},
     KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},

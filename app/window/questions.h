@@ -38,6 +38,7 @@ struct Question {
     kExportSections,
     kExportReport,
     kExportFits,
+    kExportFeatures,
     kUnsaved,
     kUnsavedScene,
     kReplace,

@@ -57,6 +57,14 @@ Work fitsWork(Parts& parts) {
   };
 }
 
+Work featuresWork(Parts& parts) {
+  if (parts.features.found() == nullptr)
+    return engine::inputError("no features were found yet", "", "open the panel Features");
+  return [report = *parts.features.found()](const std::string& path, engine::JobControl&) {
+    return writeFeatures(report, path);
+  };
+}
+
 constexpr ResultFormat kSectionFormats[] = {
     {".csv", "a table of lengths, positions and heights, mm", OutputKind::kText},
     {".svg", "heights over lengths, drawn", OutputKind::kPlot},
@@ -72,6 +80,9 @@ constexpr ResultFormat kFitFormats[] = {
     {".step", "the shapes for a CAD program, AP 214", OutputKind::kText},
     {".stp", "the same", OutputKind::kText}};
 
+constexpr ResultFormat kFeatureFormats[] = {
+    {".csv", "a row for each, in the scan's units", OutputKind::kText}};
+
 constexpr ResultFile kResultFiles[] = {
     {Kind::kExportSections, "sections", "_sections.csv",
      "the sections kept with the work, as fettle section --kept writes them", kSectionFormats,
@@ -81,6 +92,9 @@ constexpr ResultFile kResultFiles[] = {
      ResultWriting::Reads::kSession, reportWork},
     {Kind::kExportFits, "fits", "_fits.csv", "the fits of the panel Fit, as fettle fit writes them",
      kFitFormats, ResultWriting::Reads::kNothing, fitsWork},
+    {Kind::kExportFeatures, "features", "_features.csv",
+     "the table of the panel Features, as fettle features --csv writes it", kFeatureFormats,
+     ResultWriting::Reads::kNothing, featuresWork},
 };
 
 }  // namespace

@@ -60,6 +60,10 @@ std::optional<std::string> ToolResults::take(Parts& p) {
     p.picture.refreshRanges();
     changed = true;
   }
+  if (p.features.poll(client, notices)) {
+    p.picture.refreshRanges();
+    changed = true;
+  }
   if (p.compare.poll(client, notices)) {
     p.picture.refreshRanges();
     changed = true;

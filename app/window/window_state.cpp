@@ -224,6 +224,8 @@ void addFilters(const Parts& p, Report& r) {
       compared && compared->alignment ? Report(compared->alignment->angles.rotation_z) : Report();
   r["fitting"] = p.fit.busy();
   r["fits"] = p.fit.fits() != nullptr ? p.fit.fits()->report : Report();
+  r["finding_features"] = p.features.busy();
+  r["features"] = p.features.found() != nullptr ? *p.features.found() : Report();
   r["taking_section"] = p.section.busy();
   r["section_mm"] = profiles ? Report(rounded(profiles->now.lengthMm())) : Report();
   r["section_before"] = profiles && profiles->before.size() > 0;
@@ -338,6 +340,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("a count", p.removal.busy());
   waits("a comparison", p.compare.busy());
   waits("shapes", p.fit.busy());
+  waits("features", p.features.busy());
   waits("a transform", p.transform.busy());
   waits("figures", p.measure.busy());
   waits("a section", p.section.busy());

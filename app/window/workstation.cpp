@@ -41,7 +41,7 @@ bool working(const Parts& p) {
          p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.devices.busy() ||
          p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
          p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() || p.fit.busy() ||
-         p.transform.busy() ||
+         p.features.busy() || p.transform.busy() ||
          (p.document.isOpen() &&
           (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
 }
@@ -343,6 +343,7 @@ void Workstation::carryOut(Answer answer) {
     case Kind::kExportSections:
     case Kind::kExportReport:
     case Kind::kExportFits:
+    case Kind::kExportFeatures:
       confirmResult(std::move(question), p);
       break;
     case Kind::kUnsaved:

@@ -205,6 +205,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kExportSections:
     case Kind::kExportReport:
     case Kind::kExportFits:
+    case Kind::kExportFeatures:
       return fileDialog(question, parts);
     case Kind::kImport:
       return importPage(question, parts);

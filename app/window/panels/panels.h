@@ -59,6 +59,8 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
 void sectionPanel(const PanelContext& context, SectionTool& section);
 /// Shapes fitted to the field, and what lies between two of them.
 void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture);
+/// Hills or dales of the field.
+void featurePanel(const PanelContext& context, FeatureTool& features, WindowPicture& picture);
 /// Another scan brought onto the field, and the deviation from it.
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture);
 /// `pointed` is set to the step under the cursor, if any.

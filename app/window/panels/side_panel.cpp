@@ -54,6 +54,7 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(parts, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
   if (section(parts, "Section", false)) sectionPanel(context, parts.section);
   if (section(parts, "Fit", false)) fitPanel(context, parts.fit, parts.picture);
+  if (section(parts, "Features", false)) featurePanel(context, parts.features, parts.picture);
   if (section(parts, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
   if (section(parts, "Compare", false)) comparePanel(context, parts.compare, parts.picture);

@@ -100,6 +100,7 @@ const std::vector<std::string>& namesOfPanels() {
                                               "Measure",
                                               "Section",
                                               "Fit",
+                                              "Features",
                                               "Transform",
                                               "Compare",
                                               "Colours",

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
 
@@ -180,6 +182,35 @@ TEST_F(ResultFiles, a_report_is_cancelled_and_leaves_no_file) {
   EXPECT_EQ(ended["dialog"], "none");
   EXPECT_FALSE(std::filesystem::exists(folder.file("long.html")));
   (void)quit(user);
+}
+
+TEST_F(ResultFiles, hills_are_found_and_written_as_the_command_does) {
+  openPanel("Features");
+  const auto program = start({scan});
+  User user(display, *program, "features");
+  (void)opened(*program);
+  (void)user.key("7");
+  user.at({20, 890});
+  const Screen before = user.look("scan");
+  EXPECT_TRUE(program->now()["features"].is_null());
+  const State found = user.key("ctrl+shift+h");
+  ASSERT_TRUE(found["features"].is_object()) << found["notices"].dump();
+  EXPECT_EQ(found["features"]["kind"], "hills");
+  EXPECT_GT(found["features"]["count"].get<int>(), 0);
+  EXPECT_EQ(found["steps"], 0);
+  EXPECT_TRUE(user.reads(fmt::format("{} hills at least", found["features"]["count"].get<int>())));
+  user.at({20, 890});
+  const Screen coloured = user.changed("heights above saddles", before);
+  (void)write(user, "alt+w", "export features", folder.file("window.csv"));
+  command({"features", scan, "--csv", folder.file("command.csv")});
+  EXPECT_EQ(bytes(folder.file("window.csv")), bytes(folder.file("command.csv")));
+  (void)user.click("hills");
+  (void)user.click("dales");
+  EXPECT_EQ(user.click("Find")["features"]["kind"], "dales");
+  (void)user.click("colours show heights above saddles");
+  user.at({20, 890});
+  (void)user.same("colours of the scan", before);
+  EXPECT_TRUE(user.click("Remove")["features"].is_null());
 }
 
 TEST_F(ResultFiles, shapes_are_fitted_and_written_as_the_command_does) {

@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+#include "app/work/read_units.h"
+
+namespace fettle::app {
+namespace {
+
+// Lines of the outcome from when features are found, and before.
+constexpr int kFoundLines = 16, kUnfoundLines = 3;
+
+void featureFields(FeatureTool::Options& options) {
+  beginFields();
+  (void)field("what", "Hills rise to a peak, dales fall to a pit: heights and volumes of these are depths.",
+              [&] {
+                constexpr const char* kKinds[] = {"hills", "dales"};
+                int kind = options.what.dales ? 1 : 0;
+                const bool changed = ImGui::Combo("##feature kind", &kind, kKinds, std::size(kKinds));
+                options.what.dales = kind == 1;
+                return changed;
+              });
+  (void)field(
+      "at least", "Lower ones become part of their neighbour; of the whole height of the surface.", [&] {
+        constexpr float kPercentStep = 1.0F;
+        auto percent = static_cast<float>(options.what.prune);
+        const bool changed = ImGui::InputFloat("##feature prune", &percent, kPercentStep, 0.0F, "%.4g %%");
+        if (changed) options.what.prune = std::clamp(static_cast<double>(percent), 0.0, 100.0);
+        return changed;
+      });
+  (void)field("of", [&] {
+    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+    constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
+                                      engine::Region::kUnmarked};
+    int of = static_cast<int>(std::ranges::find(kOf, options.what.region) - std::begin(kOf));
+    const bool changed = ImGui::Combo("##features of", &of, kSamples, std::size(kSamples));
+    if (changed) options.what.region = kOf[of];
+    return changed;
+  });
+  (void)field("without", "The form that is taken out first, in the figures alone.", [&] {
+    constexpr const char* kForms[] = {"height", "plane", "degree 2", "degree 3", "degree 4", "degree 5"};
+    return ImGui::Combo("##feature form", &options.degree, kForms, std::size(kForms));
+  });
+  endFields();
+}
+
+struct FeatureUnits {
+  ReadAs height;
+  std::string length, volume;
+};
+FeatureUnits unitsOf(const Report& report) {
+  FeatureUnits units{readOnScreenAs(report["sz"].get<double>(), report["unit_mm"].get<double>(),
+                                    report["unit"].get<std::string>()),
+                     report["lateral_unit"].get<std::string>(),
+                     {}};
+  units.volume = units.height.name == units.length
+                     ? units.length + "\u00b3"
+                     : fmt::format("{}\u00b2 {}", units.length, units.height.name);
+  return units;
+}
+
+// Numbers as short as the panel is narrow: what is exact is in the exported table.
+std::string shortNumber(double value) {
+  return std::abs(value) >= 1e4 ? fmt::format("{:.2e}", value) : fmt::format("{:.4g}", value);
+}
+
+void featureTable(const Report& rows, const FeatureUnits& units) {
+  constexpr int kFeatureColumns = 6;
+  constexpr ImGuiTableFlags kLook = ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
+  if (!ImGui::BeginTable("features", kFeatureColumns, kLook)) return;
+  for (const char* title : {"", "x", "y", "height", "area", "volume"}) ImGui::TableSetupColumn(title);
+  ImGui::TableHeadersRow();
+  // Of hundreds of thousands those rows alone are laid out that are visible.
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(rows.size()));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const Report& row = rows[static_cast<std::size_t>(i)];
+      ImGui::TableNextRow();
+      for (const std::string& text :
+           {fmt::format("{}{}", row["number"].get<int>(), row["open"].get<bool>() ? "*" : ""),
+            shortNumber(row["x"].get<double>()), shortNumber(row["y"].get<double>()),
+            shortNumber(row["height"].get<double>() / units.height.size),
+            shortNumber(row["area"].get<double>()),
+            shortNumber(row["volume"].get<double>() / units.height.size)}) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(text.c_str());
+      }
+    }
+  ImGui::EndTable();
+}
+
+void outcome(const FeatureTool& features) {
+  const Report& report = *features.found();
+  const FeatureUnits units = unitsOf(report);
+  if (features.outdated()) writeWrapped("the field has changed since: Find");
+  writeWrapped(fmt::format("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
+                           report["kind"].get<std::string>(),
+                           report["least_height"].get<double>() / units.height.size, units.height.name));
+  if (!report["mean_area"].is_null())
+    writeWrapped(
+        fmt::format("closed ones in the mean: height {:.4g} {}, area {:.4g} {}\u00b2, volume {:.4g} {}",
+                    report["mean_height"].get<double>() / units.height.size, units.height.name,
+                    report["mean_area"].get<double>(), units.length,
+                    report["mean_volume"].get<double>() / units.height.size, units.volume));
+  featureTable(report["features"], units);
+  writeIn(render::PanelColour::kMuted,
+          fmt::format("places in {0}, areas in {0}\u00b2; * open: it reaches the border or a hole",
+                      units.length));
+}
+
+}  // namespace
+
+void featurePanel(const PanelContext& context, FeatureTool& features, WindowPicture& picture) {
+  ImGui::BeginDisabled(features.busy());
+  featureFields(features.options);
+  actionButton("Find##features", Action::kFindFeatures, context.act);
+  ImGui::BeginDisabled(features.found() == nullptr);
+  sameLineIfFits("Copy");
+  if (ImGui::Button("Copy##features")) ImGui::SetClipboardText(featureCsv(*features.found()).c_str());
+  explain("The table as text, a row for each, with units in its first row.");
+  sameLineIfFits("Export ...");
+  actionButton("Export ...##features", Action::kExportFeatures, context.act);
+  sameLineIfFits("Remove");
+  if (ImGui::Button("Remove##features")) {
+    features.clear();
+    picture.refreshRanges();
+    picture.requestRedraw();
+  }
+  explain("Forgets the features and their colours.");
+  if (ImGui::Checkbox("colours show heights above saddles", &features.shown)) {
+    picture.refreshRanges();
+    picture.requestRedraw();
+  }
+  ImGui::EndDisabled();
+  ImGui::EndDisabled();
+  beginPlace("##features", features.busy() || features.found() != nullptr ? kFoundLines : kUnfoundLines);
+  if (features.busy()) {
+    if (cancelledBar(features.progress(), "finding", "Cancel##features")) features.cancel();
+  } else if (features.found() != nullptr) {
+    outcome(features);
+  } else {
+    writeIn(render::PanelColour::kMuted,
+            "Hills or dales by watersheds, as ISO 25178-2 counts them: where each is, how high, how large.");
+  }
+  endPlace();
+}
+
+}  // namespace fettle::app
