@@ -95,6 +95,40 @@ TEST_F(WindowTest, parameters_are_measured_of_what_is_chosen_before_and_after) {
   expectSilence(*program);
 }
 
+// In a window as high as the panel with all of its curves.
+class MeasureCurves : public WindowTest {
+ protected:
+  MeasureCurves() : WindowTest(1100, 1500) {}
+};
+
+TEST_F(MeasureCurves, each_curve_of_the_scan_and_of_the_field_is_drawn) {
+  openPanel(folder, "Measure");
+  const auto program = start({scan});
+  User user(display, *program, "curves");
+  (void)opened(*program);
+  (void)user.key("7");
+  (void)user.press("s");
+  (void)program->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
+  (void)user.stroke({240, 632}, {340, 632}, 6);
+  (void)user.key("Escape");
+  const State both = user.click("Measure now");
+  ASSERT_EQ(both["curves"], 2) << both["notices"].dump();
+  user.at({20, 1490});
+  EXPECT_TRUE(user.reads("material ratio [%] 0 to 100"));
+  (void)user.look("material ratio");
+  const char* shown = "material ratio (Abbott)";
+  for (const auto& [curve, axis] :
+       {std::pair("autocorrelation", "autocorrelation"), {"power spectrum", "frequency [1/mm]"}}) {
+    (void)user.click(shown);
+    (void)user.click(curve);
+    user.at({20, 1490});
+    (void)user.look(curve);
+    EXPECT_TRUE(user.reads(axis)) << curve;
+    shown = curve;
+  }
+  (void)quitWithoutSaving(user);
+}
+
 // Seventeen measurements of 1.4 million samples take seconds; a key ends them.
 TEST_F(WindowTest, measuring_is_cancelled_and_the_hand_goes_on_meanwhile) {
   openPanel(folder, "Measure");
