@@ -25,6 +25,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/transforming.h"
 #include "app/commands/typed_values.h"
+#include "app/commands/weightless.h"
 #include "app/terminal.h"
 #include "app/work/line_edits.h"
 #include "app/work/memory_places.h"
@@ -105,6 +106,8 @@ engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& j
               {"changed", filtered->report.changed},
               {"rms_change", filtered->report.rms_change}};
   if (engine::hasRange(spec.kind)) done["range_sigma"] = ready->range_sigma;
+  addWeightless(done, engine::filterOf(spec.kind), filtered->report,
+                fmt::format("{}: step {}", shownInput(at.task.in), at.step()));
   addKept(done, kept->get(), spec.passes);
   at.steps.push_back(std::move(done));
   return {};

@@ -27,6 +27,7 @@
 #include "app/commands/shards/list_shard.h"
 #include "app/commands/shards/plan.h"
 #include "app/commands/typed_values.h"
+#include "app/commands/weightless.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
@@ -206,10 +207,10 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"unit", field.grid().height_unit.name},
                  {"changed", filtered->report.changed},
                  {"max_change", filtered->report.max_change},
-                 {"rms_change", filtered->report.rms_change},
-                 {"seconds", seconds},
-                 {"samples_per_second", samples / seconds},
-                 {"hash", hashOf(filtered->field)}});
+                 {"rms_change", filtered->report.rms_change}});
+  addWeightless(report, filter, filtered->report, shownInput(task.in));
+  report.update(
+      {{"seconds", seconds}, {"samples_per_second", samples / seconds}, {"hash", hashOf(filtered->field)}});
   if (!options.residual.empty()) report["residual"] = options.residual;
   addKept(report, kept->get(), spec.passes);
   if (estimate) {

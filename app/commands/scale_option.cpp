@@ -1,5 +1,6 @@
 #include "app/commands/scale_option.h"
 
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/typed_values.h"
+#include "app/terminal.h"
 #include "engine/filter/catalogue.h"
 #include "engine/marks/chosen_marks.h"
 #include "engine/measure/form.h"
@@ -32,7 +34,9 @@ engine::Result<engine::Version> filteredBy(const engine::Version& field, const s
   engine::FilterSpec spec;
   spec.kind = engine::filterNamed(kind)->kind;
   spec.nesting_mm = length;
-  auto filtered = engine::scaleFiltered(field, spec, waves, job);
+  engine::FilterReport report;
+  auto filtered = engine::scaleFiltered(field, spec, waves, job, &report);
+  if (const std::string warning = engine::warningOf(report); !warning.empty()) warn(option + ": " + warning);
   if (filtered || filtered.error().kind != engine::ErrorKind::kInput) return filtered;
   return engine::inputError(filtered.error().what, option, filtered.error().remedy);
 }

@@ -9,6 +9,7 @@
 #include "engine/filter/median.h"
 #include "engine/filter/opening.h"
 #include "engine/filter/planes.h"
+#include "engine/filter/robust_gaussian.h"
 #include "engine/filter/spline.h"
 #include "engine/filter/tgv_device.h"
 #include "engine/filter/tgv_schedule.h"
@@ -147,10 +148,11 @@ constexpr std::array kFilters{
     Filter{.kind = FilterKind::kRobustGaussian,
            .word = "robust-gaussian",
            .title = "Robust Gaussian",
-           .says = "the same, not drawn aside by grooves and peaks (ISO 16610-71)",
+           .says = "follows bends up to its ends, not drawn aside by grooves and peaks (ISO 16610-71)",
            .window = {},
            .nesting = kNesting,
            .nesting_word = "cutoff",
+           .robust = true,
            .pass = robustGaussianPass,
            .reach = anywhere,
            .sampled = false},
@@ -197,6 +199,7 @@ constexpr std::array kFilters{
            .window = {},
            .nesting = kNesting,
            .nesting_word = "cutoff",
+           .robust = true,
            .pass = robustSplinePass,
            .reach = anywhere,
            .sampled = false},

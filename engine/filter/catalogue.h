@@ -67,6 +67,7 @@ struct Filter {
   std::string_view nesting_word{};
   double least_nesting = FilterSpec::kLeastNesting;  ///< [the larger spacing of a field]
   bool has_element = false;                          ///< FilterSpec::element
+  bool robust = false;  ///< samples may lose their weight (FilterReport::weightless)
   /// Range sigma in standard deviations of the noise when none is given: with it the least error was left
   /// over the whole of simulated bracket, wedges, steps and die (384 x 384, noise 1 and 3), 0.41 of the scan's
   /// own for both that have one. Half as much leaves a tenth more, twice as much takes a tenth more off the

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <new>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,7 @@ FilterReport total(const std::vector<TileReport>& tiles, std::int64_t samples) n
     report.max_change = std::max(report.max_change, tile.max_change);
     squares += tile.squares;
   }
+  report.samples = samples;
   if (samples > 0) report.rms_change = std::sqrt(squares / static_cast<double>(samples));
   return report;
 }
@@ -88,6 +90,16 @@ Result<Filtered> compared(const Version& input, Version result) {
 }
 
 }  // namespace
+
+std::string warningOf(const FilterReport& report) {
+  const double share =
+      static_cast<double>(report.weightless) / static_cast<double>(std::max<std::int64_t>(report.samples, 1));
+  if (!(share > kManyWeightless)) return {};
+  return fmt::format(
+      "{:.0f} % of the samples have no weight, so that the surface may not follow the others: take the form "
+      "out first, or compare with another cut-off and with the filter that is not robust",
+      100.0 * share);
+}
 
 Status validate(const FilterSpec& spec) {
   const Filter& filter = filterOf(spec.kind);
@@ -189,8 +201,14 @@ Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, Filte
         last = std::move(*next);
         state.field = last.field;
       }
-      if (spec.passes > 1) return compared(input, std::move(state.field));
-      return Filtered{std::move(state.field), total(last.reports, samplesThatAreNotHoles(input))};
+      Filtered filtered = Filtered{state.field, total(last.reports, samplesThatAreNotHoles(input))};
+      if (spec.passes > 1) {
+        Result<Filtered> whole = compared(input, std::move(state.field));
+        if (!whole) return whole;
+        filtered = std::move(*whole);
+      }
+      filtered.report.weightless = last.weightless;
+      return filtered;
     });
   } catch (const std::bad_alloc&) {
     return failure("memory for filtering could not be had", "filter",

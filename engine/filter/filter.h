@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -45,10 +46,14 @@ namespace fettle::engine {
 ///              renormalised to the samples there are; x and y in millimetres, L = nesting_mm: the linear areal Gaussian
 ///              of ISO 16610-61:2015, of which a wave of length L keeps half in any direction. Ends and holes: a
 ///              moment criterion of order 0 (ISO 16610-28), so that a tilted surface is bent within half of L of them.
-///   kRobustGaussian  the same with every sample's weight times Tukey's biweight (1 - (r / c)^2)^2 of its distance r from
-///              the surface of the round before, 0 from c = 4.4478 medians of |r| on; until c changes by less than
-///              1e-4 of itself, 50 rounds at most: ISO 16610-71:2014 with a regression of order 0. Grooves and peaks
-///              of less than half of the samples do not draw it to them. The median is that of the whole field.
+///   kRobustGaussian  the Gaussian regression filter of second order, ISO 16610-71:2014: at each sample the height of the polynomial
+///              of second degree that fits the samples best, their squared distances weighted with exp(-pi (x^2 + y^2) / (alpha L)^2),
+///              alpha = 0.7309, times Tukey's biweight (1 - (r / c)^2)^2 of the distance r from the surface of the round
+///              before, 0 from c = 4.4478 medians of |r| on; until c changes by less than 1e-4 of itself, 50 rounds at
+///              most. A wave of length L keeps half; polynomials of second degree come back, ends and holes or not. Of r is
+///              taken twice what the filter without biweights takes from that surface itself at the place, where both have one sign:
+///              ends and crests are no outliers (robust_weights.h). Grooves and peaks of less than half of the samples do not draw
+///              it to them. The median is that of the whole field, of all |r|.
 ///   kOpening   how high a body rises that is rolled along the surface from below, Element: the erosion, the least height of
 ///              the surface over the body's around each sample, and then the dilation of that. Its peaks and ridges
 ///              that are narrower than the body are gone, and no sample rises. Radius R = nesting_mm, in millimetres along both
@@ -60,7 +65,7 @@ namespace fettle::engine {
 ///              filter of ISO 16610-22 along rows and then along columns. A wave of length l along an axis keeps 1 / (1 +
 ///              (sin(pi spacing / l) / sin(pi spacing / L))^4) of its amplitude, half at L; one askew the product
 ///              of those of both axes, 0.64 at L and 45 degrees. No end effects: planes come back.
-///   kRobustSpline  the same with Tukey's weights, as of kRobustGaussian, on the squares.
+///   kRobustSpline  the same with weights on the squares: those that kRobustGaussian of the same cut-off has in its last round.
 ///   kOutliers  itself, unless it stands apart: all but at most (n - 1) / 2 of the window's samples, itself among these, lie more
 ///              than R = range_sigma below it, or all but so many above it; those are more than half of the window's samples,
 ///              two of them lie opposite each other across it, and the nearest is farther by R than the nearest n differ
@@ -100,7 +105,7 @@ namespace fettle::engine {
 ///              heights, 1e-9 at most, and with holes 1e-7 of their standard deviation about that plane. Memory: 12 bytes per sample, 44 with
 ///              holes.
 ///   kOutliers  exact, for an even number rounded once; differences are compared with R in float.
-///   kRobustSpline  rounds that begin from the one before: within 1e-5 of the limit c, as kRobustGaussian. 48 bytes per sample.
+///   kRobustSpline  within 1e-5 of the limit c, as kRobustGaussian. 48 bytes per sample.
 /// Every result of kBox, kMedian and kOutliers lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
@@ -170,7 +175,15 @@ struct FilterReport {
   std::int64_t changed = 0;  ///< samples whose value differs
   double max_change = 0.0;   ///< largest |after - before|
   double rms_change = 0.0;   ///< root mean square of after - before; 0 for a field of holes
+  std::int64_t samples = 0;  ///< that are not holes
+  /// Of kRobustGaussian and kRobustSpline: samples that had no weight in the last round of the last pass.
+  std::int64_t weightless = 0;
 };
+
+/// A robust filter whose samples without weight are more than this share of all may not follow the surface.
+inline constexpr double kManyWeightless = 0.2;
+/// What to say of it and to do, without a full stop; empty where they are fewer.
+[[nodiscard]] std::string warningOf(const FilterReport& report);
 
 struct Filtered {
   Version field;  ///< sign, grid and memory of the input; shares each tile with it in which no bit changed

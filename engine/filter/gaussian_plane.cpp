@@ -92,6 +92,7 @@ GaussianAxis gaussianAxis(double cut_off, std::int32_t samples) {
   axis.a.resize((axis.a.size() + 7) / 8 * 8, 0.0);
   // Sample n * step + p lies within the reach of the nodes n - near / step .. n + near / step + 1.
   const std::int32_t before = axis.near / axis.step;
+  axis.up_before = before;
   axis.nodes_up = 2 * before + 2;
   const std::int32_t lane = (axis.step + 7) / 8 * 8;
   axis.up.assign(static_cast<std::size_t>(axis.nodes_up * lane), 0.0);
@@ -103,9 +104,8 @@ GaussianAxis gaussianAxis(double cut_off, std::int32_t samples) {
 }
 
 GaussianPlane::Nodes GaussianPlane::wanted(const GaussianAxis& axis, std::int32_t begin, std::int32_t end) {
-  const std::int32_t before = axis.step == 1 ? 0 : axis.near / axis.step;
-  const std::int32_t first = floorDiv(begin, axis.step) - before;
-  const std::int32_t last = floorDiv(end - 1, axis.step) + (axis.step == 1 ? 0 : before + 1);
+  const std::int32_t first = floorDiv(begin, axis.step) - axis.up_before;
+  const std::int32_t last = floorDiv(end - 1, axis.step) + axis.nodes_up - 1 - axis.up_before;
   return {first, last - first + 1};
 }
 
@@ -119,7 +119,7 @@ GaussianPlane::Nodes GaussianPlane::read(const GaussianAxis& axis, const Nodes& 
 }
 
 // Sums over the samples near the nodes of rows [begin, end) of `rows`.
-void GaussianPlane::gatherRows(const FieldReader& field, const SampleWeights& weights, const Nodes& columns,
+void GaussianPlane::gatherRows(const FieldReader& field, const SampleValues& samples, const Nodes& columns,
                                const Nodes& rows, std::int32_t begin, std::int32_t end, double* value,
                                double* weight, std::ptrdiff_t stride, Scratch& scratch) const {
   const auto weighRow = FETTLE_AT_LEVEL(level_, weigh);
@@ -147,10 +147,13 @@ void GaussianPlane::gatherRows(const FieldReader& field, const SampleWeights& we
     const std::int32_t to = std::min((from / kTileSide + 1) * kTileSide, r1);
     field.readHeights(c0, from, n, to - from, scratch.heights.data(), room);
     for (std::int32_t r = from; r < to; ++r) {
-      const float* const heights = scratch.heights.data() + (r - from) * room;
-      const float* const middle =
-          weights.surface != nullptr ? weights.surface + r * weights.stride + c0 : nullptr;
-      weighRow(heights, middle, weights.limit, row_value, row_weight, n);
+      float* const heights = scratch.heights.data() + (r - from) * room;
+      if (samples.heights != nullptr) {
+        const float* const others = samples.heights + r * samples.stride + c0;
+        for (int i = 0; i < n; ++i) heights[i] = heights[i] == heights[i] ? others[i] : heights[i];
+      }
+      weighRow(heights, samples.weights != nullptr ? samples.weights + r * samples.stride + c0 : nullptr,
+               row_value, row_weight, n);
       const std::int32_t low = std::max(ceilDiv(r - y_.near, y_.step) - rows.first, begin);
       const std::int32_t top = std::min(floorDiv(r + y_.near, y_.step) - rows.first + 1, end);
       for (std::int32_t k = low; k < top; ++k) {
@@ -180,7 +183,7 @@ void GaussianPlane::gatherRows(const FieldReader& field, const SampleWeights& we
   }
 }
 
-bool GaussianPlane::make(const FieldReader& field, const SampleWeights& weights, const SampleRect& rect,
+bool GaussianPlane::make(const FieldReader& field, const SampleValues& samples, const SampleRect& rect,
                          bool parallel, const JobControl& job) {
   columns_ = wanted(x_, rect.column, rect.column + rect.columns);
   rows_ = wanted(y_, rect.row, rect.row + rect.rows);
@@ -190,7 +193,7 @@ bool GaussianPlane::make(const FieldReader& field, const SampleWeights& weights,
   tbb::enumerable_thread_specific<Scratch> scratches;
   inParts(rows.count, kBand, parallel, [&](std::int32_t begin, std::int32_t end) {
     for (std::int32_t k = begin; k < end && !job.cancelled(); k += kBand)
-      gatherRows(field, weights, columns, rows, k, std::min(k + kBand, end), value.data(), weight.data(),
+      gatherRows(field, samples, columns, rows, k, std::min(k + kBand, end), value.data(), weight.data(),
                  stride, scratches.local());
   });
   if (job.cancelled()) return false;
@@ -232,6 +235,13 @@ bool GaussianPlane::make(const FieldReader& field, const SampleWeights& weights,
   return !job.cancelled();
 }
 
+GaussianPlane::Sums GaussianPlane::sumsFor(const SampleRect& part) const noexcept {
+  const Nodes rows = wanted(y_, part.row, part.row + part.rows);
+  const Nodes columns = wanted(x_, part.column, part.column + part.columns);
+  const std::ptrdiff_t at = (rows.first - rows_.first) * stride_ + (columns.first - columns_.first);
+  return {value_.data() + at, weight_.data() + at, stride_, rows.count};
+}
+
 void GaussianPlane::fill(const SampleRect& rect, Scratch& scratch, float* out, std::ptrdiff_t stride) const {
   const auto slideRow = FETTLE_AT_LEVEL(level_, slide);
   const auto spreadRow = FETTLE_AT_LEVEL(level_, spreadOut);
@@ -259,14 +269,14 @@ void GaussianPlane::fill(const SampleRect& rect, Scratch& scratch, float* out, s
   };
   up(value_, scratch.value);
   up(weight_, scratch.weight);
-  std::vector<double> taps(static_cast<std::size_t>(std::max(y_.nodes_up, 1)), 1.0);
+  std::vector<double> taps(static_cast<std::size_t>(y_.nodes_up), 1.0);
   const std::int32_t lane = (y_.step + 7) / 8 * 8;
   for (std::int32_t r = 0; r < rect.rows; ++r) {
     const std::int32_t node = floorDiv(rect.row + r, y_.step), phase = rect.row + r - node * y_.step;
     if (y_.step > 1)
       for (std::int32_t t = 0; t < y_.nodes_up; ++t)
         taps[static_cast<std::size_t>(t)] = y_.up[static_cast<std::size_t>(t * lane + phase)];
-    const std::int32_t low = node - (y_.step == 1 ? 0 : y_.near / y_.step) - rows.first;
+    const std::int32_t low = node - y_.up_before - rows.first;
     const std::ptrdiff_t at = low * wide + (rect.column - first);
     double* const value = scratch.rows.data();
     double* const weight = value + wide;

@@ -25,12 +25,13 @@ struct GaussianAxis {
 
   std::int32_t step =
       1;  ///< a power of two, so that pieces of a field have its nodes where they begin at one
-  std::int32_t near = 0;      ///< reach of a [samples]; 0 where the samples are the nodes
-  std::int32_t far = 0;       ///< reach of b [nodes]
-  std::vector<double> a;      ///< 2 near + 1 weights
-  std::vector<double> b;      ///< 2 far + 1 weights
-  std::int32_t nodes_up = 0;  ///< nodes that a sample lies in the reach of
-  std::vector<double> up;     ///< of a, for each of `step` samples from a node on: nodes_up weights
+  std::int32_t near = 0;       ///< reach of a [samples]; 0 where the samples are the nodes
+  std::int32_t far = 0;        ///< reach of b [nodes]
+  std::vector<double> a;       ///< 2 near + 1 weights
+  std::vector<double> b;       ///< 2 far + 1 weights
+  std::int32_t nodes_up = 1;   ///< nodes that a sample lies in the reach of
+  std::int32_t up_before = 0;  ///< of these, before the one at the sample or next below it
+  std::vector<double> up;      ///< of a, for each of `step` samples from a node on: nodes_up weights
 };
 
 /// Of a field of so many samples along the axis; cut_off in samples, above 0.
@@ -41,12 +42,12 @@ struct GaussianAxis {
 /// Samples around one that its result depends on, at most `samples`.
 [[nodiscard]] std::int32_t gaussianReach(double cut_off, std::int32_t samples) noexcept;
 
-/// The weights that samples have beside those of the Gaussian: Tukey's biweight (1 - (r / limit)^2)^2 of their distances r
-/// from `surface`, 0 beyond `limit`; all 1 without a surface.
-struct SampleWeights {
-  const float* surface = nullptr;  ///< of the whole field, row-major [height_unit]
-  std::ptrdiff_t stride = 0;       ///< of surface [elements]
-  double limit = 0.0;              ///< above 0
+/// The weights and heights that samples are taken with: planes of the whole field, row-major. Holes have no weight, whatever
+/// stands there. At least 7 elements may be read behind the last one.
+struct SampleValues {
+  const float* weights = nullptr;  ///< 0 to 1; null: all 1
+  const float* heights = nullptr;  ///< null: the field's own [height_unit]
+  std::ptrdiff_t stride = 0;       ///< of both [elements]
 };
 
 /// Weighted means of a rectangle's samples and those around them: sums of weights and of weighted heights at nodes, and
@@ -65,11 +66,21 @@ class GaussianPlane {
 
   /// Sums at the nodes that means of `rect` need; `parallel`: on all workers of the arena. False when cancelled.
   /// Memory: 56 bytes per node. Throws std::bad_alloc.
-  [[nodiscard]] bool make(const FieldReader& field, const SampleWeights& weights, const SampleRect& rect,
+  [[nodiscard]] bool make(const FieldReader& field, const SampleValues& samples, const SampleRect& rect,
                           bool parallel, const JobControl& job);
 
   /// Means of samples of `rect`, row-major, signs applied; NaN where no sample has weight. Throws std::bad_alloc.
   void fill(const SampleRect& rect, Scratch& scratch, float* out, std::ptrdiff_t stride) const;
+
+  /// The sums at the nodes that samples of a part of `rect` need: rows of elements, node (0, 0) being `up_before` nodes before
+  /// the one at the part's first sample or next below it, along both axes.
+  struct Sums {
+    const double* value = nullptr;
+    const double* weight = nullptr;
+    std::ptrdiff_t stride = 0;
+    std::int32_t rows = 0;
+  };
+  [[nodiscard]] Sums sumsFor(const SampleRect& part) const noexcept;
 
  private:
   /// Nodes along an axis: [first, first + count), node n at sample n * step.
@@ -79,7 +90,7 @@ class GaussianPlane {
   static Nodes wanted(const GaussianAxis& axis, std::int32_t begin, std::int32_t end);
   static Nodes read(const GaussianAxis& axis, const Nodes& wanted, std::int32_t samples);
 
-  void gatherRows(const FieldReader& field, const SampleWeights& weights, const Nodes& columns,
+  void gatherRows(const FieldReader& field, const SampleValues& samples, const Nodes& columns,
                   const Nodes& rows, std::int32_t begin, std::int32_t end, double* value, double* weight,
                   std::ptrdiff_t stride, Scratch& scratch) const;
 

@@ -21,8 +21,8 @@ constexpr std::int32_t kTogether = 4;  // rows of downStrip
 
 // The sums along the rows that a strip's results need, from strip.row - far on: value_rows, weight_rows, and whether a row's
 // weights differ from those of a row of samples. Rows outside the field add 0 at the ends of a sum, which leaves it as it is.
-void GaussianStrips::sumRows(const FieldReader& field, const SampleWeights& weights, const SampleRect& strip,
-                             std::int32_t count, Scratch& scratch) const {
+void GaussianStrips::sumRows(const FieldReader& field, const SampleRect& strip, std::int32_t count,
+                             Scratch& scratch) const {
   const auto widenRow = FETTLE_AT_LEVEL(level_, widen);
   const auto weighRow = FETTLE_AT_LEVEL(level_, weigh);
   const auto along = FETTLE_AT_LEVEL(level_, alongStrip);
@@ -55,16 +55,13 @@ void GaussianStrips::sumRows(const FieldReader& field, const SampleWeights& weig
       const auto at = static_cast<std::size_t>(r - first);
       double* const value_row = scratch.values.data() + (r - first) * kStrip;
       scratch.value_rows[at] = value_row;
-      if (weights.surface == nullptr && widenRow(heights, value, n) == inside) {
+      if (widenRow(heights, value, n) == inside) {
         along(value, x_.b.data(), taps, value_row);
         scratch.weight_rows[at] = all;
         scratch.differs[at] = 0;
         continue;
       }
-      const float* const middle =
-          weights.surface != nullptr ? weights.surface + r * weights.stride + c0 : nullptr;
-      weighRow(heights + (c0 - left), middle, weights.limit, value + (c0 - left), weight + (c0 - left),
-               inside);
+      weighRow(heights + (c0 - left), nullptr, value + (c0 - left), weight + (c0 - left), inside);
       // What was taken from beyond the field is no sample.
       std::fill(value + (c0 - left) + inside, value + n + 8, 0.0);
       std::fill(weight + (c0 - left) + inside, weight + n + 8, 0.0);
@@ -77,8 +74,8 @@ void GaussianStrips::sumRows(const FieldReader& field, const SampleWeights& weig
   }
 }
 
-bool GaussianStrips::fill(const FieldReader& field, const SampleWeights& weights, const SampleRect& rect,
-                          Scratch& scratch, float* out, std::ptrdiff_t stride, const JobControl& job) const {
+bool GaussianStrips::fill(const FieldReader& field, const SampleRect& rect, Scratch& scratch, float* out,
+                          std::ptrdiff_t stride, const JobControl& job) const {
   const auto down = FETTLE_AT_LEVEL(level_, downStrip);
   const auto divide = FETTLE_AT_LEVEL(level_, divideStrip);
   // downStrip takes no fewer.
@@ -90,7 +87,7 @@ bool GaussianStrips::fill(const FieldReader& field, const SampleWeights& weights
   for (std::int32_t c = 0; c < rect.columns; c += kStrip) {
     if (job.cancelled()) return false;
     const std::int32_t wide = std::min(kStrip, rect.columns - c);
-    sumRows(field, weights, {rect.column + c, rect.row, wide, rect.rows}, count, scratch);
+    sumRows(field, {rect.column + c, rect.row, wide, rect.rows}, count, scratch);
     const std::vector<const double*> all(static_cast<std::size_t>(taps + kTogether),
                                          scratch.weights.data() + std::ptrdiff_t{count} * kStrip);
     down(all.data(), down_weights.data(), taps, whole.data());

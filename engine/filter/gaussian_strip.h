@@ -13,8 +13,8 @@
 namespace fettle::engine {
 
 /// The means of GaussianPlane, bit by bit, where the samples are the nodes along both axes (GaussianAxis::step 1): a strip of
-/// columns at a time, whose sums stay near the core. Weights are summed only where a hole, the field's border or a surface
-/// makes them differ.
+/// columns at a time, whose sums stay near the core. Weights are summed only where a hole or the field's border makes
+/// them differ.
 ///
 /// Threading: any, each thread with its own scratch.
 class GaussianStrips {
@@ -32,12 +32,11 @@ class GaussianStrips {
 
   /// Means of samples of `rect` as those of GaussianPlane::fill; up to 15 elements after each row may be written. False when
   /// cancelled. Throws std::bad_alloc.
-  [[nodiscard]] bool fill(const FieldReader& field, const SampleWeights& weights, const SampleRect& rect,
-                          Scratch& scratch, float* out, std::ptrdiff_t stride, const JobControl& job) const;
+  [[nodiscard]] bool fill(const FieldReader& field, const SampleRect& rect, Scratch& scratch, float* out,
+                          std::ptrdiff_t stride, const JobControl& job) const;
 
  private:
-  void sumRows(const FieldReader& field, const SampleWeights& weights, const SampleRect& strip,
-               std::int32_t count, Scratch& scratch) const;
+  void sumRows(const FieldReader& field, const SampleRect& strip, std::int32_t count, Scratch& scratch) const;
 
   const GaussianAxis& x_;
   const GaussianAxis& y_;

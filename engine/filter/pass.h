@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -32,6 +33,7 @@ struct FilterTuning {
 struct PassResult {
   Version field;
   std::vector<TileReport> reports;
+  std::int64_t weightless = 0;  ///< of a robust filter, the samples without weight in its last round
 };
 
 }  // namespace fettle::engine

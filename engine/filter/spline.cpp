@@ -1,6 +1,10 @@
 // The areal spline filter as the tensor product of the profile filter of ISO 16610-22 (spline_lines.h), which is how such a filter is
 // taken to surfaces (H. Zhang, D. Ott, J. Song, W. Chu, An areal isotropic spline filter for surface metrology, 2015, who
-// also state that it is not isotropic), and robust by Tukey's weights, as ISO/TR 16610-32 has it for profiles. The text of ISO
+// also state that it is not isotropic), and robust by Tukey's weights, as ISO/TR 16610-32 has it for profiles. These are those of the robust
+// Gaussian regression filter of the same cut-off (robust_gaussian.h), not of distances from the spline: at natural ends a spline cannot bend,
+// and what is far from it there is no outlier. Weights from a robust start and then one step is what P. Bickel (One-step Huber
+// estimates in the linear model, 1975) and V. Yohai (High breakdown-point and high efficiency robust estimates for regression, 1987)
+// begin with. The text of ISO
 // 16610-62 was not at hand.
 //
 // With A = I + a^4 Q of each axis and T = Ay x Ax the surface s = T^-1 z is that of least sum of (z - s)^2 + s (T - 1) s. With
@@ -20,18 +24,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <tbb/parallel_for.h>
 
 #include "engine/field/tile.h"
-#include "engine/filter/areal_gaussian.h"
-#include "engine/filter/filter_work.h"
-#include "engine/filter/middle_distance.h"
+#include "engine/filter/robust_gaussian.h"
 #include "engine/filter/spline_lines.h"
 #include "engine/filter/surface_pass.h"
 
@@ -40,8 +40,6 @@ namespace fettle::engine {
 namespace {
 
 constexpr std::size_t kMostSteps = 1000;
-// The next round begins where one ends.
-constexpr std::size_t kMostStepsOfARound = 40;
 // Errors of a step are those that so many later ones take away, all but a little.
 constexpr std::size_t kLater = 4;
 
@@ -73,16 +71,16 @@ class SplineSurface {
     plane_.z.resize(z_.size());
   }
 
-  // An earlier surface, and the distance from it beyond which a sample has no weight.
-  struct Around {
-    const std::vector<float>& surface;
-    double limit;
+  // Weights of samples of the whole field, row-major, and how small an error matters beside them.
+  struct Weights {
+    const float* each;
+    std::ptrdiff_t stride;
+    double scale;
   };
 
-  // Weights of samples by their distances from an earlier surface; without one: all 1. Holes have none. False when
-  // cancelled.
-  bool solve(const std::optional<Around>& around, const JobControl& job) {
-    if (!around && !holes_) {
+  // Without weights: all 1. Holes have none. False when cancelled.
+  bool solve(const std::optional<Weights>& weights, const JobControl& job) {
+    if (!weights && !holes_) {
       eachRow([&](std::int32_t r) {
         for (std::int32_t c = 0; c < width_; ++c) plane_.z[at(r) + c] = about(c, r);
       });
@@ -91,21 +89,16 @@ class SplineSurface {
     lack_.resize(z_.size());  // root of H
     found_.resize(z_.size()), rest_.resize(z_.size()), direction_.resize(z_.size());
     eachRow([&](std::int32_t r) {
-      for (std::size_t i = at(r); i < at(r + 1); ++i) {
-        double weight = z_[i] == z_[i] ? 1.0 : 0.0;
-        if (around && weight > 0.0) {
-          const double off =
-              (static_cast<double>(z_[i]) - static_cast<double>(around->surface[i])) / around->limit;
-          const double rest = 1.0 - off * off;
-          weight = rest > 0.0 ? rest * rest : 0.0;
-        }
+      for (std::int32_t c = 0; c < width_; ++c) {
+        const std::size_t i = at(r) + c;
+        const double weight = !(z_[i] == z_[i]) ? 0.0
+                              : weights         ? static_cast<double>(weights->each[r * weights->stride + c])
+                                                : 1.0;
         lack_[i] = std::sqrt(1.0 - weight);
-        // What an earlier surface is there.
-        found_[i] = around ? lack_[i] * plane_.z[i] : 0.0;
+        found_[i] = 0.0;
       }
     });
-    return around ? findLacking(around->limit, kMostStepsOfARound, job)
-                  : findLacking(plane_level_.deviation, kMostSteps, job);
+    return findLacking(weights ? weights->scale : plane_level_.deviation, job);
   }
 
   // The surface that was solved for, rounded once.
@@ -117,18 +110,8 @@ class SplineSurface {
     });
   }
 
-  // The surface about its plane, which with the limit is all that another round begins with.
-  [[nodiscard]] std::string numbers() const {
-    return {reinterpret_cast<const char*>(plane_.z.data()), plane_.z.size() * sizeof(plane_.z[0])};
-  }
-  // False where these are not numbers of this field.
-  bool takeNumbers(const std::string& numbers) {
-    if (numbers.size() != plane_.z.size() * sizeof(plane_.z[0])) return false;
-    std::memcpy(plane_.z.data(), numbers.data(), numbers.size());
-    return true;
-  }
-
-  [[nodiscard]] const FieldReader& reader() const noexcept { return reader_; }
+  // Standard, of the heights about their plane.
+  [[nodiscard]] double deviation() const noexcept { return plane_level_.deviation; }
 
  private:
   [[nodiscard]] std::size_t at(std::int32_t row) const noexcept {
@@ -216,7 +199,7 @@ class SplineSurface {
     return smoothPlane(x_, y_, plane_, level_, job);
   }
 
-  bool findLacking(double scale, std::size_t most_steps, const JobControl& job) {
+  bool findLacking(double scale, const JobControl& job) {
     // The distance of x from what the filter makes of it.
     if (!applied(found_, true, job)) return false;
     double squares = sum([&](std::int32_t r) {
@@ -230,7 +213,7 @@ class SplineSurface {
     const double enough = std::pow(kSplineTolerance * scale, 2) * static_cast<double>(z_.size()),
                  none = 1e-32 * squares;
     std::vector<double> gains;  // of the steps, in squared errors
-    while (gains.size() < most_steps && squares > none) {
+    while (gains.size() < kMostSteps && squares > none) {
       if (!applied(direction_, false, job)) return false;
       const double along = sum([&](std::int32_t r) {
         double of_row = 0.0;
@@ -301,32 +284,32 @@ Result<PassResult> splinePass(const Version& input, const Version& original, con
 
 Result<PassResult> robustSplinePass(const Version& input, const Version& original, const FilterSpec& spec,
                                     const FilterTuning& tuning, JobControl& job) {
-  std::vector<float> surface;
+  const CpuLevel level = std::min(tuning.level, bestCpuLevel());
+  std::vector<float> surface, weights;
+  std::ptrdiff_t stride = 0;
+  double limit = 0.0;
+  std::int64_t weightless = 0;
   {
-    SplineSurface filter(input, spec, std::min(tuning.level, bestCpuLevel()));
-    std::optional<double> limit;  // of the round before
-    int round = 0;
-    // Not held while the rounds run: it is as large as the field.
-    if (const auto before = tuning.work != nullptr ? tuning.work->roundsBefore() : std::nullopt;
-        before && filter.takeNumbers(before->numbers)) {
-      filter.copyTo(surface);
-      limit = before->limit;
-      round = before->done;
-    }
-    for (; round < kMostRobustRounds; ++round) {
-      const auto around = limit ? std::optional(SplineSurface::Around{surface, *limit}) : std::nullopt;
-      if (!filter.solve(around, job)) return cancelled();
-      filter.copyTo(surface);
-      const double next = kRobustLimit * middleDistance(filter.reader(), surface.data(), input.grid().width);
-      // More than half of the samples lie on the surface: there is no scale to weight the others by.
-      const bool ends = !(next > 0.0) || (limit && std::fabs(next - *limit) <= kRobustTolerance * *limit);
-      limit = next;
-      if (ends) break;
-      if (tuning.work != nullptr && tuning.work->wantsRounds())
-        tuning.work->roundDone({round + 1, next, filter.numbers()});
-    }
+    RobustRegression rounds(input, spec, level);
+    if (!rounds.find(tuning.work, job)) return cancelled();
+    stride = rounds.stride();
+    limit = rounds.limit();
+    weightless = rounds.weightless();
+    weights = rounds.takeWeights();
   }
-  return passOfWhole(surface, input.reader(), input, original, spec, tuning, job);
+  {
+    SplineSurface filter(input, spec, level);
+    using Weights = SplineSurface::Weights;
+    const double scale = limit > 0.0 ? limit : filter.deviation();
+    if (!filter.solve(weights.empty() ? std::nullopt : std::optional(Weights{weights.data(), stride, scale}),
+                      job))
+      return cancelled();
+    filter.copyTo(surface);
+  }
+  weights = {};
+  Result<PassResult> result = passOfWhole(surface, input.reader(), input, original, spec, tuning, job);
+  if (result) result->weightless = weightless;
+  return result;
 }
 
 }  // namespace fettle::engine

@@ -13,7 +13,7 @@ namespace fettle::engine {
                                                   JobControl& job);
 
 /// Where samples lack or weigh less the surface is found step by step, until the root mean square of all errors is about this
-/// share of the heights' standard deviation about their plane, or of the limit of the weights; after 1,000 steps at most, 40 of a robust round.
+/// share of the heights' standard deviation about their plane, or of the limit of the weights; after 1,000 steps at most.
 inline constexpr double kSplineTolerance = 2e-9;
 
 }  // namespace fettle::engine

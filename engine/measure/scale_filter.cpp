@@ -39,7 +39,8 @@ Result<Version> heightsAbout(const Version& field, const PolynomialForm& plane, 
 
 }  // namespace
 
-Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Waves waves, JobControl& job) {
+Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Waves waves, JobControl& job,
+                              FilterReport* report) {
   if (Status valid = validate(filter, field.grid()); !valid) return tl::unexpected(valid.error());
   const auto fit = fitForm(field, {.degree = 1, .region = Region::kAll, .robust = false}, job);
   if (!fit && fit.error().kind == ErrorKind::kInput) return field;  // of holes alone
@@ -49,6 +50,7 @@ Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Wa
   if (!about) return tl::unexpected(about.error());
   const auto filtered = applyFilter(*about, *about, filter, job);
   if (!filtered) return tl::unexpected(filtered.error());
+  if (report != nullptr) *report = filtered->report;
   const FieldReader low = filtered->field.reader(), from = field.reader();
   return lowered(
       field, "filtering",

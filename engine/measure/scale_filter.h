@@ -20,9 +20,9 @@ enum class Waves : std::uint8_t {
 /// is measured. Edge lines are no walls.
 ///
 /// Error: that of the filter (filter.h) on heights about the plane, and two roundings of these to float. Bit-identical
-/// for any number of threads. Memory: that of the filter, and two fields. Errors: as validate(filter, grid); kFailed without
+/// for any number of threads. `report`, unless null, becomes the filter's. Memory: that of the filter, and two fields. Errors: as validate(filter, grid); kFailed without
 /// memory; kCancelled. Thread: any; a long job on all workers.
 [[nodiscard]] Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Waves waves,
-                                            JobControl& job);
+                                            JobControl& job, FilterReport* report = nullptr);
 
 }  // namespace fettle::engine

@@ -22,7 +22,7 @@ struct WorkIdentity {
 
 /// Raised when a filter makes other bits than before of anything: kept work of another revision is not used. A test
 /// holds the bits of every filter against it.
-inline constexpr int kFilterRevision = 1;
+inline constexpr int kFilterRevision = 2;
 
 /// Parts, in this order: `revision`; `filter` (spec without its threads, reals as binary64); `compute`, the device or
 /// "cpu"; `size`; `scan` (contentHash of samples with the sign, and marks); `lines` (XXH64 of their points); `original`

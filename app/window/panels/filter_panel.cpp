@@ -152,7 +152,9 @@ void previewList(bool anything_marked, FilterPreview& filters) {
                                        (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
                                             ? ";\nthe limit counts from the scan as it was opened"
                                             : "");
-    ImGui::TextUnformatted(fmt::format("{}\n{}", filterName(v.spec), came).c_str());
+    const std::string warning = engine::warningOf(v.result.report);
+    ImGui::TextUnformatted(
+        fmt::format("{}\n{}{}{}", filterName(v.spec), came, warning.empty() ? "" : ";\n", warning).c_str());
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);

@@ -15,6 +15,7 @@
 #include "engine/filter/gaussian_strip.h"
 #include "engine/filter/middle_distance.h"
 #include "engine/filter/region.h"
+#include "engine/filter/robust_weights.h"
 #include "tests/engine/filter/made_scan.h"
 #include "tests/engine/filter/reference.h"
 
@@ -165,6 +166,8 @@ TEST(ArealGaussian, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
       for (const int threads : {2, 5})
         for (const int side : {0, 64, 256})
           for (const CpuLevel level : {CpuLevel::kPlain, CpuLevel::kAvx2, CpuLevel::kAvx512}) {
+            // Rounds do not go by these blocks.
+            if (kind == FilterKind::kRobustGaussian && side != 64) continue;
             spec.threads = threads;
             FilterTuning tuning;
             tuning.block_side = side;
@@ -200,7 +203,7 @@ TEST(ArealGaussian, HasTheBitsOfPlanesInStrips) {
         plane.fill(all, scratch, of_plane.data(), stride);
         GaussianStrips::Scratch strip_scratch;
         ASSERT_TRUE(GaussianStrips(x, y, bestCpuLevel())
-                        .fill(reader, {}, all, strip_scratch, of_strips.data(), stride, job));
+                        .fill(reader, all, strip_scratch, of_strips.data(), stride, job));
         for (int r = 0; r < height; ++r)
           for (int c = 0; c < width; ++c) {
             const auto at = static_cast<std::size_t>(r * stride + c);
@@ -235,77 +238,6 @@ TEST(ArealGaussian, OfARangeIsThatOfTheField) {
           }
       }
     }
-}
-
-// Round by round in double: median of all distances, Tukey's weights, weighted means.
-TEST(RobustGaussian, IsWhatPlainRoundsFind) {
-  for (const MadeScan& scan : standardScans()) {
-    if (scan.name == "few samples") continue;  // whose median lies on a surface through them
-    const Version field = versionOf(scan);
-    const std::vector<double> z = heightsOf(field);
-    const std::size_t count = z.size();
-    std::vector<double> weights(count, 1.0), plain;
-    double limit = 0.0;
-    int round = 0;
-    for (; round < kMostRobustRounds; ++round) {
-      plain = plainGaussian(scan, z, weights);
-      std::vector<double> distances;
-      for (std::size_t i = 0; i < count; ++i)
-        if (!std::isnan(z[i])) distances.push_back(std::fabs(z[i] - plain[i]));
-      std::ranges::sort(distances);
-      const std::size_t n = distances.size();
-      const double next = kRobustLimit * 0.5 * (distances[(n - 1) / 2] + distances[n / 2]);
-      const bool ends = !(next > 0.0) || std::fabs(next - limit) <= kRobustTolerance * limit;
-      limit = next;
-      if (ends) break;
-      for (std::size_t i = 0; i < count; ++i) {
-        const double r = (z[i] - plain[i]) / limit, rest = 1.0 - r * r;
-        weights[i] = rest > 0.0 ? rest * rest : 0.0;
-      }
-    }
-    EXPECT_LT(round, kMostRobustRounds) << scan.name;
-    const PlainField got =
-        toPlain(filtered(field, nestingSpec(FilterKind::kRobustGaussian, scan.nesting)).field);
-    for (std::size_t i = 0; i < count; ++i)
-      if (!std::isnan(z[i])) {
-        ASSERT_NEAR(got.z[i], plain[i], 1e-5 * limit + 0.5 * static_cast<double>(ulp(got.z[i])))
-            << scan.name << ", " << i;
-      }
-  }
-}
-
-// A groove of a tenth of the width and 40 times the noise: the linear surface sinks into it, the robust one does not.
-TEST(RobustGaussian, PassesOverGrooves) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> noise(0.0, 1.0);
-  const MadeScan scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
-                        return noise(random) - (c >= 140 && c < 150 ? 40.0 : 0.0);
-                      }};
-  const Version field = versionOf(scan);
-  const Version linear = filtered(field, nestingSpec(FilterKind::kArealGaussian, 80.0)).field,
-                robust = filtered(field, nestingSpec(FilterKind::kRobustGaussian, 80.0)).field;
-  // 10 samples of a Gaussian of width 0.47 * 80 = 37.6: 0.264 of its weight in the middle.
-  EXPECT_NEAR(linear.reader().heightAt(145, 60), -40.0 * 0.264, 0.2);
-  EXPECT_NEAR(robust.reader().heightAt(145, 60), 0.0, 0.1);
-}
-
-TEST(RobustGaussian, TakesTheMedianOfAllDistances) {
-  for (const int width : {1, 2, 7, 150}) {
-    const MadeScan scan{"any", width, 65, 1.0, 1.0, 0.0, [](int c, int r) {
-                          return (c + r) % 9 == 1 ? std::nan("") : 100.0 * std::sin(5.0 * c + 3.0 * r);
-                        }};
-    const Version field = versionOf(scan);
-    std::vector<float> surface(static_cast<std::size_t>(width) * 65, 0.25F), distances;
-    for (int r = 0; r < 65; ++r)
-      for (int c = 0; c < width; ++c)
-        if (const float z = field.reader().heightAt(c, r); !std::isnan(z))
-          distances.push_back(static_cast<float>(std::fabs(static_cast<double>(z) - 0.25)));
-    std::ranges::sort(distances);
-    const std::size_t n = distances.size();
-    EXPECT_EQ(
-        middleDistance(field.reader(), surface.data(), width),
-        0.5 * static_cast<double>(distances[(n - 1) / 2]) + 0.5 * static_cast<double>(distances[n / 2]));
-  }
 }
 
 TEST(ArealGaussian, RefusesWhatItCannotDo) {

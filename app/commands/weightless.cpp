@@ -1,0 +1,14 @@
+#include "app/commands/weightless.h"
+
+#include "app/terminal.h"
+
+namespace fettle::app {
+
+void addWeightless(Report& report, const engine::Filter& filter, const engine::FilterReport& done,
+                   const std::string& of) {
+  if (!filter.robust) return;
+  report["weightless"] = done.weightless;
+  if (const std::string warning = engine::warningOf(done); !warning.empty()) warn(of + ": " + warning);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "app/report.h"
+#include "engine/filter/catalogue.h"
+
+namespace fettle::app {
+
+/// Of a robust filter, the samples that had no weight: `weightless` of a report, and a warning where they are many. `of`: the
+/// scan, and the step where there are several.
+void addWeightless(Report& report, const engine::Filter& filter, const engine::FilterReport& done,
+                   const std::string& of);
+
+}  // namespace fettle::app
