@@ -115,10 +115,9 @@ engine::Result<engine::FittedForm> formOf(const engine::Version& field, const st
                                   ? "give marks with --marks, or take --region all"
                                   : "take a larger region, or --region all");
   }
-  if (!fit->decided)
-    warn(fmt::format(
-        "{}: {} samples do not determine the form {}: of those that come nearest to them it is the flattest",
-        shownInput(scan), fit->samples, arguments.form));
+  if (!fit->open.empty())
+    warn(fmt::format("{}: {}: of the planes that come nearest to them it is the flattest", shownInput(scan),
+                     fit->open));
   if (fit->beyond > 0)
     warn(
         fmt::format("{}: {} of {} samples lie beyond the outline of the {}: there it is continued by a plane",

@@ -24,7 +24,7 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                        std::make_shared<const engine::NominalForm>(fit->form),
                        fit->samples,
                        fit->rms,
-                       fit->decided,
+                       fit->open,
                        fit->beyond,
                        engine::tiltOf(*fit, field.grid())};
 }
@@ -130,9 +130,8 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   Work work = std::move(**done);
   if (work.fit) fit_ = work.fit;
   if (work.preview) preview_ = std::move(work.preview);
-  if (work.fit && !work.fit->decided)
-    notices.push_back({"so few samples do not determine the form",
-                       "of those that come nearest to them it is the flattest"});
+  if (work.fit && !work.fit->open.empty())
+    notices.push_back({work.fit->open, "of the planes that come nearest to them it is the flattest"});
   if (!work.change || client.changeForm(*work.change)) return true;
   // The field was filtered meanwhile: once more, near what is known.
   working_.replace([field = client.newest(),

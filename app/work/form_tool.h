@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/work/background.h"
@@ -27,7 +28,7 @@ class FormTool {
     engine::FieldForm form;
     std::int64_t samples = 0;
     double rms = 0.0;                       ///< [height_unit]
-    bool decided = true;                    ///< false: so few samples do not determine the form
+    std::string open;                       ///< as FittedForm::open
     std::int64_t beyond = 0;                ///< samples that count beyond the outline of a shape
     std::optional<engine::Tilt> tilt = {};  ///< of a polynomial; with errors of a plane through three points
   };

@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <Eigen/Dense>
 
 #include "engine/compare/tile_select.h"
 #include "engine/compare/tile_sums.h"
+#include "engine/measure/form_solve.h"
 #include "engine/measure/lowered.h"
 
 namespace fettle::engine {
@@ -24,7 +24,6 @@ namespace fettle::engine {
 namespace {
 
 constexpr int kMost = PolynomialForm::kMostDegree;
-constexpr int kMostTerms = PolynomialForm::terms(kMost);
 // The product of two polynomials of the basis is half the sum of those of the sum and the difference of their degrees.
 constexpr int kProducts = 2 * kMost + 1;
 
@@ -33,7 +32,8 @@ struct FormSums {
   std::array<std::array<CompensatedSum, kProducts>, kProducts> weight;
   std::array<std::array<CompensatedSum, kMost + 1>, kMost + 1> height;
   std::int64_t samples = 0;
-  CompensatedSum square;  // of residuals
+  CompensatedSum square;                                                            // of residuals
+  std::int32_t left = Grid::kMaxSide, right = -1, low = Grid::kMaxSide, high = -1;  // of these samples
 
   void add(const FormSums& other) noexcept {
     for (std::size_t a = 0; a < weight.size(); ++a)
@@ -42,7 +42,20 @@ struct FormSums {
       for (std::size_t b = 0; b < height.size(); ++b) height[a][b].add(other.height[a][b]);
     samples += other.samples;
     square.add(other.square);
+    left = std::min(left, other.left);
+    right = std::max(right, other.right);
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
   }
+  [[nodiscard]] FormProducts products() const noexcept {
+    FormProducts values;
+    for (std::size_t a = 0; a < weight.size(); ++a)
+      for (std::size_t b = 0; b < weight.size(); ++b) values.weight[a][b] = weight[a][b].value();
+    for (std::size_t a = 0; a < height.size(); ++a)
+      for (std::size_t b = 0; b < height.size(); ++b) values.height[a][b] = height[a][b].value();
+    return values;
+  }
+  [[nodiscard]] FormAxes axes() const noexcept { return {{left, right - left + 1}, {low, high - low + 1}}; }
 };
 
 // How much a sample counts by its distance from the last form: all the same, or Tukey's biweight.
@@ -60,9 +73,9 @@ struct Weighting {
 // The sums of one row of tiles, columns side by side so that they go through vector registers.
 class TileRowSums {
  public:
-  TileRowSums(const Version& field, const FormOptions& options, const PolynomialForm& last,
-              Weighting weighting)
-      : field_(field.reader()), options_(options), last_(last), weighting_(weighting) {}
+  TileRowSums(const Version& field, const FormOptions& options, const FormAxes& axes,
+              const PolynomialForm& last, Weighting weighting)
+      : field_(field.reader()), options_(options), axes_(axes), last_(last), weighting_(weighting) {}
 
   void add(const SampleRect& rect, FormSums& sums) const noexcept {
     float z[kTileSamples];
@@ -74,18 +87,29 @@ class TileRowSums {
     double height[kMost + 1][kTileSide] = {};
     for (int r = 0; r < rect.rows; ++r) {
       double w[kTileSide], wz[kTileSide], square = 0.0;
+      int here = 0, first = kTileSide, last = -1;  // samples that count
       for (int c = 0; c < rect.columns; ++c) {
         const double h = z[r * kTileSide + c];
         const bool counts = !std::isnan(h);
         const double residual = counts ? h - form[r * kTileSide + c] : 0.0;
         w[c] = counts ? weighting_(residual) : 0.0;
         wz[c] = counts ? w[c] * (h - last_.base) : 0.0;
-        sums.samples += counts ? 1 : 0;
         square += residual * residual;
+        if (!counts) continue;
+        ++sums.samples;
+        ++here;
+        first = std::min(first, c);
+        last = c;
+      }
+      if (here > 0) {
+        sums.left = std::min(sums.left, rect.column + first);
+        sums.right = std::max(sums.right, rect.column + last);
+        sums.low = std::min(sums.low, rect.row + r);
+        sums.high = std::max(sums.high, rect.row + r);
       }
       sums.square.add(square);
       double t[kProducts];
-      PolynomialForm::chebyshev(PolynomialForm::scaled(rect.row + r, field_.height()), products - 1, t);
+      PolynomialForm::chebyshev(axes_.rows.scaled(rect.row + r), products - 1, t);
       for (int b = 0; b < products; ++b)
         for (int c = 0; c < rect.columns; ++c) weight[b][c] += t[b] * w[c];
       for (int b = 0; b <= degree; ++b)
@@ -95,7 +119,7 @@ class TileRowSums {
     double heights[kMost + 1][kMost + 1] = {};
     for (int c = 0; c < rect.columns; ++c) {
       double t[kProducts];
-      PolynomialForm::chebyshev(PolynomialForm::scaled(rect.column + c, field_.width()), products - 1, t);
+      PolynomialForm::chebyshev(axes_.columns.scaled(rect.column + c), products - 1, t);
       for (int a = 0; a < products; ++a)
         for (int b = 0; b < products; ++b) weights[a][b] += t[a] * weight[b][c];
       for (int a = 0; a <= degree; ++a)
@@ -112,15 +136,16 @@ class TileRowSums {
  private:
   FieldReader field_;
   FormOptions options_;
+  FormAxes axes_;
   const PolynomialForm& last_;
   Weighting weighting_;
 };
 
 // Over all tiles, in an order that does not depend on the number of threads.
-Result<FormSums> sumsOf(const Version& field, const FormOptions& options, const PolynomialForm& last,
-                        Weighting weighting, JobControl& job) {
+Result<FormSums> sumsOf(const Version& field, const FormOptions& options, const FormAxes& axes,
+                        const PolynomialForm& last, Weighting weighting, JobControl& job) {
   const FieldReader reader = field.reader();
-  const TileRowSums tiles(field, options, last, weighting);
+  const TileRowSums tiles(field, options, axes, last, weighting);
   job.begin("fitting the form", tileCount(reader));
   std::vector<FormSums> rows(static_cast<std::size_t>(reader.tileRows()));
   tbb::parallel_for(std::int32_t{0}, reader.tileRows(), [&](std::int32_t tr) {
@@ -134,34 +159,6 @@ Result<FormSums> sumsOf(const Version& field, const FormOptions& options, const 
   FormSums all;
   for (const FormSums& row : rows) all.add(row);
   return all;
-}
-
-// The terms' coefficients from the normal equations; of least size where they do not determine them.
-std::vector<double> solved(const FormSums& sums, int degree) {
-  const int n = PolynomialForm::terms(degree);
-  std::array<std::pair<int, int>, kMostTerms> term;
-  int count = 0;
-  for (int i = 0; i <= degree; ++i)
-    for (int j = 0; i + j <= degree; ++j) term[static_cast<std::size_t>(count++)] = {i, j};
-  const auto product = [&](int a, int b) {
-    return sums.weight[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)].value();
-  };
-  Eigen::MatrixXd normal(n, n);
-  Eigen::VectorXd right(n);
-  for (int p = 0; p < n; ++p) {
-    const auto [i, j] = term[static_cast<std::size_t>(p)];
-    for (int q = 0; q < n; ++q) {
-      const auto [k, l] = term[static_cast<std::size_t>(q)];
-      normal(p, q) = 0.25 * (product(i + k, j + l) + product(std::abs(i - k), j + l) +
-                             product(i + k, std::abs(j - l)) + product(std::abs(i - k), std::abs(j - l)));
-    }
-    right(p) = sums.height[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].value();
-  }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-13);
-  decomposition.compute(normal);
-  const Eigen::VectorXd solution = decomposition.solve(right);
-  return {solution.data(), solution.data() + n};
 }
 
 // The normalised median distance of the region's samples from a form.
@@ -258,15 +255,16 @@ double largestChange(const std::vector<double>& a, const std::vector<double>& b)
 }
 
 // Weighted fits of one degree until the coefficients rest; `scale` from the median distance before.
-Status refine(const Version& field, const FormOptions& options, double least, FormFit& fit, JobControl& job) {
+Status refine(const Version& field, const FormOptions& options, const FormAxes& axes, double least,
+              FormFit& fit, JobControl& job) {
   constexpr int kMostRounds = 20;
   constexpr double kRest = 1e-6;  // of the scale
   const double scale = std::max(medianDistance(field, options.region, fit.form, job), least);
   if (job.cancelled()) return cancelled();
   for (int round = 0; round < kMostRounds; ++round) {
-    const auto sums = sumsOf(field, options, fit.form, {scale}, job);
+    const auto sums = sumsOf(field, options, axes, fit.form, {scale}, job);
     if (!sums) return tl::unexpected(sums.error());
-    std::vector<double> better = solved(*sums, options.degree);
+    std::vector<double> better = solveForm(sums->products(), options.degree, axes, field.grid()).coefficients;
     const double change = largestChange(better, fit.form.coefficients);
     fit.form.coefficients = std::move(better);
     ++fit.rounds;
@@ -277,8 +275,8 @@ Status refine(const Version& field, const FormOptions& options, double least, Fo
 
 // From the plane with the least median distance to the degree asked for, one degree after the other: what the lower one
 // leaves decides which samples the next one sees.
-Status fitRobustly(const Version& field, const FormOptions& options, double range, FormFit& fit,
-                   JobControl& job) {
+Status fitRobustly(const Version& field, const FormOptions& options, const FormAxes& axes, double range,
+                   FormFit& fit, JobControl& job) {
   const double least = std::numeric_limits<float>::epsilon() * range;  // the rounding of heights
   const std::vector<Sample> samples = spreadSamples(field, options.region);
   PolynomialForm& form = fit.form;
@@ -304,7 +302,7 @@ Status fitRobustly(const Version& field, const FormOptions& options, double rang
     now.degree = degree;
     // Twice: the scale after the first is that of samples on the form.
     for (int pass = 0; pass < 2; ++pass)
-      if (auto done = refine(field, now, least, fit, job); !done) return done;
+      if (auto done = refine(field, now, axes, least, fit, job); !done) return done;
   }
   return {};
 }
@@ -325,15 +323,30 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
   const double range = bounds.empty() ? 0.0 : double{bounds.max} - bounds.min;
   fit.form.base = bounds.empty() ? 0.0 : bounds.min + 0.5 * range;
 
-  auto sums = sumsOf(field, options, fit.form, {}, job);
+  FormAxes axes{{0, grid.width}, {0, grid.height}};
+  auto sums = sumsOf(field, options, axes, fit.form, {}, job);
   if (!sums) return tl::unexpected(sums.error());
   if (sums->samples == 0)
     return inputError("there is no sample that a form could be fitted to", "form",
                       options.region == Region::kAll ? "" : "mark some, or fit it to all samples");
-  fit.form.coefficients = solved(*sums, options.degree);
+  SolvedForm solved = solveForm(sums->products(), options.degree, axes, grid);
+  // On a small part of the field the terms hardly differ but about that part's middle.
+  const FormAxes own = sums->axes();
+  const bool small = 2 * own.columns.count < grid.width || 2 * own.rows.count < grid.height;
+  if (options.degree > 0 && !(own == axes) && (small || !solved.open.empty())) {
+    axes = own;
+    sums = sumsOf(field, options, axes, fit.form, {}, job);
+    if (!sums) return tl::unexpected(sums.error());
+    solved = solveForm(sums->products(), options.degree, axes, grid);
+  }
+  fit.terms = solved.terms;
+  fit.decided = solved.decided;
+  fit.open = std::move(solved.open);
+  fit.form.coefficients = std::move(solved.coefficients);
   if (options.robust && range > 0.0)
-    if (auto done = fitRobustly(field, options, range, fit, job); !done) return tl::unexpected(done.error());
-  sums = sumsOf(field, options, fit.form, {}, job);
+    if (auto done = fitRobustly(field, options, axes, range, fit, job); !done)
+      return tl::unexpected(done.error());
+  sums = sumsOf(field, options, axes, fit.form, {}, job);
   if (!sums) return tl::unexpected(sums.error());
   fit.samples = sums->samples;
   fit.rms = std::sqrt(sums->square.value() / static_cast<double>(sums->samples));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -27,15 +28,20 @@ struct FormFit {
   std::int64_t samples = 0;  ///< of the region
   double rms = 0.0;  ///< of the region's samples about the form, each with the same weight [height_unit]
   int rounds = 1;    ///< of weights
+  /// Its terms, of how many combinations of them the samples say the size, and those they leave open, as solveForm() (form_solve.h):
+  /// empty where they decide all.
+  int terms = 0, decided = 0;
+  std::string open = {};
 };
 
-/// Fits a form to the samples of a region, signs applied, by least squares in columns, rows and heights. Terms that the
-/// samples do not determine (a single row, three samples) take the solution of least size, so that a form always
-/// passes as near the samples as it can.
+/// Fits a form to the samples of a region, signs applied, by least squares in columns, rows and heights. Where the samples leave
+/// terms open (a single row, fewer samples than terms) it is the flattest form of those that pass nearest to the samples, the one with the least
+/// mean square gradient over the field: no field is refused that has a sample.
 ///
 /// Accuracy: sums in double, compensated over the tiles; Chebyshev's basis keeps the equations' condition below 1e4
 /// on a full field, so that a polynomial of that degree is found to 1e-11 of its range. Bit-identical for any number
-/// of threads. Cost: one pass, with `robust` some 10 to 40 for each degree. Errors: kInput for a degree out of range or a region
+/// of threads. Cost: two passes, three where the samples lie in less than
+/// half of the field along an axis, with `robust` some 10 to 40 more for each degree. Errors: kInput for a degree out of range or a region
 /// without samples; kCancelled. Throws std::bad_alloc. Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobControl& job);
 

@@ -6,8 +6,10 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "engine/compare/tile_sums.h"
@@ -59,6 +61,13 @@ Status addAbout(const Version& field, Region region, FittedForm& fitted, JobCont
   return {};
 }
 
+std::string openTermsText(const FormFit& fit, std::string_view title) {
+  if (fit.open.empty()) return "";
+  const bool one = fit.samples == 1;
+  return fmt::format("{} sample{} decide{} {} of the {} terms of a {} and leave{} {} open", fit.samples,
+                     one ? "" : "s", one ? "s" : "", fit.decided, fit.terms, title, one ? "s" : "", fit.open);
+}
+
 tl::unexpected<Error> noSampleForForm(Region region) {
   return inputError("there is no sample that a form could be fitted to", "form",
                     region == Region::kAll ? "" : "mark some, or fit it to all samples");
@@ -81,6 +90,7 @@ Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const Form
   if (!form) return tl::unexpected(form.error());
   FittedForm fitted;
   fitted.form = *form;
+  fitted.numbers = fit->numbers;
   fitted.fit = *std::move(fit);
   if (auto done = addAbout(field, choice.region, fitted, job); !done) return tl::unexpected(done.error());
   return fitted;
@@ -165,10 +175,15 @@ Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice
   auto fit = fitForm(field, {info.degree, choice.region, choice.robust}, job);
   if (!fit) return tl::unexpected(fit.error());
   FittedForm fitted;
+  fitted.open = openTermsText(*fit, info.title);
+  // What a bend between so few samples would be elsewhere says nothing of the surface; level across them a plane does no harm.
+  if (info.degree > 1 && !fitted.open.empty())
+    return inputError(fitted.open, std::string(info.word),
+                      "take a form of a lower degree or a larger region");
   fitted.samples = fit->samples;
   fitted.rms = fit->rms;
   fitted.rounds = fit->rounds;
-  fitted.decided = fit->samples > PolynomialForm::terms(info.degree);
+  fitted.numbers = fit->decided;
   fitted.form = std::move(fit->form);
   return fitted;
 }

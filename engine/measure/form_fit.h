@@ -31,8 +31,10 @@ struct FittedForm {
   std::int64_t samples = 0;  ///< of the region
   double rms = 0.0;  ///< of the region's samples about the form, each with the same weight [height_unit]
   int rounds = 1;    ///< of weights, of a polynomial
-  bool decided =
-      true;  ///< false: so few samples do not determine the polynomial, it is the flattest of those
+  int numbers = 0;   ///< of the form that the region's samples decide; 0 of a plane through three points
+  /// Of a plane whose samples lie on one line, which they leave open, as a sentence: "3 samples decide 2 of the 3 terms of a plane
+  /// and leave y open"; else empty. It is the flattest of those that come nearest to them then, as fitForm().
+  std::string open = {};
   std::optional<ShapeFit> fit;  ///< of a shape
   std::int64_t beyond = 0;      ///< samples of the region beyond the outline of the shape (shape_form.h)
   /// Of a plane through three points: `samples` and `rms` are those of the samples around these.
@@ -44,7 +46,8 @@ struct FittedForm {
 /// planeThrough() (three_points.h), which names "through" where it refuses. Signs applied.
 ///
 /// A shape is fitted to at most some four million samples, evenly spread over larger regions: its figures then have the standard
-/// errors of as many. Refused (kInput): a region without samples; what the samples do not determine, as fitShape; a shape
+/// errors of as many. Refused (kInput): a region without samples; a polynomial of degree 2 and more, some terms of which the samples
+/// leave open, by the names of these (a field of one row has none across it); what the samples do not determine, as fitShape; a shape
 /// that is steeper than 87 degrees where its samples lie, as an upright cylinder, since it has no height above a place.
 /// Errors else, accuracy, threads and cost as of those two; one more pass.
 [[nodiscard]] Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice,

@@ -513,9 +513,12 @@ TEST(Measure, WarnsOfAFormThatTheSamplesDoNotDetermine) {
   const TempFolder folder;
   const std::string scan = folder.file("small.tif");
   ASSERT_EQ(fettle({"synth", scan, "--size", "2x2"}).status, 0);
-  const Outcome few = fettle({"measure", scan, "--form", "poly5"});
-  EXPECT_EQ(few.status, 0);
-  EXPECT_NE(few.err.find("4 samples do not determine the form poly5"), std::string::npos) << few.err;
+  expectRefused(fettle({"measure", scan, "--form", "poly5"}),
+                "4 samples decide 4 of the 21 terms of a polynomial of degree 5 and leave");
+  const Outcome plane = fettle({"measure", scan, "--region", "rectangle 0,0,0,0"});
+  EXPECT_NE(plane.err.find("1 sample decides 1 of the 3 terms of a plane and leaves x, y open"),
+            std::string::npos)
+      << plane.err;
 }
 
 // A limit of changes counts from the levelled heights, not from those before.

@@ -280,5 +280,32 @@ TEST(FormKinds, AreNamedOnceEach) {
   EXPECT_FALSE(regionNamed("measured"));
 }
 
+TEST(FormKinds, APolynomialWithOpenTermsIsRefusedByTheirNames) {
+  const auto holed = [](auto&& has) {
+    return fieldOf(30, 30, [has](int c, int r) { return has(c, r) ? 0.25 * (c * c - r) : kHoleHere; });
+  };
+  const auto why = [](const Version& field, FormKind kind) {
+    const auto fit = tried(field, kind);
+    return fit ? fit->open : fit.error().line();
+  };
+  const Version six = holed([](int c, int r) { return c >= 10 && c < 13 && r >= 4 && r < 6; });
+  EXPECT_NE(
+      why(six, FormKind::kPolynomial5).find("6 samples decide 6 of the 21 terms of a polynomial of degree 5"),
+      std::string::npos)
+      << why(six, FormKind::kPolynomial5);
+  EXPECT_NE(why(six, FormKind::kPolynomial2)
+                .find("5 of the 6 terms of a polynomial of degree 2 and leave y^2 open"),
+            std::string::npos)
+      << why(six, FormKind::kPolynomial2);
+  EXPECT_EQ(why(six, FormKind::kPlane), "");
+  const Version row = holed([](int c, int r) { return r == 7 && c < 9; });
+  EXPECT_EQ(why(row, FormKind::kPlane), "9 samples decide 2 of the 3 terms of a plane and leave y open");
+  // A field of one row has nothing across it.
+  const Version alone = fieldOf(30, 1, [](int c, int) { return 0.25 * c * c; });
+  for (const FormKind kind : {FormKind::kPlane, FormKind::kPolynomial2, FormKind::kPolynomial5})
+    EXPECT_EQ(why(alone, kind), "");
+  EXPECT_LT(found(alone, FormKind::kPolynomial2).rms, 1e-5);
+}
+
 }  // namespace
 }  // namespace fettle::engine

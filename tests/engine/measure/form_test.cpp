@@ -1,5 +1,6 @@
 #include "engine/measure/form.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -165,6 +166,108 @@ TEST(Form, IsLevelAcrossWhatSamplesDoNotDetermine) {
   EXPECT_NEAR(row.form.gradient().by_column, 0.5, 1e-9);
   EXPECT_EQ(row.form.gradient().by_row, 0.0);
   EXPECT_NEAR(row.rms, 0.0, 1e-5);
+}
+
+// A field of holes with few samples, spacings 1 and 0.25 mm.
+Version fewSamples(int width, int height, const std::vector<std::array<int, 3>>& samples) {
+  const Version field = fieldOf(width, height, [&](int c, int r) {
+    for (const auto& [column, row, z] : samples)
+      if (column == c && row == r) return double{1.0} * z;
+    return double{kHole};
+  });
+  Grid grid = field.grid();
+  grid.spacing_x = 1.0;
+  grid.spacing_y = 0.25;
+  return field.withGrid(grid);
+}
+
+TEST(Form, OfOneSampleIsLevelAndSaysWhatIsOpen) {
+  for (int degree = 1; degree <= PolynomialForm::kMostDegree; ++degree) {
+    const FormFit fit = fitted(fewSamples(40, 30, {{39, 29, 7}}), {degree, Region::kAll, false});
+    for (const auto& [c, r] : {std::pair{0.0, 0.0}, {39.0, 0.0}, {20.0, 15.0}, {39.0, 29.0}})
+      EXPECT_NEAR(fit.form.heightAt(c, r), 7.0, 1e-12) << degree;
+    EXPECT_EQ(fit.decided, 1);
+  }
+  EXPECT_EQ(fitted(fewSamples(40, 30, {{39, 29, 7}}), {1, Region::kAll, false}).open, "x, y");
+}
+
+// Samples on one line: the plane rises along it alone, in millimetres.
+TEST(Form, OfSamplesOnALineRisesAlongIt) {
+  // The line's direction is (2, 4 * 0.25) mm, on which heights rise by 5 over sqrt(5) mm.
+  const FormFit fit = fitted(fewSamples(60, 50, {{30, 20, 1}, {32, 24, 6}, {34, 28, 11}}), {});
+  EXPECT_NEAR(fit.form.gradient().by_column / 1.0, 5.0 / 5.0 * 2.0, 1e-9);
+  EXPECT_NEAR(fit.form.gradient().by_row / 0.25, 5.0 / 5.0 * 1.0, 1e-9);
+  EXPECT_NEAR(fit.rms, 0.0, 1e-10);
+  EXPECT_EQ(fit.decided, 2);
+  EXPECT_EQ(fit.open, "x, y");
+  const FormFit column = fitted(fewSamples(60, 50, {{30, 20, 1}, {30, 24, 6}, {30, 28, 11}}), {});
+  EXPECT_EQ(column.open, "x");
+  EXPECT_NEAR(column.form.gradient().by_column, 0.0, 1e-12);
+}
+
+TEST(Form, OfThreeSamplesThatSpanAPlaneIsDecided) {
+  const FormFit fit = fitted(fewSamples(60, 50, {{30, 20, 1}, {31, 20, 3}, {30, 21, 2}}), {});
+  EXPECT_EQ(fit.decided, 3);
+  EXPECT_EQ(fit.open, "");
+  EXPECT_NEAR(fit.form.gradient().by_column, 2.0, 1e-9);
+  EXPECT_NEAR(fit.form.gradient().by_row, 1.0, 1e-9);
+}
+
+// Mean square gradient over the field by plain sums, and each form through the same samples that is near is less flat.
+TEST(Form, OfFewerSamplesThanTermsIsTheFlattest) {
+  constexpr int kWidth = 48, kHeight = 30;
+  const std::vector<std::array<int, 3>> samples = {{3, 4, 1},  {9, 4, 3}, {4, 9, 2},
+                                                   {9, 12, 5}, {6, 7, 2}, {2, 12, 4}};
+  const Version field = fewSamples(kWidth, kHeight, samples);
+  const FormFit fit = fitted(field, {5, Region::kAll, false});
+  EXPECT_EQ(fit.decided, 6);
+  EXPECT_NEAR(fit.rms, 0.0, 1e-8);
+  const auto steepness = [&](const PolynomialForm& form) {
+    constexpr int kParts = 400;
+    double sum = 0.0;
+    for (int i = 0; i < kParts; ++i)
+      for (int j = 0; j < kParts; ++j) {
+        const double c = (i + 0.5) * (kWidth - 1) / kParts, r = (j + 0.5) * (kHeight - 1) / kParts;
+        const double x = (form.heightAt(c + 1e-4, r) - form.heightAt(c - 1e-4, r)) / 2e-4,
+                     y = (form.heightAt(c, r + 1e-4) - form.heightAt(c, r - 1e-4)) / (2e-4 * 0.25);
+        sum += (x * x + y * y) / (double{kParts} * kParts);
+      }
+    return sum;
+  };
+  // Of quadratics six samples decide one.
+  const FormFit quadratic = fitted(field, {2, Region::kAll, false});
+  EXPECT_EQ(quadratic.open, "");
+  const double flattest = steepness(fit.form);
+  EXPECT_LT(flattest, steepness(quadratic.form));
+  // To others by what is 0 at all six samples: products of lines through them, two each.
+  const auto line = [&](int a, int b) {
+    const auto &p = samples[static_cast<std::size_t>(a)], &q = samples[static_cast<std::size_t>(b)];
+    return [p, q](double c, double r) { return (q[0] - p[0]) * (r - p[1]) - (q[1] - p[1]) * (c - p[0]); };
+  };
+  const auto first = line(0, 1), second = line(2, 3), third = line(4, 5);
+  const Version nothing =
+      fieldOf(kWidth, kHeight, [&](int c, int r) { return 1e-4 * first(c, r) * second(c, r) * third(c, r); });
+  const PolynomialForm other = fitted(nothing, {5, Region::kAll, false}).form;
+  for (const double step : {-1e-2, 1e-2}) {
+    PolynomialForm moved = fit.form;
+    for (std::size_t k = 0; k < moved.coefficients.size(); ++k)
+      moved.coefficients[k] += step * other.coefficients[k];
+    EXPECT_GT(steepness(moved), flattest) << step;
+  }
+}
+
+// A region of a twentieth of the field, where the field's own terms can hardly be told apart.
+TEST(Form, OfASmallRegionIsFound) {
+  const auto within = [](int c, int r) { return c >= 610 && c < 640 && r >= 20 && r < 50; };
+  const auto height = [](double c, double r) {
+    const double x = (c - 625) / 15, y = (r - 35) / 15;
+    return 2 * x * x * x * x * x - x * x * y * y * y + 3 * x * y + y - 1;
+  };
+  const Version field = fieldOf(
+      640, 600, [&](int c, int r) { return within(c, r) ? height(c, r) : 0.0; }, within);
+  const FormFit fit = fitted(field, {5, Region::kMarked, false});
+  EXPECT_EQ(fit.open, "");
+  EXPECT_LT(fit.rms, 1e-6);  // heights of up to 8, rounded to float: 2.4e-7, and the form's own rounding
 }
 
 TEST(Form, IsBitIdenticalForAnyNumberOfThreads) {
