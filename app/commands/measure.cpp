@@ -25,6 +25,7 @@
 #include "app/terminal.h"
 #include "app/work/areal_table.h"
 #include "app/work/layer_over.h"
+#include "app/work/section_report.h"
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
@@ -121,6 +122,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (foreseen->only) return *std::move(foreseen->only);
   const auto limited = scaleLimited(*marked, scan, *imported, options.form, options.scale, job);
   if (!limited) return tl::unexpected(limited.error());
+  wanted.fitted = limited->fit.numbers;
   const auto measured = engine::measureAreal(limited->field, limited->form, wanted, job);
   if (!measured) return tl::unexpected(measured.error());
   if (auto status = writeCurves(options.curves, *measured, grid); !status)
@@ -137,10 +139,12 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (areal->functional) {
     report["smr"] = Report::array();
     for (std::size_t i = 0; i < areal->at_heights.size(); ++i)
-      report["smr"].push_back({{"height", areal->at_heights[i]}, {"ratio", measured->ratios[i]}});
+      report["smr"].push_back(
+          {{"height", areal->at_heights[i]}, {"ratio", numberOrNull(measured->ratios[i])}});
     report["smc"] = Report::array();
     for (std::size_t i = 0; i < areal->at_ratios.size(); ++i)
-      report["smc"].push_back({{"ratio", areal->at_ratios[i]}, {"height", measured->heights[i]}});
+      report["smc"].push_back(
+          {{"ratio", areal->at_ratios[i]}, {"height", numberOrNull(measured->heights[i])}});
   }
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;

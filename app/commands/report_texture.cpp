@@ -1,5 +1,6 @@
 #include "app/commands/report_texture.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -79,6 +80,7 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
     areal.region = formChoiceOf(draft.options.form).region;
     areal.at_ratios = curveRatios();
     areal.analysis = true;
+    areal.fitted = limited->fit.numbers;
     auto parameters = engine::measureAreal(limited->field, limited->form, areal, draft.job);
     if (!parameters) return tl::unexpected(parameters.error());
     addForm(reports.emplace_back(), draft.options.form, limited->fit, state.field.grid());
@@ -134,11 +136,19 @@ engine::Status addCurves(ReportDraft& draft, const MeasuredStates& found) {
   std::string none;
   for (std::size_t i = 0; i < draft.states.size(); ++i) {
     const PlottedState state{draft.states.size() > 1 ? draft.states[i].name : "", &found.measured[i]};
+    if (std::isnan(found.measured[i].sq)) {
+      none = found.measured[i].not_stated.front().reason;
+      continue;
+    }
     all.push_back(state);
     if (found.measured[i].analysis != nullptr)
       analysed.push_back(state);
     else
       none = found.measured[i].spatial.no_sal;
+  }
+  if (all.empty()) {
+    draft.page.parts.emplace_back(ReportPage::Paragraph{fmt::format("No curves are drawn: {}.", none)});
+    return {};
   }
   int drawn = 0;
   const auto draw = [&](const char* caption, const std::string& script) -> engine::Status {
@@ -161,7 +171,7 @@ engine::Status addCurves(ReportDraft& draft, const MeasuredStates& found) {
         !status)
       return status;
   }
-  if (analysed.size() < all.size())
+  if (analysed.size() < draft.states.size())
     draft.page.parts.emplace_back(ReportPage::Paragraph{
         fmt::format("No autocorrelation and no spectrum{}: {}.", analysed.empty() ? "" : " of one state",
                     none.empty() ? "there was no memory for it" : none)});

@@ -1,6 +1,7 @@
 #include "app/commands/surface_curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
@@ -112,6 +113,10 @@ void addCurves(const CurveFiles& files, engine::ArealOptions& options) {
 
 engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameters& measured,
                            const engine::Grid& grid) {
+  if (!files.abbott.empty() && std::isnan(measured.sq))
+    return engine::inputError(
+        fmt::format("the surface has no material ratio curve: {}", measured.not_stated.front().reason),
+        "--abbott", "leave the option out");
   for (const auto& [path, option] :
        {std::pair(&files.correlation, "--correlation"), {&files.spectrum, "--spectrum"}})
     if (!path->empty() && measured.analysis == nullptr)

@@ -76,6 +76,12 @@ ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
   return readLengthAs(least_mm / unit_mm, unit_mm, unit);
 }
 
+// Of the root mean square height: one unit for all rows. The scan's where there is none.
+ReadAs readHeightsAs(const Report& report) {
+  const Report& sq = report["sq"];
+  return readLengthAs(sq.is_null() ? 0.0 : sq.get<double>(), report["unit_mm"], report["unit"]);
+}
+
 struct Shown {
   double factor;
   std::string unit;
@@ -138,6 +144,7 @@ std::string withoutNoise(const Report& effect, double factor) {
 
 void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text,
               const Report& effect, bool noise) {
+  if (value.is_null()) return;  // with all others: the reason stands with these
   const std::string without = withoutNoise(effect, shown.factor);
   fmt::print("{:<8} {:>12} {:<10} {}{}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
              shown.unit, noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text);
@@ -219,8 +226,7 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
 }
 
 void printAreal(const Report& report) {
-  // Of the root mean square height: one unit for all rows.
-  const ReadAs height = readLengthAs(report["sq"].get<double>(), report["unit_mm"], report["unit"]);
+  const ReadAs height = readHeightsAs(report);
   const ReadAs length = readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
   const bool noise = report.contains("noise");
   if (noise)
@@ -266,7 +272,7 @@ void printAreal(const Report& report) {
 
 std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
   const Report& first = reports.front();
-  const ReadAs height = readLengthAs(first["sq"].get<double>(), first["unit_mm"], first["unit"]);
+  const ReadAs height = readHeightsAs(first);
   const ReadAs length = readAcrossAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
   std::vector<ArealLine> lines;
   for (const ArealGroup& group : kArealGroups)

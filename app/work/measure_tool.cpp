@@ -1,12 +1,14 @@
 #include "app/work/measure_tool.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/inspect/noise_model.h"
 #include "engine/marks/change_marks.h"
 #include "engine/marks/polygon.h"
 #include "engine/measure/areal.h"
-#include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
 #include "engine/uncertainty/areal_figures.h"
 
 namespace fettle::app {
@@ -60,11 +62,14 @@ engine::Result<engine::ArealParameters> parametersOf(const engine::Version& fiel
                                                      const MeasureTool::Options& options, Curves curves,
                                                      engine::JobControl& job) {
   const engine::Region region = regionOf(options.where);
+  const engine::FormInfo& form =
+      *std::ranges::find(engine::formInfos(), options.degree, &engine::FormInfo::degree);
   const auto fit =
-      engine::fitForm(field, {.degree = options.degree, .region = region, .robust = options.robust}, job);
+      engine::fitNominalForm(field, {.kind = form.kind, .region = region, .robust = options.robust}, job);
   if (!fit) return tl::unexpected(fit.error());
   engine::ArealOptions areal;
   areal.region = region;
+  areal.fitted = fit->numbers;
   if (curves == Curves::kWith) {
     areal.at_ratios = curveRatios();
     areal.analysis = true;
@@ -82,6 +87,7 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
   auto measured = parametersOf(field, options, Curves::kWith, job);
   if (!measured) return tl::unexpected(measured.error());
   MeasuredState state{Report(), curvesOf(*measured, field.grid())};
+  if (std::isnan(measured->sq)) state.curves.heights.clear();
   // The noise says nothing of the curves, whose autocorrelation is as large as the field.
   measured->heights.clear();
   measured->analysis.reset();
@@ -133,7 +139,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     auto state = measuredState(after, what, job);
     if (!state) {
       engine::Error error = state.error();
-      if (error.kind == engine::ErrorKind::kInput)
+      if (error.kind == engine::ErrorKind::kInput && error.where == "form")
         error.remedy =
             what.where == Where::kAll ? "every sample is a hole" : "mark samples, or measure all of them";
       return tl::unexpected(error);

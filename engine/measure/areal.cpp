@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <new>
 #include <string>
@@ -21,15 +22,50 @@ namespace fettle::engine {
 namespace {
 
 constexpr int kHaloSide = kTileSide + 1;
+// Half one for each of the two heights that Sz lies between, and as much for what filtered them.
+constexpr double kMostRoundings = 2.0;
 
-// The region's samples of a rectangle less the form; NaN elsewhere.
-void readResiduals(const FieldReader& field, const NominalForm& form, Region region, const SampleRect& rect,
-                   double* out) noexcept {
-  float z[kHaloSide * kHaloSide];
+// The region's samples of a rectangle less the form; NaN elsewhere. Returns the size of the largest height before.
+float readResiduals(const FieldReader& field, const NominalForm& form, Region region, const SampleRect& rect,
+                    double* out) noexcept {
+  float z[kHaloSide * kHaloSide], most = 0.0F;
   readRegion(field, region, rect, z, kHaloSide);
   form.readHeights(rect, out, kHaloSide);
   for (int r = 0; r < rect.rows; ++r)
-    for (int i = r * kHaloSide; i < r * kHaloSide + rect.columns; ++i) out[i] = z[i] - out[i];
+    for (int i = r * kHaloSide; i < r * kHaloSide + rect.columns; ++i) {
+      out[i] = z[i] - out[i];
+      most = std::fmax(most, std::abs(z[i]));
+    }
+  return most;
+}
+
+// The distance of floats of this size.
+double roundingAt(float height) noexcept {
+  return double{std::nextafter(height, std::numeric_limits<float>::infinity())} - height;
+}
+
+// All figures without a value, for one reason.
+void leaveOut(ArealParameters& result, const ArealOptions& options, const std::string& why) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  result.sq = result.ssk = result.sku = result.sp = result.sv = result.sz = result.sa = kNone;
+  result.sdq = result.sdr = kNone;
+  result.ratio = {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+  result.ratios.assign(options.at_heights.size(), kNone);
+  result.heights.assign(options.at_ratios.size(), kNone);
+  SpatialParameters& spatial = result.spatial;
+  spatial.sal = spatial.str = spatial.lay = spatial.sal_direction = spatial.slow_direction = kNone;
+  spatial.no_sal = spatial.no_str = spatial.no_lay = why;
+  result.feature.spd = result.feature.spc = kNone;
+  result.feature.no_spd = result.feature.no_spc = why;
+  const auto note = [&](bool wanted, std::initializer_list<const char*> keys) {
+    if (!wanted) return;
+    for (const char* const key : keys) result.not_stated.push_back({key, why});
+  };
+  note(true, {"sq", "ssk", "sku", "sp", "sv", "sz", "sa"});
+  note(options.spatial, {"sal", "str", "std"});
+  note(options.hybrid, {"sdq", "sdr"});
+  note(options.functional, {"sk", "spk", "svk", "smrk1", "smrk2", "vmp", "vmc", "vvc", "vvv", "sxp"});
+  note(options.feature, {"spd", "spc"});
 }
 
 struct MeanPart {
@@ -37,6 +73,7 @@ struct MeanPart {
   CompensatedSum sum;
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+  float most = 0.0F;  // size of a height with its form
 };
 
 struct PowerPart {
@@ -144,15 +181,16 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
   const Region region = options.region;
   const auto forEachHeight = [&](const SampleRect& rect, auto&& take) {
     double z[kHaloSide * kHaloSide];
-    readResiduals(reader, form, region, rect, z);
+    const float most = readResiduals(reader, form, region, rect, z);
     for (int r = 0; r < rect.rows; ++r)
       for (int i = r * kHaloSide; i < r * kHaloSide + rect.columns; ++i)
         if (!std::isnan(z[i])) take(z[i]);
+    return most;
   };
 
   job.begin("measuring heights", 3 * tileCount(reader));
   const auto means = forEachTile<MeanPart>(reader, job, [&](const SampleRect& rect, MeanPart& part) {
-    forEachHeight(rect, [&](double z) {
+    part.most = forEachHeight(rect, [&](double z) {
       ++part.samples;
       part.sum.add(z);
       part.low = std::min(part.low, z);
@@ -169,6 +207,7 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     all.sum.add(part.sum);
     all.low = std::min(all.low, part.low);
     all.high = std::max(all.high, part.high);
+    all.most = std::max(all.most, part.most);
   }
   if (all.samples == 0)
     return inputError("there is no sample to measure", "measure",
@@ -180,6 +219,16 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
   result.sp = all.high - result.mean;
   result.sv = result.mean - all.low;
   result.sz = all.high - all.low;
+  if (all.samples <= std::max(options.fitted, 1)) {
+    leaveOut(result, options,
+             all.samples == 1 ? "one sample has no height about its mean"
+                              : fmt::format("the form goes through all {} samples", all.samples));
+    return result;
+  }
+  if (result.sz > 0.0 && result.sz <= kMostRoundings * roundingAt(all.most)) {
+    leaveOut(result, options, "what is left is no more than the rounding of the heights");
+    return result;
+  }
 
   const auto powers = forEachTile<PowerPart>(reader, job, [&](const SampleRect& rect, PowerPart& part) {
     forEachHeight(rect, [&](double z) { part.add(z - result.mean); });

@@ -20,7 +20,8 @@ namespace fettle::engine {
 /// Areal surface texture parameters of ISO 25178-2:2021 over the samples of a region, heights about their mean after
 /// the form is taken out. No S- or L-filter is applied: scaleFiltered (scale_filter.h)
 /// before. NaN where the samples do not
-/// determine a figure (skewness of a flat surface, slopes without a cell): `not_stated` has the reason then.
+/// determine a figure (skewness of a flat surface, slopes without a cell): `not_stated` has the reason then. None is stated of a
+/// form through all samples, nor where Sz is no more than two of the steps between floats as large as the heights.
 struct ArealParameters {
   std::int64_t samples = 0;
   std::int64_t cells = 0;  ///< with four samples of the region: those of sdq and sdr
@@ -59,8 +60,10 @@ struct ArealOptions {
   bool hybrid = true, functional = true, spatial = true, feature = true;
   std::vector<double> at_heights = {};  ///< for Smr [height_unit], about the mean
   std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
-  bool analysis = false;                ///< keep the autocorrelation: 4 bytes per sample
-  double prune = 0.05;                  ///< share of Sz below which a hill is no feature
+  /// Numbers of the form that were fitted to these samples, FittedForm::numbers; 0: others, or none.
+  int fitted = 0;
+  bool analysis = false;  ///< keep the autocorrelation: 4 bytes per sample
+  double prune = 0.05;    ///< share of Sz below which a hill is no feature
   /// Memory that is free for spatial parameters [bytes], 0: that is not known; none: as availableMemory() finds it.
   std::optional<std::uint64_t> free_memory = {};
 };

@@ -17,6 +17,8 @@
 
 #include "engine/field/builder.h"
 #include "engine/measure/form.h"
+#include "engine/measure/form_fit.h"
+#include "tests/engine/measure/fields.h"
 
 namespace fettle::engine {
 namespace {
@@ -219,7 +221,7 @@ TEST(Areal, IsWhatPlainLoopsFind) {
 
 TEST(Areal, OfHardFieldsIsAFigureOrNone) {
   const ArealParameters one = measured(Made(1, 1, [](int, int) { return 4.0; }));
-  EXPECT_EQ(one.sq, 0.0);
+  EXPECT_TRUE(std::isnan(one.sq));
   EXPECT_TRUE(std::isnan(one.ssk));
   EXPECT_TRUE(std::isnan(one.sdq));
   const ArealParameters flat = measured(Made(70, 65, [](int, int) { return 4.0; }));
@@ -347,6 +349,46 @@ TEST(Areal, IsBitIdenticalForAnyNumberOfThreads) {
   };
   const auto one = with(1);
   for (const int threads : {2, 4}) EXPECT_EQ(with(threads), one);
+}
+
+// Nothing of three samples is left beside their plane but the rounding of the sums.
+TEST(Areal, AFormThroughAllSamplesLeavesNothingToState) {
+  const auto within = [](int c, int r) {
+    return (c == 3 && r == 4) || (c == 4 && r == 4) || (c == 3 && r == 5);
+  };
+  const Version field = fieldOf(
+      20, 20, [](int c, int r) { return 0.1 * c * c + 0.7 * r; }, within);
+  JobControl job;
+  const auto fit = fitNominalForm(field, {.kind = FormKind::kPlane, .region = Region::kMarked}, job);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->numbers, 3);
+  ArealOptions options{.region = Region::kMarked, .fitted = fit->numbers};
+  options.at_ratios = {0.1};
+  const auto measured = measureAreal(field, fit->form, options, job);
+  ASSERT_TRUE(measured);
+  for (const double value :
+       {measured->sq, measured->sku, measured->sz, measured->sdr, measured->ratio.sk, measured->ratio.sxp,
+        measured->spatial.sal, measured->feature.spd, measured->heights[0]})
+    EXPECT_TRUE(std::isnan(value));
+  ASSERT_EQ(measured->not_stated.size(), 24U);
+  EXPECT_EQ(measured->not_stated[0].reason, "the form goes through all 3 samples");
+  EXPECT_EQ(measured->samples, 3);
+}
+
+TEST(Areal, WhatIsLeftByRoundingIsNotStated) {
+  // A plane that floats round: by half of 2^-20 at heights of 8 to 16.
+  const Version field = fieldOf(60, 50, [](int c, int r) { return 8.0 + 0.013 * c + 0.007 * r; });
+  JobControl job;
+  const auto fit = fitNominalForm(field, {}, job);
+  const auto measured = measureAreal(field, fit->form, {.fitted = fit->numbers}, job);
+  ASSERT_TRUE(measured);
+  EXPECT_TRUE(std::isnan(measured->sq));
+  EXPECT_EQ(measured->not_stated.front().parameter, "sq");
+  EXPECT_EQ(measured->not_stated.front().reason, "what is left is no more than the rounding of the heights");
+  // A wave of some such steps is one.
+  const Version wave =
+      fieldOf(60, 50, [](int c, int r) { return 8.0 + 0.013 * c + 0.007 * r + 1e-5 * std::sin(0.5 * c); });
+  EXPECT_NEAR(measureAreal(wave, fit->form, {}, job)->sq, 1e-5 / std::sqrt(2.0), 2e-7);
 }
 
 }  // namespace
