@@ -1,9 +1,20 @@
 // The kernels of gaussian_regression.cpp; see each_cpu-inl.h. Products and sums are rounded each by itself, in the order of the
 // taps, so that every level has the same bits.
 
-// out[i] = sum over t of weights[t] * in[i + t].
+// out[i] = sum over t of weights[t] * in[i + t], as slide in gaussian_plane-inl.h.
 inline void along(const double* in, const double* weights, int taps, double* out, int n) noexcept {
-  for (int i = 0; i < n; i += 8) {
+  int i = 0;
+  for (; i + 32 <= n; i += 32) {
+    Doubles sum[4] = {};
+    for (int t = 0; t < taps; ++t) {
+      const Doubles w = spread(weights[t]);
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) sum[k] += w * load<Doubles>(in + i + t + 8 * k);
+    }
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) store(out + i + 8 * k, sum[k]);
+  }
+  for (; i < n; i += 8) {
     Doubles sum = {};
     for (int t = 0; t < taps; ++t) sum += spread(weights[t]) * load<Doubles>(in + i + t);
     store(out + i, sum);

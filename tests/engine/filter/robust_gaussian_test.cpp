@@ -66,10 +66,10 @@ TEST(GaussianRegression, IsTheLeastSumOfItsDefinition) {
     const std::vector<double> z = heightsOf(field);
     for (const bool weighted : {false, true}) {
       std::vector<float> weights(z.size() + 16, 1.0F);
-      // Smooth, and none in a stripe of a third.
+      // Rough, and none in stripes askew that are a third of all.
       for (std::size_t i = 0; weighted && i < z.size(); ++i) {
-        const auto c = static_cast<int>(i) % scan.width;
-        weights[i] = c % 30 < 10 ? 0.0F : static_cast<float>(0.5 + 0.5 * ripple(c, 3));
+        const int c = static_cast<int>(i) % scan.width, r = static_cast<int>(i) / scan.width;
+        weights[i] = (c + r) % 30 >= 20 ? 0.0F : static_cast<float>(0.5 + 0.5 * ripple(c, 3));
       }
       const std::vector<double> in_double(weights.begin(), weights.end());
       const std::vector<float> got = regressionOf(field, scan.nesting, weights);

@@ -24,9 +24,9 @@ struct PlainHeight {
 
 inline PlainHeight plainHeight(const MadeScan& scan, const std::vector<double>& z,
                                const std::vector<double>& weights, int column, int row) {
-  using Real = long double;
+  using Real = double;
   Real a[6][7] = {};
-  const Real deviation = 0.7309134280946760L / std::sqrt(2 * std::numbers::pi_v<Real>) * scan.nesting;
+  const Real deviation = 0.7309134280946760 / std::sqrt(2 * std::numbers::pi_v<Real>) * scan.nesting;
   double total = 0.0, distances = 0.0;
   const double here = z[static_cast<std::size_t>(row * scan.width + column)];
   for (int r = 0; r < scan.height; ++r)
@@ -34,11 +34,11 @@ inline PlainHeight plainHeight(const MadeScan& scan, const std::vector<double>& 
       const auto at = static_cast<std::size_t>(r * scan.width + c);
       if (std::isnan(z[at]) || !(weights[at] > 0.0)) continue;
       const Real x = (c - column) * scan.spacing_x / deviation, y = (r - row) * scan.spacing_y / deviation;
-      if (x * x + y * y > 90) continue;  // 3e-20 and less
+      if (x * x + y * y > 60) continue;  // 1e-13 and less
       const Real w = weights[at] * std::exp(-(x * x + y * y) / 2);
       const Real terms[] = {1, x, y, x * x, x * y, y * y, z[at]};
       for (int p = 0; p < 6; ++p)
-        for (int q = 0; q < 7; ++q) a[p][q] += w * terms[p] * terms[q];
+        for (int q = p; q < 7; ++q) a[p][q] += w * terms[p] * terms[q];
       total += static_cast<double>(w);
       distances += static_cast<double>(w) * std::fabs(z[at] - (std::isnan(here) ? 0.0 : here));
     }
@@ -58,11 +58,11 @@ inline PlainHeight plainHeight(const MadeScan& scan, const std::vector<double>& 
   for (int k = 0; k < 6; ++k) whole[k] = a[k][k];
   for (int k = 0; k < 6; ++k) {
     // What rounding leaves of nothing is nothing.
-    there[k] = whole[k] > 0 && passes(static_cast<double>(std::max(a[k][k] / whole[k], 1e-12L)),
+    there[k] = whole[k] > 0 && passes(static_cast<double>(std::max(a[k][k] / whole[k], 1e-12)),
                                       GaussianRegression::kLeastDetermined);
     for (int p = k + 1; p < 6 && there[k]; ++p) {
-      const Real share = a[p][k] / a[k][k];
-      for (int q = k; q < 7; ++q) a[p][q] -= share * a[k][q];
+      const Real share = a[k][p] / a[k][k];
+      for (int q = p; q < 7; ++q) a[p][q] -= share * a[k][q];
     }
   }
   for (int k = 5; k >= 0; --k) {
