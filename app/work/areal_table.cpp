@@ -142,12 +142,24 @@ std::string withoutNoise(const Report& effect, double factor) {
   return fmt::format("{} +- {:.2g}", shownTo(without, error), error);
 }
 
+// Why a figure without noise is not stated.
+std::string noWithout(const Report& effect) {
+  return effect.is_null() ? "" : effect.value("reason", std::string());
+}
+
 void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text,
               const Report& effect, bool noise) {
   if (value.is_null()) return;  // with all others: the reason stands with these
   const std::string without = withoutNoise(effect, shown.factor);
-  fmt::print("{:<8} {:>12} {:<10} {}{}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
-             shown.unit, noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text);
+  const std::string why = noWithout(effect);
+  fmt::print("{:<8} {:>12} {:<10} {}{}{}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
+             shown.unit, noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text,
+             why.empty() ? "" : fmt::format(" (-: {})", why));
+}
+
+std::string withoutRemark(const Report& effect) {
+  const std::string why = noWithout(effect);
+  return why.empty() ? why : "without noise not stated: " + why;
 }
 
 // What the noise does to a parameter; null where that is not known.
@@ -212,7 +224,8 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
         report["noise"]["figures"].push_back(
             {{"parameter", row.key},
              {"without", number(inScanUnits(noise.effects[i].without, row.quantity, grid.lateral_unit.mm))},
-             {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid.lateral_unit.mm))}});
+             {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid.lateral_unit.mm))},
+             {"reason", noise.effects[i].why}});
   }
   // The ratios and heights that were asked for come after all parameters.
   std::size_t next = figures.size();
@@ -221,6 +234,7 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
       for (Report& each : report[list]) {
         each["without"] = number(noise.effects[next].without);
         each["error"] = number(noise.effects[next].error);
+        each["reason"] = noise.effects[next].why;
         ++next;
       }
 }
@@ -319,15 +333,17 @@ std::string arealRows(const std::string& scan, const Report& report) {
     if (report.contains(row.key)) {
       const Report& value = report[row.key];
       add(row.group, row.name, value, row.quantity,
-          value.is_null() ? "not stated: " + reasonOf(report, row.key) : "", effectOn(report, row.key));
+          value.is_null() ? "not stated: " + reasonOf(report, row.key)
+                          : withoutRemark(effectOn(report, row.key)),
+          effectOn(report, row.key));
     }
   if (!report.contains("smr")) return text;
   for (const Report& each : report["smr"])
     add("functional", fmt::format("Smr({:.9g})", each["height"].get<double>()), each["ratio"],
-        Quantity::kRatio, "", report.contains("noise") ? each : Report());
+        Quantity::kRatio, withoutRemark(each), report.contains("noise") ? each : Report());
   for (const Report& each : report["smc"])
     add("functional", fmt::format("Smc({:.9g} %)", each["ratio"].get<double>() * 100.0), each["height"],
-        Quantity::kHeight, "", report.contains("noise") ? each : Report());
+        Quantity::kHeight, withoutRemark(each), report.contains("noise") ? each : Report());
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -33,7 +34,10 @@ Report numberOf(double value) {
 }
 
 void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
-  report[fmt::format("{}_{}", key, unit)] = value;
+  // An angle is no more than 90 degrees off any other: such an error leaves all of them.
+  constexpr double kMostDegrees = 90.0;
+  if (std::string_view(unit) == "deg" && error > kMostDegrees) value = error = std::nan("");
+  report[fmt::format("{}_{}", key, unit)] = numberOf(value);
   report[fmt::format("{}_error_{}", key, unit)] = numberOf(error);
 }
 
@@ -115,9 +119,6 @@ Report relationReport(int first, int second, const engine::ShapeRelation& relati
   addFigure(report, "angle", "deg", relation.angle_deg.value, relation.angle_deg.error);
   addFigure(report, "distance", "mm", relation.distance_mm.value, relation.distance_mm.error);
   addFigure(report, "between_axes", "mm", relation.between_axes_mm.value, relation.between_axes_mm.error);
-  for (const auto& [key, error] :
-       {std::pair("angle_deg", "angle_error_deg"), {"between_axes_mm", "between_axes_error_mm"}})
-    if (std::isnan(report[key].get<double>())) report[key] = report[error] = Report();
   return report;
 }
 
@@ -181,8 +182,9 @@ std::string fitCsv(const Report& report) {
   for (const Report& fit : report["fits"]) {
     const auto row = [&](const std::string& figure, const Report& value, const Report& error,
                          const char* unit) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{},{},{}\n", fit["region"].get<int>(),
-                     fit["shape"].get<std::string>(), figure, value.get<double>(),
+      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", fit["region"].get<int>(),
+                     fit["shape"].get<std::string>(), figure,
+                     value.is_null() ? "" : fmt::format("{:.12g}", value.get<double>()),
                      error.is_null() ? "" : fmt::format("{:.6g}", error.get<double>()), unit, layer);
     };
     for (std::size_t k = 0; k < 3; ++k)

@@ -193,6 +193,12 @@ Report numberOrNull(double value) {
 
 void addEstimate(Report& report, const std::string& key, const std::string& unit, const Estimate& estimate) {
   const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
+  // Lines are inclined by up to 90 degrees either way: such an error leaves all of them.
+  constexpr double kMostDegrees = 90.0;
+  if (unit == "deg" && estimate.error > kMostDegrees) {
+    report[key + ending] = report[key + "_error" + ending] = Report();
+    return;
+  }
   report[key + ending] = numberOrNull(estimate.value);
   report[key + "_error" + ending] = numberOrNull(estimate.error);
 }

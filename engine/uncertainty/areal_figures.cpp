@@ -11,31 +11,33 @@ namespace {
 using P = ArealParameters;
 using G = NoiseGrowth;
 
+constexpr FigureRange kFromZero{.low = 0.0}, kShareRange{0.0, 1.0};
+
 constexpr ArealFigure kFigures[] = {
-    {"sq", [](const P& p) { return p.sq; }, G::kSquare},
-    {"ssk", [](const P& p) { return p.ssk; }, G::kPlain},
-    {"sku", [](const P& p) { return p.sku; }, G::kPlain},
-    {"sp", [](const P& p) { return p.sp; }, G::kExtreme},
-    {"sv", [](const P& p) { return p.sv; }, G::kExtreme},
-    {"sz", [](const P& p) { return p.sz; }, G::kExtreme},
-    {"sa", [](const P& p) { return p.sa; }, G::kSquare},
-    {"sal", [](const P& p) { return p.spatial.sal; }, G::kPlain},
-    {"str", [](const P& p) { return p.spatial.str; }, G::kPlain},
-    {"std", [](const P& p) { return p.spatial.lay; }, G::kAxis},
-    {"sdq", [](const P& p) { return p.sdq; }, G::kSquare},
-    {"sdr", [](const P& p) { return p.sdr; }, G::kPlain},
-    {"sk", [](const P& p) { return p.ratio.sk; }, G::kRank},
-    {"spk", [](const P& p) { return p.ratio.spk; }, G::kRank},
-    {"svk", [](const P& p) { return p.ratio.svk; }, G::kRank},
-    {"smrk1", [](const P& p) { return p.ratio.smrk1; }, G::kShare},
-    {"smrk2", [](const P& p) { return p.ratio.smrk2; }, G::kShare},
-    {"vmp", [](const P& p) { return p.ratio.vmp; }, G::kRank},
-    {"vmc", [](const P& p) { return p.ratio.vmc; }, G::kRank},
-    {"vvc", [](const P& p) { return p.ratio.vvc; }, G::kRank},
-    {"vvv", [](const P& p) { return p.ratio.vvv; }, G::kRank},
-    {"sxp", [](const P& p) { return p.ratio.sxp; }, G::kRank},
-    {"spd", [](const P& p) { return p.feature.spd; }, G::kPlaces},
-    {"spc", [](const P& p) { return p.feature.spc; }, G::kPlaces},
+    {"sq", [](const P& p) { return p.sq; }, G::kSquare, kFromZero},
+    {"ssk", [](const P& p) { return p.ssk; }, G::kPlain, {}},
+    {"sku", [](const P& p) { return p.sku; }, G::kPlain, {.low = 1.0}},
+    {"sp", [](const P& p) { return p.sp; }, G::kExtreme, kFromZero},
+    {"sv", [](const P& p) { return p.sv; }, G::kExtreme, kFromZero},
+    {"sz", [](const P& p) { return p.sz; }, G::kExtreme, kFromZero},
+    {"sa", [](const P& p) { return p.sa; }, G::kSquare, kFromZero},
+    {"sal", [](const P& p) { return p.spatial.sal; }, G::kPlain, kFromZero},
+    {"str", [](const P& p) { return p.spatial.str; }, G::kPlain, kShareRange},
+    {"std", [](const P& p) { return p.spatial.lay; }, G::kAxis, {0.0, 180.0}},
+    {"sdq", [](const P& p) { return p.sdq; }, G::kSquare, kFromZero},
+    {"sdr", [](const P& p) { return p.sdr; }, G::kPlain, kFromZero},
+    {"sk", [](const P& p) { return p.ratio.sk; }, G::kRank, kFromZero},
+    {"spk", [](const P& p) { return p.ratio.spk; }, G::kRank, kFromZero},
+    {"svk", [](const P& p) { return p.ratio.svk; }, G::kRank, kFromZero},
+    {"smrk1", [](const P& p) { return p.ratio.smrk1; }, G::kShare, kShareRange},
+    {"smrk2", [](const P& p) { return p.ratio.smrk2; }, G::kShare, kShareRange},
+    {"vmp", [](const P& p) { return p.ratio.vmp; }, G::kRank, kFromZero},
+    {"vmc", [](const P& p) { return p.ratio.vmc; }, G::kRank, kFromZero},
+    {"vvc", [](const P& p) { return p.ratio.vvc; }, G::kRank, kFromZero},
+    {"vvv", [](const P& p) { return p.ratio.vvv; }, G::kRank, kFromZero},
+    {"sxp", [](const P& p) { return p.ratio.sxp; }, G::kRank, kFromZero},
+    {"spd", [](const P& p) { return p.feature.spd; }, G::kPlaces, kFromZero},
+    {"spc", [](const P& p) { return p.feature.spc; }, G::kPlaces, kFromZero},
 };
 
 }  // namespace
@@ -66,6 +68,15 @@ std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured) {
   return growths;
 }
 
+void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured) {
+  const std::vector<double> found = valuesOf(measured);
+  std::vector<FigureRange> ranges;
+  for (const ArealFigure& figure : kFigures) ranges.push_back(figure.range);
+  ranges.resize(ranges.size() + measured.ratios.size(), kShareRange);
+  ranges.resize(found.size());  // heights have any
+  for (std::size_t i = 0; i < found.size(); ++i) effects[i] = withinRange(effects[i], found[i], ranges[i]);
+}
+
 Result<std::vector<NoiseEffect>> arealEffects(
     const Version& field, const NoiseModel& noise, const ArealParameters& measured,
     const std::function<Result<ArealParameters>(const Version&)>& measure, const NoiseTrialOptions& options,
@@ -81,6 +92,7 @@ Result<std::vector<NoiseEffect>> arealEffects(
       },
       options, job);
   if (effects && measured.sq > 0.0) addRankDoubt(*effects, growths, noise.sigma / measured.sq);
+  if (effects) keepWithinRanges(*effects, measured);
   return effects;
 }
 

@@ -15,6 +15,7 @@ struct ArealFigure {
   std::string_view key;  ///< "sq"; that of ArealParameters::NotStated too
   double (*of)(const ArealParameters&);
   NoiseGrowth growth;
+  FigureRange range;
 };
 /// That of a key that there is.
 [[nodiscard]] const ArealFigure& arealFigure(std::string_view key) noexcept;
@@ -24,7 +25,10 @@ struct ArealFigure {
 [[nodiscard]] std::vector<double> valuesOf(const ArealParameters& measured);
 [[nodiscard]] std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured);
 
-/// noiseEffects() of the parameters of a field, with addRankDoubt(). `measure` measures them of a field as `measured` was.
+/// withinRange() of each effect on what was found in valuesOf(): no figure with an error that leaves it open.
+void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured);
+
+/// noiseEffects() of the parameters of a field, with addRankDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
 [[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(
     const Version& field, const NoiseModel& noise, const ArealParameters& measured,
     const std::function<Result<ArealParameters>(const Version&)>& measure, const NoiseTrialOptions& options,

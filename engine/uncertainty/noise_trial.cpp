@@ -70,7 +70,8 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
     halves.push_back(0.5 * (more - less));
     means.push_back(0.5 * (more + less));
   }
-  if (halves.size() < 2 || 4 * halves.size() < 3 * pairs.size()) return {kNone, kNone};
+  if (halves.size() < 2 || 4 * halves.size() < 3 * pairs.size())
+    return {kNone, kNone, "with more noise it is not determined"};
   const auto n = static_cast<double>(halves.size());
   const double whole = grownBy(growth, found, found), part = grownBy(growth, of_part, of_part);
   const double middle = mean(means), raise = middle - part;
@@ -93,13 +94,14 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
   }
   // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
   without = std::sqrt(std::max(without, 0.0));
-  if (found - without > rule.most * found) return {kNone, kNone};
+  if (found - without > rule.most * found) return {kNone, kNone, "noise raises it by more than a fifth"};
   const double square = without * without;
   // Rounding of the squares is no error: no trial changed the figure.
   if (error <= 1e-12 * square) return {without, 0.0};
   const double by = square > error ? without - std::sqrt(square - error)
                                    : std::max(without, std::sqrt(square + error) - without);
-  if (by > kMostError * without && rule.most < kAny) return {kNone, kNone};
+  if (by > kMostError * without && rule.most < kAny)
+    return {kNone, kNone, "its error is more than half of it"};
   return {without, by};
 }
 
@@ -176,6 +178,20 @@ Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseM
   for (std::size_t i = 0; i < found.size(); ++i)
     effects.push_back(noiseEffectOf(found[i], pairs[i], growth[i]));
   return effects;
+}
+
+NoiseEffect withinRange(const NoiseEffect& effect, double found, const FigureRange& range) {
+  if (std::isnan(effect.without)) return effect;
+  NoiseEffect result = effect;
+  const double beyond = std::max(range.low - effect.without, effect.without - range.high);
+  if (beyond > 2.0 * effect.error) return {kNone, kNone, "without noise it is a figure that cannot be"};
+  if (beyond > 0.0) result.without = std::clamp(effect.without, range.low, range.high);
+  const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
+  if (!std::isfinite(effect.error) || (low && high && effect.error > 0.5 * (range.high - range.low)))
+    return {kNone, kNone, "its error is as large as its range"};
+  if (low && !high && effect.error > std::max(found, result.without) - range.low)
+    return {kNone, kNone, "its error is larger than it"};
+  return result;
 }
 
 void addRankDoubt(std::span<NoiseEffect> effects, std::span<const NoiseGrowth> growth, double share) {

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -32,6 +34,8 @@ struct NoiseEffect {
   double without = 0.0;
   /// Its standard error by the noise of the scan; 0 where no trial changed it, NaN as `without`.
   double error = 0.0;
+  std::string_view why =
+      {};  ///< why there is none; empty where there is one, and of a figure that is not stated itself
 };
 
 struct NoiseTrialOptions {
@@ -89,6 +93,15 @@ struct TrialPair {
   double more = 0.0, less = 0.0;
 };
 [[nodiscard]] NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth);
+
+/// The values that a figure can have.
+struct FigureRange {
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+};
+/// An effect within it: without a value, and with the reason, where the error says nothing of the figure, since it is more than half of the range,
+/// or, of a range with one end, than the figure's distance from that end with noise and without. A figure without noise that is beyond the
+/// range is the end of it where it is no more than two errors away, else it has no value.
+[[nodiscard]] NoiseEffect withinRange(const NoiseEffect& effect, double found, const FigureRange& range);
 
 /// Adds to the error of kRank and kShare figures what extrapolation leaves of them on surfaces with steps, twice the square of `share` of each:
 /// the noise's standard deviation over the surface's.

@@ -238,9 +238,10 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
     if (key == "sz") extreme(between);
     if ((key == "sal" && !(measured.spatial.sal < reach)) ||
         ((key == "str" || key == "std") && !(slowest < reach)))
-      result.effects[i] = {kNoEffect, kNoEffect};
+      result.effects[i] = {kNoEffect, kNoEffect, "it reaches over half of the squares of trials"};
   }
   if (measured.sq > 0.0) addRankDoubt(result.effects, growths, noise.sigma / measured.sq);
+  keepWithinRanges(result.effects, measured);
   return result;
 } catch (const std::bad_alloc&) {
   return failure("memory is exhausted", "measuring errors", "leave the errors out with --noise-trials 0");

@@ -188,5 +188,59 @@ TEST(NoiseTrial, OfOneRowAFlatPlateAndSpikesIsFiniteOrNone) {
   EXPECT_FALSE(withNoise(plateOf(40, 40), whiteOf(1.0), 1, 1.0, cancelled));
 }
 
+TEST(NoiseTrial, AnErrorThatLeavesAFigureOpenIsNone) {
+  const FigureRange share{0.0, 1.0}, size{.low = 0.0}, angle{0.0, 180.0};
+  // Smrk1 +- 2.9e17 %, Smrk2 90 +- 180 %, an angle +- 3e5 degrees.
+  for (const NoiseEffect& effect :
+       {withinRange({0.1, 2.9e15}, 0.1, share), withinRange({0.9, 1.8}, 0.9, share),
+        withinRange({30.0, 3e5}, 31.0, angle), withinRange({0.2, 1.1}, 1.0, size),
+        withinRange({0.5, std::numeric_limits<double>::infinity()}, 0.5, {})}) {
+    EXPECT_TRUE(std::isnan(effect.without) && std::isnan(effect.error));
+    EXPECT_FALSE(effect.why.empty());
+  }
+  const NoiseEffect usual = withinRange({0.9, 0.02}, 0.88, share);
+  EXPECT_EQ(usual.without, 0.9);
+  EXPECT_EQ(usual.error, 0.02);
+  EXPECT_EQ(usual.why, "");
+  // All of Sdr may be noise: 0 is then as near as the error; far below it is no figure.
+  EXPECT_EQ(withinRange({-0.01, 0.02}, 0.05, size).without, 0.0);
+  EXPECT_EQ(withinRange({-0.01, 0.02}, 0.05, size).error, 0.02);
+  EXPECT_TRUE(std::isnan(withinRange({-0.05, 0.02}, 0.05, size).without));
+  EXPECT_EQ(withinRange({1.01, 0.02}, 0.99, share).without, 1.0);
+  // Skewness has any value.
+  EXPECT_EQ(withinRange({-3.0, 4.0}, 0.5, {}).error, 4.0);
+}
+
+TEST(NoiseTrial, ParametersUnderMuchNoiseStayWithinTheirRanges) {
+  const Version field = [] {
+    Grid grid;
+    grid.width = 64;
+    grid.height = 48;
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<float> z;
+    for (int i = 0; i < 64 * 48; ++i) z.push_back(static_cast<float>(1e-3 * normal(random)));
+    return makeField(grid, z, {});
+  }();
+  JobControl job;
+  const auto measure = [&](const Version& of) -> Result<ArealParameters> {
+    return measureAreal(of, PolynomialForm{0, 64, 48, 0.0, {0.0}}, {.spatial = false}, job);
+  };
+  const auto measured = measure(field);
+  ASSERT_TRUE(measured);
+  // A hundred times the noise that there is.
+  const auto effects = arealEffects(field, whiteOf(0.1), *measured, measure, {.pairs = 2}, job);
+  ASSERT_TRUE(effects);
+  for (std::size_t i = 0; i < arealFigures().size(); ++i) {
+    const auto& [key, of, growth, range] = arealFigures()[i];
+    const NoiseEffect& effect = (*effects)[i];
+    if (std::isnan(effect.without)) continue;
+    EXPECT_GE(effect.without, range.low) << key;
+    EXPECT_LE(effect.without, range.high) << key;
+    EXPECT_LE(effect.error, range.high - range.low) << key;
+  }
+  EXPECT_FALSE((*effects)[15].why.empty());  // smrk1
+}
+
 }  // namespace
 }  // namespace fettle::engine
