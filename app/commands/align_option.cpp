@@ -145,7 +145,7 @@ Report alignReport(const AlignArguments& arguments, const engine::Alignment& ali
   const std::array<bool, 6> free{moves.shift, moves.shift, true, moves.rotation, moves.tilt, moves.tilt};
   Report report{{"moves", arguments.moves}, {"region", arguments.region.empty() ? "all" : arguments.region}};
   for (std::size_t k = 0; k < values.size(); ++k) {
-    report[alignKey(kAlignFigures[k], "")] = values[k];
+    report[alignKey(kAlignFigures[k], "")] = free[k] ? values[k] : 0.0;
     report[alignKey(kAlignFigures[k], "_error")] = free[k] ? Report(errors[k]) : Report();
   }
   report["centre_mm"] = {motion.centre.x, motion.centre.y, motion.centre.z};
@@ -166,10 +166,12 @@ void printAlignment(const Report& report) {
     longest = std::max(longest, std::abs(report[key].get<double>()));
   const ReadAs length = readLengthAs(longest, 1.0, "mm"), height = readLengthAs(rms, 1.0, "mm"),
                degrees{"degrees", 1.0};
-  for (const AlignFigure& figure : kAlignFigures)
+  for (const AlignFigure& figure : kAlignFigures) {
+    if (report[alignKey(figure, "_error")].is_null()) continue;  // not fitted
     fmt::print(
         "{:<11} {}\n", figure.title,
         shownEstimate(report, figure.key, figure.unit, std::string(figure.unit) == "mm" ? length : degrees));
+  }
   fmt::print("by          {} samples, {:.3g} % of A; {:.3g} % of them lie apart and do not count\n",
              report["samples"].get<std::int64_t>(), 100.0 * report["overlap"].get<double>(),
              100.0 * report["left_out"].get<double>());

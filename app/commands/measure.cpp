@@ -194,6 +194,7 @@ engine::Result<Report> measureAll(const MeasureArguments& options, const std::ve
 engine::Result<Report> measure(const MeasureArguments& options, const std::vector<std::string>& arguments,
                                engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
+  if (auto status = checkNoiseTrials(options.noise_trials); !status) return tl::unexpected(status.error());
   const bool functional =
       options.groups.empty() || std::ranges::find(options.groups, "functional") != options.groups.end();
   if (!functional && (!options.at_heights.empty() || !options.at_ratios.empty()))

@@ -32,11 +32,20 @@ void addNoiseOption(Command command, int& trials) {
   command.add(
       {{.name = "--noise-trials",
         .to = &trials,
-        .text = "Measure so often with the scan's own noise added, for each parameter without noise and its "
-                "standard error; 0: leave these out",
+        .text =
+            "Measure so often with the scan's own noise added, for each parameter without noise and its "
+            "standard error: an even number, 4 or more, as a noise and its opposite make a pair; 0: leave "
+            "these out",
         .range = Range{0.0, 1000.0},
         .otherwise = "as many as measure 4 million samples, 16 at most; of more than 1 million 4 on a part "
                      "that stands for all"}});
+}
+
+engine::Status checkNoiseTrials(int trials) {
+  if (trials == kUsualTrials || trials == 0 || (trials >= kFewestTrials && trials % 2 == 0)) return {};
+  return engine::inputError(
+      fmt::format("{} trials are not possible: a noise and its opposite make a pair", trials),
+      "--noise-trials", "give 0, or an even number from 4 on");
 }
 
 engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& field,
@@ -58,7 +67,7 @@ engine::Result<std::optional<ArealNoise>> arealNoise(const engine::Version& fiel
   if (std::isnan(noise->sigma)) return std::optional<ArealNoise>();
   // What the command has said of the scan is not said again of each trial.
   const KeptMessages said;
-  const int pairs = std::max(wanted / 2, 2);
+  const int pairs = wanted / 2;
   auto effects = engine::arealEffects(field, *noise, measured, measure, {.pairs = pairs}, job);
   if (!effects) return tl::unexpected(effects.error());
   return ArealNoise{noise->sigma, 2 * pairs, *std::move(effects)};

@@ -17,6 +17,9 @@ void addNoiseOption(Command command, int& trials);
 /// Its value where it is not given.
 inline constexpr int kUsualTrials = -1;
 
+/// Refuses what are no pairs: 1, 2 and odd numbers.
+[[nodiscard]] engine::Status checkNoiseTrials(int trials);
+
 /// How many are made of a field of so many samples where `trials` was given, or kUsualTrials.
 [[nodiscard]] int noiseTrials(int trials, std::int64_t samples) noexcept;
 

@@ -42,6 +42,13 @@ int finish(int status) {
   return status;
 }
 
+// -0 is written as 0.
+void withoutNegativeZero(Report& report) {
+  if (report.is_number_float() && report.get<double>() == 0.0) report = 0.0;
+  if (!report.is_structured()) return;
+  for (Report& each : report) withoutNegativeZero(each);
+}
+
 int runChosen(const Chosen& chosen) {
   JobControl job;
   const InterruptGuard interrupt(job);
@@ -51,6 +58,7 @@ int runChosen(const Chosen& chosen) {
     return chosen.run(job);
   }();
   if (!result) return report(result.error());
+  withoutNegativeZero(*result);
   const int status = chosen.status ? chosen.status(*result) : 0;
   try {
     // Printing throws when standard output is full or closed; the work is done then, as its files show.

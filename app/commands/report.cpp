@@ -91,6 +91,7 @@ engine::Result<Report> writeReport(const ReportArguments& options, engine::JobCo
   if (*extension == kPdfExtension)
     if (auto status = pdfIsPossible(); !status) return tl::unexpected(status.error());
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
+  if (auto status = checkNoiseTrials(options.noise_trials); !status) return tl::unexpected(status.error());
   if (auto status =
           checkOutputs({{options.out, OutputKind::kPage, *extension}},
                        {options.scan, options.original, options.form.marks}, Replacing::kNoWork, job);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -46,8 +47,10 @@ std::string rangeText(const Parameter& p) {
   const std::string unit = p.unit.empty() ? "" : " " + p.unit;
   if (!p.range) return p.unit.empty() ? "" : "in " + p.unit;
   const auto [lowest, highest] = *p.range;
-  if (std::isinf(highest)) return fmt::format("at least {:g}{}", lowest, unit);
-  if (std::isinf(lowest)) return fmt::format("at most {:g}{}", highest, unit);
+  constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::min();
+  if (highest == kMost && lowest == kLeast) return fmt::format("above 0{}", unit);
+  if (std::isinf(highest) || highest == kMost) return fmt::format("at least {:g}{}", lowest, unit);
+  if (std::isinf(lowest) || lowest == -kMost) return fmt::format("at most {:g}{}", highest, unit);
   // Whole numbers in full: {:g} would write 31623 x 31623 as 1e+09.
   const auto shown = [](double v) {
     return std::abs(v) < 1e9 && v == std::floor(v) ? fmt::format("{:.0f}", v) : fmt::format("{:g}", v);

@@ -33,7 +33,7 @@ std::optional<engine::AlignOptions> alignOptionsOf(const CompareTool::Options& w
 }
 
 std::string figureLine(const char* name, double value, double error, double scale, const std::string& unit) {
-  if (!(error > 0.0)) return fmt::format("{} {:.4g} {}, not free", name, value * scale, unit);
+  if (!(error > 0.0)) return fmt::format("{}: not free", name);
   return fmt::format("{} {} +- {:.2g} {}", name, shownTo(value * scale, error * scale), error * scale, unit);
 }
 

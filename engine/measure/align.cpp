@@ -164,16 +164,29 @@ Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& f
   return result;
 }
 
-// Directions as words: what a vector of the six moves.
-std::string movesOf(const Vector6& direction) {
+// Directions as words, each motion once: where as many motions as directions are moved, every mixture of them is open, as
+// a shift along x and one along y of a flat field; else a direction is a mixture, as a shift with a tilt of a sphere.
+std::string movesOf(const std::vector<Vector6>& directions) {
   constexpr const char* kNames[] = {"a shift along x", "a shift along y", "the height",
                                     "a tilt about x",  "a tilt about y",  "the rotation about z"};
-  std::string text;
-  const double most = direction.cwiseAbs().maxCoeff();
-  for (int k : {0, 1, 5, 3, 4, 2}) {
-    if (std::abs(direction[k]) < 0.35 * most) continue;
-    text += text.empty() ? kNames[k] : std::string(" with ") + kNames[k];
+  constexpr int kOrder[] = {0, 1, 5, 3, 4, 2};
+  const auto moves = [](const Vector6& direction, int k) {
+    return std::abs(direction[k]) >= 0.35 * direction.cwiseAbs().maxCoeff();
+  };
+  std::vector<std::string> all, mixtures;
+  for (const int k : kOrder)
+    if (std::ranges::any_of(directions, [&](const Vector6& direction) { return moves(direction, k); }))
+      all.emplace_back(kNames[k]);
+  for (const Vector6& direction : directions) {
+    std::string text;
+    for (const int k : kOrder)
+      if (moves(direction, k)) text += text.empty() ? kNames[k] : std::string(" with ") + kNames[k];
+    if (std::ranges::find(mixtures, text) == mixtures.end()) mixtures.push_back(std::move(text));
   }
+  const std::vector<std::string>& named = all.size() <= directions.size() ? all : mixtures;
+  std::string text;
+  for (std::size_t k = 0; k < named.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == named.size() ? " and " : ", ") + named[k];
   return text;
 }
 
@@ -238,7 +251,7 @@ Eigen::MatrixXd freeOf(const Matrix6& all, const std::vector<int>& free) {
 std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, double rounding,
                       double independent) {
   constexpr double kErrors = 5.0, kOfSlopes = 1e-3, kCorrelation = 0.5, kFewest = 50.0;
-  std::string text;
+  std::vector<Vector6> open;
   Matrix6 cross = Matrix6::Zero();
   double samples = 0.0, slopes = 0.0, used = 0.0;
   for (const BlockSum& block : blocks) {
@@ -265,10 +278,9 @@ std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, d
         samples * (rounding * rounding + kOfSlopes * kOfSlopes * slopes / std::max(1.0, samples));
     const bool alike = independent >= kFewest &&
                        sum > kCorrelation * std::sqrt(std::max(0.0, first) * std::max(0.0, second));
-    if (!(sum > kErrors * error || alike) || !(sum > least))
-      text += (text.empty() ? "" : ", and ") + movesOf(direction);
+    if (!(sum > kErrors * error || alike) || !(sum > least)) open.push_back(direction);
   }
-  return text;
+  return movesOf(open);
 }
 
 // Samples in a direction that become one height, for the spacing `side` that is wished for.
@@ -370,9 +382,14 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
     whole = level->points().size();
     const double map_seconds = watch.seconds();
     if (whole < 12)
-      return inputError(
-          fmt::format("{} heights of A that count are too few to align by", whole), "A",
-          options.region == Region::kAll ? "is every sample a hole?" : "mark more, or take all");
+      return inputError(fmt::format("{} heights of A are whole after a Gaussian window of {:.3g} mm, which "
+                                    "reaches over no border and "
+                                    "no hole: too few to align by",
+                                    whole, sigma),
+                        "A",
+                        options.region == Region::kAll
+                            ? "give a scan that is some 20 samples wide and high, or fill its holes"
+                            : "take a larger region, or all");
     const bool last = k + 1 == sides.size();
     const double least = std::max(rounding_mm, 1e-12 * arm);
     std::vector<RigidMotion> starts;

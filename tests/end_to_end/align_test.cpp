@@ -96,5 +96,29 @@ TEST(AlignCommand, SaysWhatItCannotDo) {
   EXPECT_EQ(fettle({"align", plane, plane, out, "--moves", "level", "--unit", "mm"}).status, 0);
 }
 
+TEST(AlignCommand, StatesWhatWasFittedAlone) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "128x128", "--part", "bracket"}).status, 0);
+  const Outcome all = fettle({"align", scan, scan, "--unit", "mm"});
+  // Rounding far below the error is 0, and no figure is -0.
+  EXPECT_NE(all.out.find("shift x     0 +-"), std::string::npos) << all.out;
+  EXPECT_EQ(all.out.find("-0 "), std::string::npos) << all.out;
+  const Outcome level = fettle({"align", scan, scan, "--unit", "mm", "--moves", "level"});
+  EXPECT_EQ(level.out.find("shift x"), std::string::npos) << level.out;
+  EXPECT_EQ(level.out.find("rotation z"), std::string::npos) << level.out;
+  EXPECT_NE(level.out.find("shift z"), std::string::npos) << level.out;
+  const auto report = fettleJson({"align", scan, scan, "--unit", "mm", "--moves", "level"});
+  EXPECT_EQ(report["shift_x_mm"].get<double>(), 0.0);
+  EXPECT_TRUE(report["shift_x_error_mm"].is_null());
+}
+
+TEST(AlignCommand, RangesOfHelpAreThoseOfAPerson) {
+  const Outcome help = fettle({"report", "--help"});
+  EXPECT_EQ(help.out.find("e+308"), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("above 0 mm"), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("at least 0 mm"), std::string::npos) << help.out;
+}
+
 }  // namespace
 }  // namespace fettle::tests

@@ -322,7 +322,8 @@ TEST(Measure, StatesWhatNoiseDoesToEachParameter) {
   const auto few = fettleJson({"measure", noisy, "--unit", "mm", "--noise-trials", "6", "--only", "height"});
   EXPECT_EQ(few["noise"]["trials"], 6);
   EXPECT_EQ(few["noise"]["figures"].size(), 7U);
-  expectRefused(fettle({"measure", noisy, "--unit", "mm", "--noise-trials", "-1"}), "--noise-trials");
+  for (const char* const trials : {"-1", "1", "2", "5"})
+    expectRefused(fettle({"measure", noisy, "--unit", "mm", "--noise-trials", trials}), "--noise-trials");
 }
 
 TEST(Measure, MaterialRatiosAreThoseAskedFor) {

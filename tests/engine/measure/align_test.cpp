@@ -344,6 +344,36 @@ TEST(Align, WhatTheSurfaceDoesNotDecideIsNamed) {
     }
 }
 
+TEST(Align, EachOpenMotionIsNamedOnce) {
+  JobControl job;
+  const Version flat = sampledField(
+      squareGrid(40, 40, 1.0, 1.0), [](double, double) { return 1.5; }, {}, 0.0, 1);
+  const auto found = alignFields(flat, flat, {}, job);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().what,
+            "the surface does not decide a shift along x, a shift along y and the rotation about z");
+  // Noise alone mixes the three.
+  const Version noisy = sampledField(
+      squareGrid(60, 60, 1.0, 1.0), [](double, double) { return 0.0; }, {}, 0.1, 1);
+  const Version other = sampledField(
+      squareGrid(60, 60, 1.0, 1.0), [](double, double) { return 0.0; }, {}, 0.1, 2);
+  const auto mixed = alignFields(noisy, other, {}, job);
+  ASSERT_FALSE(mixed);
+  const std::string& what = mixed.error().what;
+  EXPECT_EQ(what.find("shift along x"), what.rfind("shift along x")) << what;
+}
+
+TEST(Align, OneRowIsTooFewAndSaysWhy) {
+  JobControl job;
+  const Version row = sampledField(
+      squareGrid(40, 1, 1.0, 1.0), [](double x, double) { return 0.1 * x * x; }, {}, 0.0, 1);
+  const auto found = alignFields(row, row, {}, job);
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().what.find("0 heights of A are whole after a Gaussian window of 1.25 mm"),
+            std::string::npos)
+      << found.error().line();
+}
+
 TEST(Align, AnotherPartIsRefused) {
   const Grid grid = squareGrid(96, 96, 0.1, 0.1);
   const ShapeOf other = [](double x, double y) {
