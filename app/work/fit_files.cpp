@@ -36,7 +36,8 @@ Report numberOf(double value) {
 void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
   // An angle is no more than 90 degrees off any other: such an error leaves all of them.
   constexpr double kMostDegrees = 90.0;
-  if (std::string_view(unit) == "deg" && error > kMostDegrees) value = error = std::nan("");
+  if (std::string_view(unit) == "deg" && error > kMostDegrees) value = std::nan("");
+  if (std::isnan(value)) error = value;
   report[fmt::format("{}_{}", key, unit)] = numberOf(value);
   report[fmt::format("{}_error_{}", key, unit)] = numberOf(error);
 }
