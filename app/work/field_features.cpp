@@ -1,5 +1,6 @@
 #include "app/work/field_features.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -66,8 +67,10 @@ engine::Result<FieldFeatures> featuresOf(const engine::Version& field, const eng
   features.dales = options.dales;
   if (features.dales)
     for (float& z : surface->heights) z = -z;
-  features.sz = measured->sz;
-  features.least = 0.01 * options.prune * measured->sz;
+  // Of a surface that is nothing but rounding there is none.
+  if (std::isnan(measured->sz)) std::ranges::fill(surface->heights, std::numeric_limits<float>::quiet_NaN());
+  features.sz = std::isnan(measured->sz) ? 0.0 : measured->sz;
+  features.least = 0.01 * options.prune * features.sz;
   auto map = engine::mapHills(*surface, features.least, job);
   if (!map) return tl::unexpected(map.error());
   features.figures = engine::figuresOfHills(*surface, *map);
