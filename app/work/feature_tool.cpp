@@ -12,7 +12,8 @@ namespace fettle::app {
 void FeatureTool::find(const LoopClient& client) {
   working_.replace(
       [field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-        const auto fit = engine::fitForm(field, {.degree = what.degree, .region = what.what.region, .robust = false}, job);
+        const auto fit =
+            engine::fitForm(field, {.degree = what.degree, .region = what.what.region, .robust = false}, job);
         auto features = fit ? featuresOf(field, fit->form, what.what, "", job)
                             : engine::Result<FieldFeatures>(tl::unexpected(fit.error()));
         if (!features) {

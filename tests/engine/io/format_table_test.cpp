@@ -199,11 +199,11 @@ void checkPlace(const Row& row, const Written& how) {
     EXPECT_EQ(to.spacing_y, from.spacing_y);
     EXPECT_EQ(to.origin_x, from.origin_x);
     EXPECT_EQ(to.origin_y, from.origin_y);
-  } else if (row.place == "to 7 digits, from the corner") {
+  } else if (row.place == "to 7 digits from the corner, which its header states") {
     EXPECT_NEAR(to.spacing_x, from.spacing_x, 1e-7 * from.spacing_x);
     EXPECT_NEAR(to.spacing_y, from.spacing_y, 1e-7 * from.spacing_y);
-    EXPECT_EQ(to.origin_x, 0.0);
-    EXPECT_EQ(to.origin_y, 0.0);
+    EXPECT_EQ(to.origin_x, from.origin_x);
+    EXPECT_EQ(to.origin_y, from.origin_y);
     EXPECT_TRUE(warned(trip.warnings, "to the field's corner"));
   } else if (row.place == "spacing alone, every digit") {
     EXPECT_EQ(to.spacing_x, from.spacing_x);
@@ -241,6 +241,10 @@ void checkUnits(const Row& row, const Written& how) {
     EXPECT_EQ(to.lateral_unit, field.grid().height_unit);
     EXPECT_NEAR(to.spacingXMm(), field.grid().spacingXMm(), 1e-15 * field.grid().spacingXMm());
     EXPECT_EQ(contentHash(trip.back.field), contentHash(field));
+  } else if (row.units == "that of x and y, in its header") {
+    EXPECT_TRUE(warned(trip.warnings, "STL has no units"));
+    EXPECT_EQ(to.lateral_unit, field.grid().lateral_unit);
+    EXPECT_EQ(to.height_unit, field.grid().lateral_unit);
   } else if (row.units == "no") {
     EXPECT_TRUE(warned(trip.warnings, "unit"));
     EXPECT_EQ(to.lateral_unit, LengthUnit{});
