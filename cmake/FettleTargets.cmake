@@ -92,6 +92,15 @@ function(fettle_test name)
   endif()
   if(NOT ARG_DRAWS AND NOT ARG_LABELS STREQUAL "instructions")
     fettle_group(sanitized_tests ${name})
+    # What scripts/test calls a part of them: the tests of a folder, by the libraries that they need.
+    file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+    if(folder MATCHES "^engine/")
+      fettle_group(sanitized_tests_engine ${name})
+    elseif(folder MATCHES "^(app|bench|docs|end_to_end)(/|$)")
+      fettle_group(sanitized_tests_app ${name})
+    else()
+      fettle_group(sanitized_tests_hand ${name})
+    endif()
   endif()
   # Only properties with a value, and no more than one label: CTest's script is made from a flat list, in which an
   # empty value swallows the name of the next property and a second label is taken for one.
