@@ -1,39 +1,7 @@
 // The kernels of gaussian_regression.cpp; see each_cpu-inl.h. Products and sums are rounded each by itself, in the order of the
 // taps, so that every level has the same bits.
 
-// out[i] = sum over t of weights[t] * in[i + t], as slide in gaussian_plane-inl.h.
-inline void along(const double* in, const double* weights, int taps, double* out, int n) noexcept {
-  int i = 0;
-  for (; i + 32 <= n; i += 32) {
-    Doubles sum[4] = {};
-    for (int t = 0; t < taps; ++t) {
-      const Doubles w = spread(weights[t]);
-#pragma GCC unroll 4
-      for (int k = 0; k < 4; ++k) sum[k] += w * load<Doubles>(in + i + t + 8 * k);
-    }
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; ++k) store(out + i + 8 * k, sum[k]);
-  }
-  for (; i < n; i += 8) {
-    Doubles sum = {};
-    for (int t = 0; t < taps; ++t) sum += spread(weights[t]) * load<Doubles>(in + i + t);
-    store(out + i, sum);
-  }
-}
-
-// Samples between nodes: out[n * step + p] = sum over t of in[n + t] * weights[t * lane + p], as spreadOut in
-// gaussian_plane-inl.h.
-inline void between(const double* in, int step, const double* weights, int taps, double* out,
-                    int count) noexcept {
-  const int lane = (step + 7) / 8 * 8;
-  for (int n = 0; n < count; ++n)
-    for (int p = 0; p < step; p += 8) {
-      Doubles sum = {};
-      for (int t = 0; t < taps; ++t)
-        sum += spread(in[n + t]) * load<Doubles>(weights + static_cast<std::ptrdiff_t>(t) * lane + p);
-      store(out + static_cast<std::ptrdiff_t>(n) * step + p, sum);
-    }
-}
+#include "engine/filter/gaussian_slide-inl.h"
 
 // Of one plane, the sums down by N orders.
 template <int N>

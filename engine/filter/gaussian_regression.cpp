@@ -135,8 +135,8 @@ bool GaussianRegression::fill(const SampleRect& rect, float* out, std::ptrdiff_t
 
 void GaussianRegression::heightsOf(const GaussianPlane& plane, const SampleRect& rect, float* out,
                                    std::ptrdiff_t stride) {
-  const auto alongRow = FETTLE_AT_LEVEL(level_, along);
-  const auto betweenNodes = FETTLE_AT_LEVEL(level_, between);
+  const auto slideRow = FETTLE_AT_LEVEL(level_, slide);
+  const auto spreadRow = FETTLE_AT_LEVEL(level_, spreadOut);
   const auto regression = FETTLE_AT_LEVEL(level_, regressionRow);
   const GaussianAxis &x = x_.nodes, &y = y_.nodes;
   const GaussianPlane::Sums sums = plane.sumsFor(rect);
@@ -153,13 +153,13 @@ void GaussianRegression::heightsOf(const GaussianPlane& plane, const SampleRect&
     double* const to = scratch.planes.data() + static_cast<std::ptrdiff_t>(k) * apart;
     for (std::int32_t r = 0; r < sums.rows; ++r)
       if (x.step > 1) {
-        betweenNodes(from + r * sums.stride, x.step, up, x.nodes_up, to + r * wide, steps);
+        spreadRow(from + r * sums.stride, x.step, up, x.nodes_up, to + r * wide, steps);
       } else {
         // One weight for each node, 8 places apart.
         scratch.taps.resize(static_cast<std::size_t>(x.nodes_up));
         for (std::int32_t t = 0; t < x.nodes_up; ++t)
           scratch.taps[static_cast<std::size_t>(t)] = up[std::ptrdiff_t{t} * 8];
-        alongRow(from + r * sums.stride, scratch.taps.data(), x.nodes_up, to + r * wide, rect.columns);
+        slideRow(from + r * sums.stride, 1, scratch.taps.data(), x.nodes_up, to + r * wide, rect.columns);
       }
   }
   const std::int32_t lane = (y.step + 7) / 8 * 8;
