@@ -210,7 +210,7 @@ void addFilters(const Parts& p, Report& r) {
   r["heights_so_far"] = p.heights.soFar();
   r["measuring"] = p.measure.busy();
   Report parameters = Report::object();
-  if (const auto& figures = p.measure.figures())
+  if (const auto* figures = p.measure.figures())
     for (const ArealLine& line : figures->lines) parameters[line.name] = line.values;
   r["parameters"] = parameters;
   r["curves"] = p.measure.figures() ? p.measure.figures()->curves.size() : 0;

@@ -10,53 +10,27 @@
 namespace fettle::app {
 
 void FeatureTool::find(const LoopClient& client) {
-  working_.replace(
-      [field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-        const auto fit =
-            engine::fitForm(field, {.degree = what.degree, .region = what.what.region, .robust = false}, job);
-        auto features = fit ? featuresOf(field, fit->form, what.what, "", job)
-                            : engine::Result<FieldFeatures>(tl::unexpected(fit.error()));
-        if (!features) {
-          engine::Error error = features.error();
-          if (error.kind == engine::ErrorKind::kInput)
-            error.remedy = what.what.region == engine::Region::kAll ? "is every sample a hole?"
-                                                                    : "mark samples, or take all of them";
-          return tl::unexpected(error);
-        }
-        const auto heights = featureHeights(*features, field.grid(), job);
-        if (!heights) return tl::unexpected(heights.error());
-        auto saddles = lessDistances(field, *heights, job);
-        if (!saddles) return tl::unexpected(saddles.error());
-        Report report;
-        addLayer(report, field);
-        report.update(featureReport(*features, field.grid()));
-        return Work{field, std::move(report), *std::move(saddles)};
-      });
-}
-
-bool FeatureTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
-  const bool dropped = working_.cancelling();
-  bool changed = false;
-  if (auto done = working_.take()) {
-    changed = true;
-    if (!dropped && *done)
-      work_ = **std::move(done);
-    else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled)
-      notices.push_back({done->error().what, done->error().remedy});
-  }
-  if (!work_) return changed;
-  const bool outdated = !(client.newest() == work_->field);
-  return std::exchange(outdated_, outdated) != outdated || changed;
-}
-
-const engine::Version* FeatureTool::saddles(const engine::Version& field) const noexcept {
-  return work_ && work_->field.formOver() == field.formOver() ? &work_->saddles : nullptr;
-}
-
-void FeatureTool::clear() {
-  working_.cancel();
-  work_.reset();
-  outdated_ = false;
+  work_.begin([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+    const auto fit =
+        engine::fitForm(field, {.degree = what.degree, .region = what.what.region, .robust = false}, job);
+    auto features = fit ? featuresOf(field, fit->form, what.what, "", job)
+                        : engine::Result<FieldFeatures>(tl::unexpected(fit.error()));
+    if (!features) {
+      engine::Error error = features.error();
+      if (error.kind == engine::ErrorKind::kInput)
+        error.remedy = what.what.region == engine::Region::kAll ? "is every sample a hole?"
+                                                                : "mark samples, or take all of them";
+      return tl::unexpected(error);
+    }
+    const auto heights = featureHeights(*features, field.grid(), job);
+    if (!heights) return tl::unexpected(heights.error());
+    auto saddles = lessDistances(field, *heights, job);
+    if (!saddles) return tl::unexpected(saddles.error());
+    Report report;
+    addLayer(report, field);
+    report.update(featureReport(*features, field.grid()));
+    return Work{field, std::move(report), *std::move(saddles)};
+  });
 }
 
 engine::Status writeFeatures(const Report& report, const std::string& path) {

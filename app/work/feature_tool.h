@@ -1,12 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/work/background.h"
+#include "app/work/beside_the_field.h"
 #include "app/work/field_features.h"
-#include "app/work/loop_client.h"
 
 namespace fettle::app {
 
@@ -24,21 +22,26 @@ class FeatureTool {
 
   /// Finds `options` in the newest field.
   void find(const LoopClient& client);
-  void cancel() noexcept { working_.cancel(); }
+  void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
-  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices) {
+    return work_.poll(client, notices).changed;
+  }
 
-  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
-  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  [[nodiscard]] bool busy() const noexcept { return work_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return work_.progress(); }
   /// The report of the features found last; null before, and of another document.
-  [[nodiscard]] const Report* found() const noexcept { return work_ ? &work_->report : nullptr; }
+  [[nodiscard]] const Report* found() const noexcept { return work_.get() ? &work_.get()->report : nullptr; }
   /// Whether the field has changed since.
-  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  [[nodiscard]] bool outdated() const noexcept { return work_.outdated(); }
   /// What the colours show the difference from: the saddle of each sample's feature, holes where it does not stand out. Null without features,
   /// and where a form lies over the field that did not then.
-  [[nodiscard]] const engine::Version* saddles(const engine::Version& field) const noexcept;
+  [[nodiscard]] const engine::Version* saddles(const engine::Version& field) const noexcept {
+    const Work* const work = work_.under(field);
+    return work != nullptr ? &work->saddles : nullptr;
+  }
   /// Forgets them.
-  void clear();
+  void clear() { work_.clear(); }
 
  private:
   struct Work {
@@ -46,9 +49,7 @@ class FeatureTool {
     Report report;
     engine::Version saddles;
   };
-  std::optional<Work> work_;
-  bool outdated_ = false;
-  Background<Work> working_;
+  BesideTheField<Work> work_;
 };
 
 /// Writes the table of `fettle features --csv`, the whole file or none. Errors: those of writing.

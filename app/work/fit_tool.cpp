@@ -44,60 +44,44 @@ engine::Result<std::vector<engine::FitRegion>> fittedRegions(const engine::Versi
 }  // namespace
 
 void FitTool::fit(const LoopClient& client) {
-  working_.replace(
-      [field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-        const auto noise = engine::estimateNoise(field, job);
-        if (!noise) return tl::unexpected(noise.error());
-        auto regions = fittedRegions(field, what, job);
-        if (!regions) return tl::unexpected(regions.error());
-        engine::FitOptions how;
-        how.vertical = what.vertical;
-        how.robust = what.robust;
-        how.noise_mm = noise->sigma * field.grid().height_unit.mm;
-        auto fits = fitEach(field, *std::move(regions), kindsOf(what), how, job);
-        if (!fits) return tl::unexpected(fits.error());
-        const auto distances = residualField(field, fits->fitted, what.vertical, job);
-        if (!distances) return tl::unexpected(distances.error());
-        auto surface = lessDistances(field, *distances, job);
-        if (!surface) return tl::unexpected(surface.error());
-        return Work{field, *std::move(fits), *std::move(surface)};
-      });
+  work_.begin([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
+    const auto noise = engine::estimateNoise(field, job);
+    if (!noise) return tl::unexpected(noise.error());
+    auto regions = fittedRegions(field, what, job);
+    if (!regions) return tl::unexpected(regions.error());
+    engine::FitOptions how;
+    how.vertical = what.vertical;
+    how.robust = what.robust;
+    how.noise_mm = noise->sigma * field.grid().height_unit.mm;
+    auto fits = fitEach(field, *std::move(regions), kindsOf(what), how, job);
+    if (!fits) return tl::unexpected(fits.error());
+    const auto distances = residualField(field, fits->fitted, what.vertical, job);
+    if (!distances) return tl::unexpected(distances.error());
+    auto surface = lessDistances(field, *distances, job);
+    if (!surface) return tl::unexpected(surface.error());
+    return Work{field, *std::move(fits), *std::move(surface)};
+  });
 }
 
 bool FitTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
-  const bool dropped = working_.cancelling();
-  bool changed = false;
-  if (auto done = working_.take()) {
-    changed = true;
-    if (!dropped && *done) {
-      work_ = **std::move(done);
-      pair_.reset();
-      if (work_->fits.fitted.size() > 1) setPair(0, 1);
-    } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
-      notices.push_back({done->error().what, done->error().remedy});
-    }
+  const auto polled = work_.poll(client, notices);
+  if (polled.taken) {
+    pair_.reset();
+    if (work_.get()->fits.fitted.size() > 1) setPair(0, 1);
   }
-  if (!work_) return changed;
-  const bool outdated = !(client.newest() == work_->field);
-  return std::exchange(outdated_, outdated) != outdated || changed;
-}
-
-const engine::Version* FitTool::surface(const engine::Version& field) const noexcept {
-  return work_ && work_->field.formOver() == field.formOver() ? &work_->surface : nullptr;
+  return polled.changed;
 }
 
 void FitTool::setPair(std::size_t first, std::size_t second) {
   pair_ = std::pair(first, second);
-  const std::vector<FittedRegion>& fitted = work_->fits.fitted;
+  const std::vector<FittedRegion>& fitted = work_.get()->fits.fitted;
   // Both have a fit.
-  (void)addRelation(work_->fits, fitted[first].number, fitted[second].number);
+  (void)addRelation(work_.get()->fits, fitted[first].number, fitted[second].number);
 }
 
 void FitTool::clear() {
-  working_.cancel();
-  work_.reset();
+  work_.clear();
   pair_.reset();
-  outdated_ = false;
 }
 
 engine::Status writeFits(const FieldFits& fits, const engine::Version& field, const std::string& path) {

@@ -6,9 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/work/background.h"
+#include "app/work/beside_the_field.h"
 #include "app/work/field_fits.h"
-#include "app/work/loop_client.h"
 
 namespace fettle::app {
 
@@ -29,21 +28,24 @@ class FitTool {
 
   /// Fits `options` to the newest field.
   void fit(const LoopClient& client);
-  void cancel() noexcept { working_.cancel(); }
+  void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
   [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
 
-  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
-  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  [[nodiscard]] bool busy() const noexcept { return work_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return work_.progress(); }
   /// The last fits; null before, and of another document.
-  [[nodiscard]] const FieldFits* fits() const noexcept { return work_ ? &work_->fits : nullptr; }
+  [[nodiscard]] const FieldFits* fits() const noexcept { return work_.get() ? &work_.get()->fits : nullptr; }
   /// The field that they are of.
-  [[nodiscard]] const engine::Version& field() const noexcept { return work_->field; }
+  [[nodiscard]] const engine::Version& field() const noexcept { return work_.get()->field; }
   /// Whether the field has changed since.
-  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  [[nodiscard]] bool outdated() const noexcept { return work_.outdated(); }
   /// What the colours show the difference from: heights less their distances from the shapes, holes where nothing was fitted. Null
   /// without fits, and where a form lies over the field that did not then.
-  [[nodiscard]] const engine::Version* surface(const engine::Version& field) const noexcept;
+  [[nodiscard]] const engine::Version* surface(const engine::Version& field) const noexcept {
+    const Work* const work = work_.under(field);
+    return work != nullptr ? &work->surface : nullptr;
+  }
 
   /// The two fits, by their places in the list, between which angle and distance are stated; none: there are not two.
   [[nodiscard]] const std::optional<std::pair<std::size_t, std::size_t>>& pair() const noexcept {
@@ -60,10 +62,8 @@ class FitTool {
     FieldFits fits;
     engine::Version surface;
   };
-  std::optional<Work> work_;
+  BesideTheField<Work> work_;
   std::optional<std::pair<std::size_t, std::size_t>> pair_;
-  bool outdated_ = false;
-  Background<Work> working_;
 };
 
 /// Writes fits of a field as `fettle fit` does, by the ending of `path`: .csv, .step, .stp, or .json, its report; the whole file or none.

@@ -109,8 +109,8 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
 
 void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen) {
   asked_ = options;
-  working_.replace([field = client.newest(), scan = client.original(), seen,
-                    what = options](engine::JobControl& job) -> engine::Result<Work> {
+  work_.begin([field = client.newest(), scan = client.original(), seen,
+               what = options](engine::JobControl& job) -> engine::Result<Work> {
     Work work{field, {}};
     work.figures.options = what;
     work.figures.before = engine::measureChange(scan, field).tiles > 0;
@@ -150,31 +150,6 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     work.figures.lines = arealLines(reports);
     return work;
   });
-}
-
-bool MeasureTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
-  const bool dropped = working_.cancelling();
-  bool changed = false;
-  if (auto done = working_.take()) {
-    changed = true;
-    if (!dropped && *done) {
-      measured_ = std::move((*done)->field);
-      figures_ = std::move((*done)->figures);
-    } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
-      notices.push_back({done->error().what, done->error().remedy});
-    }
-  }
-  if (!figures_) return changed;
-  const bool outdated = !(client.newest() == measured_);
-  return std::exchange(outdated_, outdated) != outdated || changed;
-}
-
-void MeasureTool::clear() {
-  working_.cancel();
-  asked_.reset();
-  figures_.reset();
-  measured_ = {};
-  outdated_ = false;
 }
 
 }  // namespace fettle::app

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "app/work/areal_table.h"
-#include "app/work/background.h"
-#include "app/work/loop_client.h"
+#include "app/work/beside_the_field.h"
 #include "app/work/surface_numbers.h"
 #include "engine/field/sample_rect.h"
 
@@ -41,20 +40,27 @@ class MeasureTool {
 
   /// Measures `options` on the newest field; `seen`: the rectangle that is visible. One that is empty is refused by a notice of poll().
   void measure(const LoopClient& client, const engine::SampleRect& seen);
-  void cancel() noexcept { working_.cancel(); }
+  void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
-  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices) {
+    return work_.poll(client, notices).changed;
+  }
 
-  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
-  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
-  /// The last figures; empty before, and of another document.
-  [[nodiscard]] const std::optional<Figures>& figures() const noexcept { return figures_; }
+  [[nodiscard]] bool busy() const noexcept { return work_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return work_.progress(); }
+  /// The last figures; null before, and of another document.
+  [[nodiscard]] const Figures* figures() const noexcept {
+    return work_.get() ? &work_.get()->figures : nullptr;
+  }
   /// What was asked for last, measured or not; null before, and of another document.
   [[nodiscard]] const Options* asked() const noexcept { return asked_ ? &*asked_ : nullptr; }
   /// Whether the field has changed since.
-  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  [[nodiscard]] bool outdated() const noexcept { return work_.outdated(); }
   /// Forgets the figures, of a document that is closed.
-  void clear();
+  void clear() {
+    work_.clear();
+    asked_.reset();
+  }
 
  private:
   struct Work {
@@ -62,10 +68,7 @@ class MeasureTool {
     Figures figures;
   };
   std::optional<Options> asked_;
-  std::optional<Figures> figures_;
-  engine::Version measured_;  // that figures_ are of
-  bool outdated_ = false;
-  Background<Work> working_;
+  BesideTheField<Work> work_;
 };
 
 }  // namespace fettle::app

@@ -40,7 +40,7 @@ constexpr int kCaptionLines = 2;
 // A column for each value; with `noise` a second row for each parameter, with its figures without noise. The table has its
 // rows from when it is asked for: what is below moves by that click, and not when the figures come.
 void arealTable(const MeasureTool& measure, bool noise) {
-  const auto& figures = measure.figures();
+  const auto* figures = measure.figures();
   const bool before = figures && figures->before;
   if (!ImGui::BeginTable("parameters", before ? 4 : 3,
                          ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
@@ -82,7 +82,7 @@ void caption(MeasureTool& measure) {
   beginPlace("##measured", kCaptionLines);
   if (measure.busy()) {
     if (cancelledBar(measure.progress(), "measuring", "Cancel##measure")) measure.cancel();
-  } else if (const auto& figures = measure.figures()) {
+  } else if (const auto* figures = measure.figures()) {
     writeWrapped(fmt::format("ISO 25178-2, {} samples{}", figures->samples,
                              measure.outdated() ? "; the field has changed since" : ""));
   } else {
@@ -173,7 +173,7 @@ void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
     measure.curve = static_cast<Curve>(curve);
   endFields();
   beginPlace("##surface curves", kLines);
-  const auto& figures = measure.figures();
+  const auto* figures = measure.figures();
   if (!figures) {
     writeIn(PanelColour::kMuted, measure.busy() ? "measuring" : "no figures yet");
   } else if (measure.curve != Curve::kAbbott && !figures->curves.back().no_decay.empty()) {
@@ -200,7 +200,7 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   ImGui::EndDisabled();
   caption(measure);
   if (measure.asked() == nullptr) return;
-  const auto& figures = measure.figures();
+  const auto* figures = measure.figures();
   arealTable(measure, measure.busy() || !figures ? measure.asked()->noise : figures->options.noise);
   surfaceCurves(context, measure);
 }
