@@ -8,7 +8,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
-#include "app/window/workstation.h"
+#include "app/window/workstation/workstation.h"
 #include "haptic/devices/enumerate.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/scene/scene.h"
