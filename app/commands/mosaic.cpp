@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -28,6 +27,7 @@
 #include "engine/field/piece.h"
 #include "engine/formats/formats.h"
 #include "engine/mosaic/blended.h"
+#include "engine/mosaic/join.h"
 #include "engine/mosaic/overlap_motions.h"
 
 namespace fettle::app {
@@ -86,15 +86,6 @@ engine::Result<std::optional<std::vector<glm::dvec2>>> placesOf(const MosaicRun&
                                             options.overlap.value_or(kOverlap) / 100.0));
 }
 
-// By how much places may be wrong, unless it is said: a tenth of the shortest side [mm].
-double playOf(const std::vector<engine::Version>& scans) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const engine::Version& scan : scans)
-    shortest = std::min({shortest, (scan.grid().width - 1) * scan.grid().spacingXMm(),
-                         (scan.grid().height - 1) * scan.grid().spacingYMm()});
-  return 0.1 * shortest;
-}
-
 // What a mosaic has to do, in samples of the first scan.
 struct MosaicSize {
   double aligned = 0.0;  // of all pairs, each as it is reduced
@@ -135,7 +126,7 @@ engine::Result<Foreseen> foreseeMosaic(const MosaicRun& options, const std::vect
                                        const std::optional<std::vector<glm::dvec2>>& places,
                                        engine::JobControl& job) {
   const engine::Version& first = scans[0];
-  const MosaicSize size = mosaicSizeOf(scans, places, options.within.value_or(playOf(scans)));
+  const MosaicSize size = mosaicSizeOf(scans, places, options.within.value_or(engine::usualPlay(scans)));
   const auto samples = static_cast<double>(first.grid().samples());
   const auto pieceAt = [&](const engine::SampleRect& r) {
     return engine::pieceOf(first, r.column, r.row, r.columns, r.rows);
@@ -173,21 +164,6 @@ engine::Result<Foreseen> foreseeMosaic(const MosaicRun& options, const std::vect
                             .writing = options.writing,
                             .result = size.made / samples};
   return foresee(planned, shownOutput(out), options.estimate, job);
-}
-
-// The scan that nothing joins to the first, and why its pairs failed.
-tl::unexpected<engine::Error> notJoined(const std::string& number, const MosaicRun& options,
-                                        const engine::OverlapMotions& found) {
-  const auto scan = static_cast<std::size_t>(std::stoul(number));
-  std::string why = "no other lies where it would overlap it";
-  for (const engine::FailedPair& pair : found.failed) {
-    if (pair.first != scan && pair.second != scan) continue;
-    why = fmt::format("with {}: {}", shownInput(options.files[pair.first == scan ? pair.second : pair.first]),
-                      pair.reason.what);
-    break;
-  }
-  return engine::inputError("no overlap joins this scan to the first", shownInput(options.files[scan]),
-                            why + "; leave it out, or say where scans lie with --layout");
 }
 
 // Standard errors of what is not free, and of the first scan, are null.
@@ -231,37 +207,40 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
   }
   const auto places = placesOf(options, scans);
   if (!places) return tl::unexpected(places.error());
-  engine::AlignOptions align;
-  align.moves = movesOf(options.moves);
-  align.most_rotation_deg = options.rotation.value_or(align.most_rotation_deg);
+  engine::JoinOptions how;
+  how.places = *places;
+  how.play = options.within;
+  how.align.moves = movesOf(options.moves);
+  how.align.most_rotation_deg = options.rotation.value_or(how.align.most_rotation_deg);
+  how.blend = blendOf(options);
+  for (const std::string& path : options.scans()) how.names.push_back(shownInput(path));
   auto foreseen = foreseeMosaic(options, scans, *places, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
-  const auto found =
-      engine::overlapMotions(scans, *places, options.within.value_or(playOf(scans)), align, job);
-  if (!found) return tl::unexpected(found.error());
-  const auto middles = engine::middlesOf(scans, job);
-  if (!middles) return tl::unexpected(middles.error());
-  const auto poses = engine::adjustPoses(*middles, found->pairs, align.moves);
-  if (!poses) return notJoined(poses.error().where, options, *found);
-  const auto overlaps = engine::overlapDeviations(scans, *poses, job);
-  if (!overlaps) return tl::unexpected(overlaps.error());
-  const auto grid = engine::gridOverAll(scans, *poses);
-  if (!grid) return tl::unexpected(grid.error());
-  const auto blended = engine::blendedScans(scans, *poses, *grid, blendOf(options), job);
-  if (!blended) return tl::unexpected(blended.error());
+  const auto joined = engine::joinScans(scans, how, job);
+  if (!joined) {
+    engine::Error error = joined.error();
+    if (error.remedy.ends_with("say where scans lie")) error.remedy += " with --layout";
+    return tl::unexpected(error);
+  }
   engine::ExportOptions writing = options.writing;
-  writing.original = *blended;
-  if (auto status = saveField(*blended, out, job, writing, options.to); !status)
+  writing.original = joined->field;
+  if (auto status = saveField(joined->field, out, job, writing, options.to); !status)
     return tl::unexpected(status.error());
 
-  Report report{{"width", grid->width},       {"height", grid->height},        {"blend", options.blend},
-                {"moves", options.moves},     {"pairs", found->pairs.size()},  {"freedom", poses->freedom},
-                {"misfit", poses->misfit},    {"error_factor", poses->factor}, {"scans", Report::array()},
+  Report report{{"width", joined->field.grid().width},
+                {"height", joined->field.grid().height},
+                {"blend", options.blend},
+                {"moves", options.moves},
+                {"pairs", joined->pairs.size()},
+                {"freedom", joined->poses.freedom},
+                {"misfit", joined->poses.misfit},
+                {"error_factor", joined->poses.factor},
+                {"scans", Report::array()},
                 {"overlaps", Report::array()}};
   for (std::size_t k = 0; k < scans.size(); ++k)
-    report["scans"].push_back(scanReport(options.files[k], *poses, k, align.moves));
-  for (const engine::OverlapDeviation& overlap : *overlaps)
+    report["scans"].push_back(scanReport(options.files[k], joined->poses, k, how.align.moves));
+  for (const engine::OverlapDeviation& overlap : joined->overlaps)
     report["overlaps"].push_back({{"a", options.files[overlap.first]},
                                   {"b", options.files[overlap.second]},
                                   {"places", overlap.places},
@@ -271,7 +250,7 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
                                   {"spread_mm", overlap.spread},
                                   {"height_error_mm", overlap.height_error}});
   report["out"] = out;
-  report["hash"] = hashOf(*blended);
+  report["hash"] = hashOf(joined->field);
   return report;
 }
 
