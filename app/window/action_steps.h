@@ -40,6 +40,9 @@ inline void ask(Parts& p, Question::Kind kind, std::string path = {}) {
   p.feedback.questions.ask({.kind = kind, .path = std::move(path)});
 }
 
+inline void joinScan(Parts& p) {
+  ask(p, Question::Kind::kJoin, p.join.scans().empty() ? p.document.path() : p.join.scans().back().path);
+}
 inline void quit(Parts& p) {
   if (p.document.isOpen() && p.settings.ask_before_quitting && p.scene_files.changed(clientOf(p)))
     p.feedback.questions.ask(

@@ -26,6 +26,7 @@ constexpr Tip kTips[] = {
     {Action::kDrawLines,
      "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
     {Action::kEdges, "Shows where the scan has edges; Enter takes them as marks or edge lines."},
+    {Action::kJoin, "They overlap: they are laid onto each other and become one scan."},
     {Action::kOpenScene, "Tip, force, brushes and effects with their numbers, felt at once."},
     {Action::kSaveScene, "For other scans, and for --scene of the command line."},
     {Action::kFilterSuggest,

@@ -61,6 +61,8 @@ constexpr ActionRow kRows[] = {
               openScan},
     ActionRow{Action::kReadAs, "File", "Read this scan with another unit, spacing or scale", letter('O'),
               kControlShift, kNoKey, kFirst, kField, readAs},
+    ActionRow{Action::kJoin, "File", "Join another scan to this one", letter('J'), kAlt, kNoKey, kFirst,
+              kField, joinScan},
     ActionRow{Action::kSave, "File", "Save", letter('S'), kControl, kNoKey, kSecond, kField, save},
     ActionRow{Action::kSaveAs, "File", "Save as", letter('S'), kControlShift, kNoKey, kSecond, kField,
               saveAs},

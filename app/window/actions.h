@@ -18,6 +18,7 @@ struct Parts;
 enum class Action : std::uint8_t {
   kOpen,
   kReadAs,
+  kJoin,
   kSave,
   kSaveAs,
   kExport,

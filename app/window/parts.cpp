@@ -11,6 +11,18 @@
 #include "app/window/axes_gizmo.h"
 
 namespace fettle::app {
+namespace {
+
+// A session beside the scan whose name is free.
+std::string freeSession(const ActiveDocument& document, const char* ending) {
+  std::error_code none;
+  std::string path = document.suggestedPath(fmt::format("{}.fettle", ending).c_str());
+  for (int n = 2; std::filesystem::exists(path, none); ++n)
+    path = document.suggestedPath(fmt::format("{}_{}.fettle", ending, n).c_str());
+  return path;
+}
+
+}  // namespace
 
 const engine::Grid* Parts::seenGrid() const {
   if (document.isOpen()) return &document.client()->field().grid();
@@ -121,11 +133,12 @@ std::string Parts::scenePathToSave() const {
 }
 
 void Parts::writeTransformed() {
-  std::error_code none;
-  std::string path = document.suggestedPath("_transformed.fettle");
-  for (int n = 2; std::filesystem::exists(path, none); ++n)
-    path = document.suggestedPath(fmt::format("_transformed_{}.fettle", n).c_str());
-  transform.write(*document.client(), picture.seenRect(document.client()->field().grid()), std::move(path));
+  transform.write(*document.client(), picture.seenRect(document.client()->field().grid()),
+                  freeSession(document, "_transformed"));
+}
+
+void Parts::writeJoined() {
+  join.write(*document.client(), freeSession(document, "_joined"));
 }
 
 void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
@@ -146,6 +159,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   fit.clear();
   features.clear();
   transform.cancel();
+  join.clear();
   compare.clear();
   marking.reset();
   change.cancel();

@@ -38,6 +38,7 @@
 #include "app/work/fit_tool.h"
 #include "app/work/form_tool.h"
 #include "app/work/height_tool.h"
+#include "app/work/join_tool.h"
 #include "app/work/measure_tool.h"
 #include "app/work/plane_picking.h"
 #include "app/work/recent_files.h"
@@ -102,6 +103,7 @@ struct Parts {
   FitTool fit;
   FeatureTool features;
   TransformTool transform;
+  JoinTool join;
   CompareTool compare;
   ChangeFigures change;
   ColourRange colours;
@@ -155,6 +157,8 @@ struct Parts {
   [[nodiscard]] std::string scenePathToSave() const;
   /// Writes what the transform panel says, to a session of a name that is free.
   void writeTransformed();
+  /// The same of the scans that the join panel lists.
+  void writeJoined();
   /// Closes the document, if one is open, with everything about it.
   void closeDocument(SessionKeeper::Afterwards afterwards);
 };

@@ -29,6 +29,7 @@ constexpr std::array kKinds{
     KindInfo{Kind::kOpen, "open", "Open a scan", "", true, false, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kImport, "import", "Read a scan as", "", true, false, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kCompare, "compare", "Compare with a scan", "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kJoin, "join", "Join with a scan", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kSaveAs, "save as", "Save as", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kExport, "export", "Export", "", true, true, ImGuiWindowFlags_NoResize},
     KindInfo{Kind::kOpenScene, "open scene", "Open a scene", "", true, true, ImGuiWindowFlags_NoResize},

@@ -31,6 +31,7 @@ struct Question {
     kOpen,
     kImport,
     kCompare,
+    kJoin,
     kSaveAs,
     kExport,
     kOpenScene,
@@ -49,7 +50,7 @@ struct Question {
   };
   Kind kind = Kind::kMessage;
   std::string path =
-      {};  ///< kOpen, kCompare, kSaveAs, kExport and others: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
+      {};  ///< kOpen, kCompare, kJoin, kSaveAs, kExport and others: as typed so far; kReplace: the confirmed one; kImport, kRecover: of the scan
   Afterwards afterwards = {};               ///< kSaveAs, kSaveScene, kUnsaved, kUnsavedScene, kReplace
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.

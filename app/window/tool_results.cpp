@@ -1,5 +1,7 @@
 #include "app/window/tool_results.h"
 
+#include <utility>
+
 #include "app/window/overlays.h"
 #include "render/plan/number_text.h"
 #include "render/plan/value_range.h"
@@ -69,6 +71,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
     changed = true;
   }
   std::optional<std::string> written = p.transform.poll(notices);
+  if (auto joined = p.join.poll(notices)) written = std::move(joined);
   changed |= p.section.poll(client, notices);
   if (auto kept = p.section.takeKept()) p.document.keepSections(*std::move(kept));
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);

@@ -342,6 +342,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("shapes", p.fit.busy());
   waits("features", p.features.busy());
   waits("a transform", p.transform.busy());
+  waits("joined scans", p.join.busy());
   waits("figures", p.measure.busy());
   waits("a section", p.section.busy());
   waits("marks", p.marking.busy());

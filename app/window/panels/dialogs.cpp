@@ -21,8 +21,9 @@ using Kind = Question::Kind;
 using render::Key;
 
 bool isPathKind(Kind kind) {
-  return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kSaveAs || kind == Kind::kExport ||
-         kind == Kind::kOpenScene || kind == Kind::kSaveScene || resultFileOf(kind) != nullptr;
+  return kind == Kind::kOpen || kind == Kind::kCompare || kind == Kind::kJoin || kind == Kind::kSaveAs ||
+         kind == Kind::kExport || kind == Kind::kOpenScene || kind == Kind::kSaveScene ||
+         resultFileOf(kind) != nullptr;
 }
 
 // A dialog that has just appeared goes aside where the cursor, left where it was, would lie on the last button.
@@ -198,6 +199,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
   switch (question.kind) {
     case Kind::kOpen:
     case Kind::kCompare:
+    case Kind::kJoin:
     case Kind::kSaveAs:
     case Kind::kExport:
     case Kind::kOpenScene:

@@ -34,7 +34,8 @@ bool isScene(const Question& question) {
 }
 
 bool reads(const Question& question) {
-  return question.kind == Kind::kOpen || question.kind == Kind::kCompare || question.kind == Kind::kOpenScene;
+  return question.kind == Kind::kOpen || question.kind == Kind::kCompare || question.kind == Kind::kJoin ||
+         question.kind == Kind::kOpenScene;
 }
 
 std::string dateText(std::int64_t changed_s) {

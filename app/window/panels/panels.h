@@ -53,6 +53,8 @@ void heightButtons(const PanelContext& context, HeightTool& heights, const hapti
 void heightOutcome(HeightTool& heights, bool here);
 /// Crop, mirror, turn, resample; true when the user asks for it.
 [[nodiscard]] bool transformPanel(const PanelContext& context, TransformTool& transform);
+/// Other scans that are joined to this one; true when the user asks for it.
+[[nodiscard]] bool joinPanel(const PanelContext& context, JoinTool& join);
 /// Surface texture parameters; `picture`: what is visible.
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture);
 /// The section along a line, and its cursors.

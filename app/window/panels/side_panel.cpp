@@ -57,6 +57,7 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(parts, "Features", false)) featurePanel(context, parts.features, parts.picture);
   if (section(parts, "Transform", false) && transformPanel(context, parts.transform))
     parts.writeTransformed();
+  if (section(parts, "Join", false) && joinPanel(context, parts.join)) parts.writeJoined();
   if (section(parts, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
   parts.colours.handles.reset();
   if (section(parts, "Colours", false)) colourPanel(context, settings.display, parts.colours, parts.picture);

@@ -56,6 +56,10 @@ void Workstation::carryOut(Answer answer) {
       p.compare.compareWith(*p.document.client(), question.path, options_.reading);
       p.settings.panels["Compare"] = true;
       break;
+    case Kind::kJoin:
+      p.join.add({question.path, p.readingOf(question.path)});
+      p.settings.panels["Join"] = true;
+      break;
     case Kind::kSaveAs:
     case Kind::kExport:
       p.saving.askToWrite(std::move(question), Saving::Typed::kYes, p.document, p.feedback);

@@ -33,7 +33,7 @@ bool working(const Parts& p) {
          p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.devices.busy() ||
          p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
          p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() || p.fit.busy() ||
-         p.features.busy() || p.transform.busy() ||
+         p.features.busy() || p.transform.busy() || p.join.busy() ||
          (p.document.isOpen() &&
           (p.picture.refining() || p.picture.smoothing() || p.spared_shadow.pending()));
 }

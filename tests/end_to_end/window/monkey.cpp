@@ -102,6 +102,7 @@ const std::vector<std::string>& namesOfPanels() {
                                               "Fit",
                                               "Features",
                                               "Transform",
+                                              "Join",
                                               "Compare",
                                               "Colours",
                                               "Display",

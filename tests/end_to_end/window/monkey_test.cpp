@@ -62,6 +62,7 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
        Ways{{"open", {"ctrl+o"}},
             {"import", {"ctrl+shift+o"}},
             {"compare", {"alt+b"}},
+            {"join", {"alt+j"}},
             {"save as", {"ctrl+shift+s"}},
             {"export", {"ctrl+e"}},
             {"open scene", {"alt+o"}},

@@ -160,7 +160,7 @@ TEST_F(ThemeTest, every_page_is_readable_on_light_and_dark_panels) {
     for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
     for (const char* header :
          {"Edges", "Edge lines", "Holes and lines", "Form", "Measure", "Section", "Fit", "Features",
-          "Transform", "Compare", "Colours", "Display", "Status", "Haptics"}) {
+          "Transform", "Join", "Compare", "Colours", "Display", "Status", "Haptics"}) {
       (void)user.click(header);
       user.at({20, 990});
       expectReadable(user, header);

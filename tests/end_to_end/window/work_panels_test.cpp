@@ -1,4 +1,4 @@
-// Panels that work on the whole scan: sections kept with the session, holes and lines as steps, another scan to compare with, transforms.
+// Panels that work on the whole scan: sections kept with the session, holes and lines as steps, another scan to compare or join with, transforms.
 #include <algorithm>
 #include <csignal>
 #include <fstream>
@@ -351,6 +351,34 @@ TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {
                 return s["compared_rms_mm"].is_null();
               }).is_object());
   (void)quit(user);
+}
+
+TEST_F(WindowTest, scans_that_overlap_become_one_as_by_the_command) {
+  openPanels(folder, {"Join"});
+  const std::string drawn = folder.file("drawn.tif"), west = folder.file("west.tif"),
+                    east = folder.file("east.tif"), both = folder.file("both.tif");
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", drawn, "--size", "256x160"}).status, 0);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "transform", drawn, west, "--crop-samples", "0,0,160,160"}).status,
+            0);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "transform", drawn, east, "--crop-samples", "0,96,160,160"}).status,
+            0);
+  (void)jsonOf({"mosaic", west, east, both});
+  const auto program = start({west});
+  User user(display, *program, "join");
+  (void)opened(*program);
+  (void)user.press("alt+j");
+  user.type(east);
+  (void)user.press("Return");
+  EXPECT_TRUE(user.reads("east.tif"));
+  (void)user.look("listed");
+  (void)user.click("Join them");
+  const State joined = program->until("opened", [&](const State& s) {
+    return s["settled"] == true &&
+           s["status"].get<std::string>().find("west_joined.fettle") != std::string::npos;
+  });
+  EXPECT_EQ(joined["steps"], 0);
+  (void)quit(user);
+  EXPECT_EQ(jsonOf({"compare", (folder.path() / "west_joined.fettle").string(), both})["max_abs"], 0.0);
 }
 
 TEST_F(WindowTest, a_transformed_scan_is_a_session_beside_it) {
