@@ -74,6 +74,17 @@ void drawCurve(const CurvePlot& plot, const PlotCurve& curve, const CurveFrame& 
   draw();
 }
 
+// Which curve is which: a piece of each before its name.
+void legend(const PlotCurve& curve) {
+  const float letter = ImGui::GetFontSize(), line = ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x, at.y + 0.5F * line),
+                                      ImVec2(at.x + 1.5F * letter, at.y + 0.5F * line),
+                                      colourOf(curve.colour), curve.width * letter);
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2.0F * letter);
+  writeIn(render::PanelColour::kMuted, curve.name);
+}
+
 // What each curve has where the cursor is.
 void curveTip(const CurvePlot& plot, const CurveFrame& frame) {
   const double at = frame.x.low + (ImGui::GetIO().MousePos.x - frame.corner.x) / frame.size.x *
@@ -89,7 +100,7 @@ void curveTip(const CurvePlot& plot, const CurveFrame& frame) {
       nearest = &point;
     }
     if (nearest != nullptr)
-      text += fmt::format("\n{}{:.4g}", curve.name.empty() ? "" : curve.name + " ", nearest->y);
+      text += fmt::format("\n{}{:.4g}", curve.name.empty() ? "" : curve.name + ": ", nearest->y);
   }
   valueTip(text);
 }
@@ -133,6 +144,8 @@ void curvePlot(const char* id, const CurvePlot& plot) {
   };
   writeIn(render::PanelColour::kMuted, fmt::format("{} {}", plot.x_name, shown(frame.x)));
   writeIn(render::PanelColour::kMuted, fmt::format("{} {}", plot.y_name, shown(frame.y)));
+  if (plot.curves.size() > 1)
+    for (const PlotCurve& curve : plot.curves) legend(curve);
 }
 
 }  // namespace fettle::app

@@ -14,7 +14,7 @@ struct PlotCurve {
   std::vector<glm::dvec2> points;
   render::PanelColour colour;
   float width = 0.1F;  ///< in heights of a letter
-  std::string name;    ///< in the tip; empty: none
+  std::string name;    ///< in the tip and, where there are several, below the plot; empty: none
 };
 
 struct CurvePlot {

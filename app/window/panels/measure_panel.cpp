@@ -140,7 +140,7 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
         points.emplace_back(static_cast<double>(i) * states[s].decay_step_mm * length.per_unit,
                             curve.values[i]);
       addCurve(plot, s, states.size(), c,
-               fmt::format("{}, {:.0f} degrees from x:", curve.name, curve.degrees), std::move(points));
+               fmt::format("{}, {:.0f} degrees from x", curve.name, curve.degrees), std::move(points));
     }
   return plot;
 }
@@ -156,7 +156,7 @@ CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& u
       for (std::size_t i = 1; i < spectrum->density.size(); ++i)
         points.emplace_back(spectrum->frequency(i), spectrum->density[i] * per_mm * per_mm);
       addCurve(plot, s, states.size(), static_cast<std::size_t>(c),
-               c == 0 ? "along x:" : "along y:", std::move(points));
+               c == 0 ? "along x" : "along y", std::move(points));
     }
   return plot;
 }
@@ -164,7 +164,7 @@ CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& u
 // One of the curves, in a place of its own from when figures were asked for.
 void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
   using Curve = MeasureTool::Curve;
-  constexpr int kLines = 10;
+  constexpr int kLines = 14;  // with four curves
   constexpr const char* kCurves[] = {"material ratio (Abbott)", "autocorrelation", "power spectrum"};
   int curve = static_cast<int>(measure.curve);
   beginFields();
