@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/filter/catalogue.h"
@@ -176,6 +178,51 @@ TEST(Closing, OfAGrooveIsTheArcBetweenItsRims) {
 
 // Of a sphere larger than the ball nothing is taken from below but at borders, of a smaller one all that is beside its top from
 // above is filled: to the surface of the ball of radius R on that of radius r.
+// A ball whose middle could lie anywhere leaves an arc of its own radius that touches both sides of a sharp groove. The one that lies
+// on samples alone lies higher by what a side rises from the groove's line to the nearest of them: docs/decisions/rolled-balls.md.
+TEST(Closing, OfASharpGrooveIsHalfASpacingTimesTheSlopeTooHighAtMost) {
+  constexpr int kAcross = 160, kAlong = 64, kMiddle = 80;
+  for (const double degrees : {10.0, 30.0, 60.0}) {
+    const double slope = std::tan(degrees * std::numbers::pi / 180.0);
+    for (const double radius : {5.0, 20.0}) {
+      double most = 0.0;
+      for (const double beside : {0.0, 0.25, 0.5}) {
+        const auto groove = [&](int c) { return slope * std::abs(c - kMiddle - beside); };
+        const MadeScan scan{
+            "groove", kAcross, kAlong, 1.0, 1.0, radius, [&](int c, int) { return groove(c); }};
+        const Version closed =
+            filtered(versionOf(scan), rollingSpec(FilterKind::kClosing, Element::kBall, radius)).field;
+        for (int c = 40; c < 120; ++c) {
+          const double u = c - kMiddle - beside;
+          const bool on_ball = std::abs(u) < radius * std::sin(std::atan(slope));
+          const double arc =
+              on_ball ? radius * std::hypot(1.0, slope) - std::sqrt(radius * radius - u * u) : groove(c);
+          const double height = closed.reader().heightAt(c, kAlong / 2);
+          // Where it touches, too, it lies on samples: a parabola over half a spacing.
+          EXPECT_GT(height - arc, -0.5 / radius * std::pow(std::hypot(1.0, slope), 3))
+              << degrees << " " << radius;
+          most = std::max(most, height - arc);
+        }
+      }
+      fmt::print("{} degrees, radius {} samples: {:.3f} spacings too high, half of the slope {:.3f}\n",
+                 degrees, radius, most, 0.5 * slope);
+      EXPECT_LT(most, 0.5 * slope + 0.5 / radius) << degrees << " " << radius;
+      EXPECT_GT(most, 0.35 * slope) << degrees << " " << radius;
+    }
+  }
+}
+
+// On a plane of any slope the middles are where they would be.
+TEST(Closing, OfATiltedPlaneIsThatPlane) {
+  for (const double slope : {0.1, 1.0, 3.0}) {
+    const MadeScan scan{"plane", 100, 90, 1.0, 1.0, 7.0, [&](int c, int r) { return slope * (c + 0.5 * r); }};
+    const Version closed =
+        filtered(versionOf(scan), rollingSpec(FilterKind::kClosing, Element::kBall, 7.0)).field;
+    for (int c = 20; c < 80; c += 3)
+      EXPECT_NEAR(closed.reader().heightAt(c, 45), slope * (c + 22.5), 1e-6 * slope * 150.0);
+  }
+}
+
 TEST(Opening, OfALargerSphereIsThatSphere) {
   const MadeScan scan{"sphere", 161, 161, 0.1, 0.1, 6.0, [](int c, int r) {
                         const double x = 0.1 * (c - 80), y = 0.1 * (r - 80);
