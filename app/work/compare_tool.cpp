@@ -74,8 +74,8 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
 void CompareTool::compareWith(const LoopClient& client, std::string path, const ScanOptions& reading) {
   reading_ = reading;
   following_ = false;
-  working_.start([field = client.newest(), path = std::move(path), reading = reading_,
-                  what = options](engine::JobControl& job) {
+  working_.replace([field = client.newest(), path = std::move(path), reading = reading_,
+                    what = options](engine::JobControl& job) {
     return isNominalFile(path) ? withMesh(field, path, what, job) : withScan(field, path, reading, what, job);
   });
 }
@@ -161,8 +161,8 @@ engine::Status CompareTool::see(Work& work, const engine::Version& field, engine
 // A form came over the field or went: the other scan is seen under it as well, what was found stays.
 void CompareTool::followForm(const LoopClient& client) {
   following_ = true;
-  working_.start([field = client.newest(), work = Work{*compared_, samples_, of_}](
-                     engine::JobControl& job) mutable -> engine::Result<Work> {
+  working_.replace([field = client.newest(), work = Work{*compared_, samples_, of_}](
+                       engine::JobControl& job) mutable -> engine::Result<Work> {
     const engine::Version before = work.seen;
     if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
     const auto samples = engine::withoutLayer(field, job);

@@ -9,7 +9,7 @@ namespace fettle::app {
 void EdgeTool::search(const LoopClient& client) {
   drop();
   using Shared = std::shared_ptr<const Found>;
-  searching_.start(
+  searching_.replace(
       [field = client.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Shared> {
         auto map = engine::findEdges(field, scale, job);
         if (!map) return tl::unexpected(map.error());
@@ -24,8 +24,8 @@ void EdgeTool::redraw(const LoopClient& client) {
     return;
   }
   draw_again_ = false;
-  drawing_.start([base = client.newest(), found = found_,
-                  what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+  drawing_.replace([base = client.newest(), found = found_,
+                    what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
     auto suggestion = engine::suggestMarks(base, found->map, what, job);
     if (!suggestion) return tl::unexpected(suggestion.error());
     return Drawn{what, base, std::move(*suggestion)};

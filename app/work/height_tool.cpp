@@ -325,8 +325,8 @@ void HeightTool::start(LoopClient& client) {
     begun_ = looked_ = PreviewPace::Clock::now();
     paces_[wanted_.maker.index()].begin(begun_, wanted_.view.tiles.tiles());
   }
-  working_.start([base = std::move(base), wanted = wanted_,
-                  seeing = seeing_](engine::JobControl& job) -> engine::Result<Work> {
+  working_.replace([base = std::move(base), wanted = wanted_,
+                    seeing = seeing_](engine::JobControl& job) -> engine::Result<Work> {
     if (seeing) seeing->see(wanted.view, job);
     if (job.cancelled()) return engine::cancelled();
     auto heights = haptic::computeHeights(base, wanted.maker, job);

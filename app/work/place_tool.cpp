@@ -43,7 +43,7 @@ bool isDrawn(const WorthPlace& place, const std::vector<EdgeLine>& lines) {
 void PlaceTool::search(const LoopClient& client) {
   drop();
   searched_ = compared_ = client.newest();
-  searching_.start([field = searched_](engine::JobControl& job) -> engine::Result<engine::WorthPlaces> {
+  searching_.replace([field = searched_](engine::JobControl& job) -> engine::Result<engine::WorthPlaces> {
     const auto noise = engine::estimateNoise(field, job);
     if (!noise) return tl::unexpected(noise.error());
     if (!(noise->sigma > 0.0)) return engine::WorthPlaces{};
