@@ -6,7 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
-#include "engine/inspect/noise_moments.h"
+#include "engine/inspect/noise_parts.h"
 
 namespace fettle::engine {
 

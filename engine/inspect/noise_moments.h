@@ -5,13 +5,11 @@
 
 namespace fettle::engine {
 
-// The second moments of what a smooth surface leaves in a window of a scan, and the noise that explains them.
+// The second moments of what a smooth surface leaves in a window of a scan; noise_parts.h has the noise that explains them.
 //
 // A window of kNoiseSide x kNoiseSide heights is fitted with polynomials of degree 2 in its columns times degree 2 in
 // its rows, 9 in all. What remains, r, is less than the noise, and along a row or a column more uncorrelated: the fit
-// took its share. With Q the projection on the polynomials and C the covariance of the noise, r has the covariance
-// (1 - Q) C (1 - Q). C is taken as a sum of parts of known form, so that the expected moments of r are linear in the
-// sizes of the parts, and the sizes are solved for.
+// took its share.
 
 inline constexpr int kNoiseSide = 16;  ///< of a window [samples]
 inline constexpr int kNoiseLags = 6;   ///< correlation is seen to this distance [samples]
@@ -32,20 +30,6 @@ struct NoiseMoments {
   }
   /// Adds `weight` times other moments.
   void add(const NoiseMoments& other, double weight) noexcept;
-};
-
-/// The size of each part of the noise, as a variance or covariance in the unit of the moments.
-struct NoiseParts {
-  double uncorrelated = 0.0;  ///< and what correlated noise has at lag 0
-  /// Covariance of samples 1, 2 .. apart, without that of the offsets; 0 from the first that cannot be told from 0.
-  std::array<double, kNoiseLags> along_row{}, along_column{};
-  double row_offset = 0.0;     ///< variance of what a whole row is off, >= 0
-  double column_offset = 0.0;  ///< of what a whole column is off, >= 0
-
-  /// Of a sample.
-  [[nodiscard]] double variance() const noexcept { return uncorrelated + row_offset + column_offset; }
-  /// Multiplies all by `factor`.
-  void scale(double factor) noexcept;
 };
 
 /// What is left of a window.
@@ -70,14 +54,5 @@ inline constexpr std::array<int, 3> kNoiseGroupSizes{3, 3, 21};
 /// Missing samples and spikes are replaced by the fit, a few times over. Turning the heights upside down changes
 /// nothing. Any thread; allocates nothing.
 [[nodiscard]] NoiseWindow noiseWindow(const std::array<float, kNoiseSide * kNoiseSide>& heights) noexcept;
-
-/// The noise behind the mean moments of `windows` windows.
-///
-/// Its variance is that of the finest detail along rows or along columns, whichever is larger: noise is what a sample
-/// has and the next one has not, in one direction at least. Noise of scanners that work by lines has nothing in common
-/// from row to row; a rough surface has in both directions (in geostatistics: the nugget, G. Matheron 1963). What is
-/// correlated along the other direction as well is therefore the surface's. Parts that are less than three standard
-/// errors from 0 are 0. Any thread; allocates nothing.
-[[nodiscard]] NoiseParts noiseOf(const NoiseMoments& mean, std::int64_t windows) noexcept;
 
 }  // namespace fettle::engine

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/inspect/noise_moments.h"
+#include "engine/inspect/noise_parts.h"
 
 namespace fettle::engine {
 

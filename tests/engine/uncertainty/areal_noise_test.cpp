@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <random>
 #include <span>
@@ -126,6 +128,12 @@ const KnownSurface kOtherSurfaces[] = {
        });
        return sumOf(1.5, grooves, 0.3, randomTexture(5.0, 5.0, 0.0, 24));
      }},
+};
+
+// Long along rows or along columns, as what lines of a scanner share.
+const KnownSurface kLays[] = {
+    {"lay at 0", [] { return randomTexture(9.0, 3.0, 0.0, 31); }},
+    {"lay at 90", [] { return randomTexture(9.0, 3.0, 90.0, 32); }},
 };
 
 Result<ArealParameters> measuredOf(const Version& field) {
@@ -267,6 +275,101 @@ TEST(ArealNoise, ErrorsOfSixteenTrialsCoverTheTruthOfOtherSurfaces) {
   EXPECT_GE(whole.within[0], 0.55 * whole.stated);
   EXPECT_GE(whole.within[1], 0.86 * whole.stated);
   EXPECT_GE(whole.within[2], 0.94 * whole.stated);
+}
+
+// Root mean square of what Sq and Sa without noise are off, and the mean error that is stated.
+struct Scatter {
+  double squares = 0.0, errors = 0.0;
+  int within = 0, all = 0;
+
+  void add(const NoiseEffect& effect, double known) {
+    const double off = effect.without - known;
+    squares += off * off;
+    errors += effect.error;
+    within += std::abs(off) <= effect.error ? 1 : 0;
+    ++all;
+  }
+  [[nodiscard]] double errorOverScatter() const { return errors / std::sqrt(squares * all); }
+};
+
+// Heights alone: the other groups take most of the time.
+Result<ArealParameters> heightParametersOf(const Version& field) {
+  JobControl job;
+  const auto fit = fitForm(field, {}, job);
+  if (!fit) return tl::unexpected(fit.error());
+  return measureAreal(field, fit->form,
+                      {.hybrid = false, .functional = false, .spatial = false, .feature = false}, job);
+}
+
+// Of noise `sigma`, `lines` of whose square each row has in common, by the noise that is there and by that which is
+// measured in the scan: the error of Sq, of Sa over their scatter in one surface. Printed.
+std::array<double, 2> errorsOverScatter(const KnownSurface& surface, double sigma, double lines, int seeds) {
+  constexpr std::size_t kFigures[] = {0, 6};  // Sq, Sa
+  const std::vector<double> truth = surface.heights();
+  const std::vector<double> known = valuesOf(*heightParametersOf(fieldOf(truth)));
+  Scatter scatters[2][2];
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::mt19937_64 random(7000 + static_cast<std::uint64_t>(seed));
+    std::normal_distribution<double> normal(0.0, sigma);
+    std::vector<double> noisy = truth;
+    double of_row = 0.0;
+    for (std::size_t i = 0; i < noisy.size(); ++i) {
+      if (i % kSide == 0) of_row = std::sqrt(lines) * normal(random);
+      noisy[i] += of_row + std::sqrt(1.0 - lines) * normal(random);
+    }
+    const Version field = fieldOf(noisy);
+    JobControl job;
+    NoiseModel models[2];
+    models[0].sigma = sigma;
+    models[0].parts.uncorrelated = (1.0 - lines) * sigma * sigma;
+    models[0].parts.row_offset = lines * sigma * sigma;
+    models[1] = *measureNoise(field, job);
+    const ArealParameters found = *heightParametersOf(field);
+    for (std::size_t m = 0; m < 2; ++m) {
+      const auto effects =
+          arealEffects(field, models[m], found, heightParametersOf,
+                       {.pairs = 8, .seed = 5 + 100 * static_cast<std::uint64_t>(seed)}, job);
+      EXPECT_TRUE(effects);
+      for (std::size_t f = 0; f < 2; ++f) scatters[m][f].add((*effects)[kFigures[f]], known[kFigures[f]]);
+    }
+  }
+  fmt::print("{}, noise {}, of lines {}: errors over scatter", surface.name, sigma, lines);
+  std::array<double, 2> both{};
+  for (std::size_t m = 0; m < 2; ++m) {
+    const Scatter &sq = scatters[m][0], &sa = scatters[m][1];
+    both[m] = 0.5 * (sq.errorOverScatter() + sa.errorOverScatter());
+    fmt::print(" {} Sq {:.2f} ({:.2f} within), Sa {:.2f} ({:.2f});",
+               m == 0 ? "by the true noise" : "by the measured", sq.errorOverScatter(),
+               sq.within / static_cast<double>(seeds), sa.errorOverScatter(),
+               sa.within / static_cast<double>(seeds));
+  }
+  fmt::print("\n");
+  return both;
+}
+
+// Errors of Sq and Sa of quiet scans are as large as the scatter of what is stated, whether samples of a row share some of the
+// noise or none. Roughness that counted as what lines share made them 3.2 times as large where they share nothing.
+TEST(ArealNoise, ErrorsOfQuietScansAreTheirScatter) {
+  const bool soak = std::getenv("FETTLE_NOISE_SEEDS") != nullptr;
+  const int seeds = seedsOf(6);
+  for (const double lines : {0.0, 0.2})
+    for (const double sigma : {0.005, 0.02}) {
+      if (!soak && sigma < 0.01) continue;
+      double by_true = 0.0, by_measured = 0.0;
+      for (const KnownSurface& surface : kSurfaces) {
+        const auto [with_true, with_measured] = errorsOverScatter(surface, sigma, lines, seeds);
+        by_true += with_true / static_cast<double>(std::size(kSurfaces));
+        by_measured += with_measured / static_cast<double>(std::size(kSurfaces));
+      }
+      // The scatter of six seeds and four surfaces is known to some 15 %.
+      EXPECT_NEAR(by_true, 1.1, 0.5) << lines << ' ' << sigma;
+      EXPECT_GT(by_measured, 0.6) << lines << ' ' << sigma;
+      EXPECT_LT(by_measured, 1.9) << lines << ' ' << sigma;
+      if (!soak) continue;
+      for (const std::span<const KnownSurface> others :
+           {std::span<const KnownSurface>(kOtherSurfaces), std::span<const KnownSurface>(kLays)})
+        for (const KnownSurface& surface : others) errorsOverScatter(surface, sigma, lines, seeds);
+    }
 }
 
 }  // namespace
