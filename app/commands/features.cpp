@@ -142,11 +142,13 @@ void printFeatures(const Report& report) {
              report["least_height"].get<double>() / height.size, height.name);
   printLayer(report);
   if (const std::string scale = scaleText(report, "\n"); !scale.empty()) fmt::print("{}\n", scale);
-  if (!report["mean_area"].is_null())
-    fmt::print("closed ones in the mean: height {:.4g} {}, area {:.4g} {}2, volume {:.4g} {}\n",
+  if (!report["mean_volume"].is_null())
+    fmt::print("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}\n",
                report["mean_height"].get<double>() / height.size, height.name,
-               report["mean_area"].get<double>(), length, report["mean_volume"].get<double>() / height.size,
-               volume);
+               report["mean_volume"].get<double>() / height.size, volume);
+  if (!report["mean_area"].is_null())
+    fmt::print("those that nothing cuts in the mean: area {:.4g} {}2\n", report["mean_area"].get<double>(),
+               length);
   if (all.empty()) return;
   fmt::print("{:>6} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "number", "x " + length, "y " + length,
              "z " + height.name, "height " + height.name, "area " + length + "2", "volume " + volume);
@@ -203,13 +205,12 @@ void addFeatures(Command root, Chosen& chosen) {
   addScaleOptions(command, options->scale);
   addScanOptions(command, options->reading);
   command.notes(
-      "Watersheds with Wolf's pruning, as fettle measure segments for Spd and Spc. A sample belongs to the "
-      "peak to which it rises over its "
-      "highest neighbours. The height of a hill is that over the highest saddle to a higher one, and its "
-      "volume what lies above "
-      "that saddle. Open: above its saddle it reaches the border or a hole; means are of closed ones. "
-      "Positions are lengths from the lower left "
-      "sample.");
+      "Watersheds with Wolf's pruning, as fettle measure segments for feature parameters. A sample belongs "
+      "to the peak to which it rises over its highest neighbours. The height of a hill is that over the "
+      "highest saddle to a higher one; its volume is what lies above the highest saddle to any other. Open: "
+      "there it reaches the border or a hole; cut: at any height. Means of heights and volumes are of closed "
+      "ones, those of areas of ones that are not cut: Shv and Sha of fettle measure, Sdv and Sda of dales. "
+      "Positions are lengths from the lower left sample.");
   command.examples({{"fettle features scan.tif --csv hills.csv", "Hills of 5 % of Sz and more, as a table"},
                     {"fettle features scan.tif --kind dales --prune 10 --s-filter 2.5 --labels dales.tif "
                      "--edges dales.png",

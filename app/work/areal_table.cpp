@@ -25,7 +25,9 @@ enum class Quantity : std::uint8_t {
   kDegrees,
   kLength,
   kPerArea,
-  kPerLength
+  kPerLength,
+  kArea,
+  kBulk  // of a hill: area times height
 };
 
 struct ArealRow {
@@ -46,6 +48,7 @@ constexpr ArealRow kArealRows[] = {
     {"spatial", "sal", "Sal", Quantity::kLength, "autocorrelation length (to 0.2)"},
     {"spatial", "str", "Str", Quantity::kPlain, "texture aspect ratio (to 0.2)"},
     {"spatial", "std", "Std", Quantity::kDegrees, "texture direction: of the lay, from x to y"},
+    {"spatial", "ssw", "Ssw", Quantity::kLength, "dominant spatial wavelength"},
     {"hybrid", "sdq", "Sdq", Quantity::kPlain, "root mean square gradient"},
     {"hybrid", "sdr", "Sdr", Quantity::kRatio, "developed interfacial area ratio"},
     {"functional", "sk", "Sk", Quantity::kHeight, "core height"},
@@ -59,15 +62,24 @@ constexpr ArealRow kArealRows[] = {
     {"functional", "vvv", "Vvv", Quantity::kVolume, "void volume of the dales (80 %)"},
     {"functional", "sxp", "Sxp", Quantity::kHeight, "peak extreme height (2.5 to 50 %)"},
     {"feature", "spd", "Spd", Quantity::kPerArea, "density of peaks (hills of 5 % of Sz and more)"},
+    {"feature", "svd", "Svd", Quantity::kPerArea, "density of pits (dales of 5 % of Sz and more)"},
     {"feature", "spc", "Spc", Quantity::kPerLength, "arithmetic mean peak curvature"},
+    {"feature", "svc", "Svc", Quantity::kPerLength, "arithmetic mean pit curvature"},
+    {"feature", "s5p", "S5p", Quantity::kHeight, "five-point peak height"},
+    {"feature", "s5v", "S5v", Quantity::kHeight, "five-point pit depth"},
+    {"feature", "s10z", "S10z", Quantity::kHeight, "ten-point height (S5p + S5v)"},
+    {"feature", "sha", "Sha", Quantity::kArea, "mean hill area (of closed hills)"},
+    {"feature", "sda", "Sda", Quantity::kArea, "mean dale area (of closed dales)"},
+    {"feature", "shv", "Shv", Quantity::kBulk, "mean hill volume (above the highest saddle)"},
+    {"feature", "sdv", "Sdv", Quantity::kBulk, "mean dale volume (below the lowest saddle)"},
 };
 
 constexpr ArealGroup kArealGroups[] = {
     {"height", "Height", "Sq Ssk Sku Sp Sv Sz Sa"},
-    {"spatial", "Spatial", "Sal Str Std"},
+    {"spatial", "Spatial", "Sal Str Std Ssw"},
     {"hybrid", "Hybrid", "Sdq Sdr"},
     {"functional", "Functional", "Sk Spk Svk Smrk1 Smrk2 Vmp Vmc Vvc Vvv Sxp, Smr(c) and Smc(mr)"},
-    {"feature", "Feature", "Spd Spc"},
+    {"feature", "Feature", "Spd Svd Spc Svc S5p S5v S10z Sha Sda Shv Sdv"},
 };
 
 // Of lengths along the surface: millimetres, as drawings state them, metres where samples are far apart.
@@ -104,12 +116,19 @@ Shown shownAs(Quantity quantity, const ReadAs& height, const ReadAs& length) {
       return {length.size * length.size, fmt::format("1/{}2", length.name)};
     case Quantity::kPerLength:
       return {length.size, fmt::format("1/{}", length.name)};
+    case Quantity::kArea:
+      return {1.0 / (length.size * length.size), fmt::format("{}2", length.name)};
+    case Quantity::kBulk:
+      return {1.0 / (length.size * length.size * height.size),
+              height.name == length.name ? fmt::format("{}3", length.name)
+                                         : fmt::format("{}2 {}", length.name, height.name)};
   }
   return {1.0, ""};
 }
 
 // A figure as measured, in millimetres and squares of them, in units of the scan.
-double inScanUnits(double value, Quantity quantity, double lateral_mm) {
+double inScanUnits(double value, Quantity quantity, const engine::Grid& grid) {
+  const double lateral_mm = grid.lateral_unit.mm;
   switch (quantity) {
     case Quantity::kLength:
       return value / lateral_mm;
@@ -117,6 +136,10 @@ double inScanUnits(double value, Quantity quantity, double lateral_mm) {
       return value * lateral_mm * lateral_mm;
     case Quantity::kPerLength:
       return value * lateral_mm;
+    case Quantity::kArea:
+      return value / (lateral_mm * lateral_mm);
+    case Quantity::kBulk:
+      return value / (lateral_mm * lateral_mm * grid.height_unit.mm);
     default:
       return value;
   }
@@ -198,12 +221,14 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
   report["mean"] = measured.mean;
   for (const ArealRow& row : kArealRows) {
     if (!wanted(row.group, groups)) continue;
-    const double value =
-        inScanUnits(engine::arealFigure(row.key).of(measured), row.quantity, grid.lateral_unit.mm);
+    const double value = inScanUnits(engine::arealFigure(row.key).of(measured), row.quantity, grid);
     report[row.key] = std::isfinite(value) ? Report(value) : Report();
   }
   if (wanted("hybrid", groups)) report["cells"] = measured.cells;
-  if (wanted("feature", groups)) report["hills"] = measured.feature.hills;
+  if (wanted("feature", groups)) {
+    report["hills"] = measured.feature.hills;
+    report["dales"] = measured.feature.dales;
+  }
   report["not_stated"] = Report::array();
   for (const auto& each : measured.not_stated)
     if (report.contains(each.parameter))
@@ -223,8 +248,8 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
       if (figures[i].key == row.key)
         report["noise"]["figures"].push_back(
             {{"parameter", row.key},
-             {"without", number(inScanUnits(noise.effects[i].without, row.quantity, grid.lateral_unit.mm))},
-             {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid.lateral_unit.mm))},
+             {"without", number(inScanUnits(noise.effects[i].without, row.quantity, grid))},
+             {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid))},
              {"reason", noise.effects[i].why}});
   }
   // The ratios and heights that were asked for come after all parameters.

@@ -37,12 +37,12 @@ engine::Result<engine::Version> fieldOf(const FieldFeatures& features, const eng
   return std::move(*builder).build();
 }
 
-// Of those that do not reach the border, as ISO 25178-2 has it of closed features; null without one.
-Report closedMean(const Report& features, const char* key) {
+// Of those of which a word is not true; null without one.
+Report meanWithout(const Report& features, const char* key, const char* word) {
   double sum = 0.0;
   int count = 0;
   for (const Report& feature : features)
-    if (!feature["open"].get<bool>()) {
+    if (!feature[word].get<bool>()) {
       sum += feature[key].get<double>();
       ++count;
     }
@@ -166,11 +166,13 @@ Report featureReport(const FieldFeatures& features, const engine::Grid& grid) {
                     {"area", of.area_mm2 / (mm * mm)},
                     {"area_above", of.area_above_mm2 / (mm * mm)},
                     {"volume", of.volume_mm3 / (mm * mm * grid.height_unit.mm)},
-                    {"open", of.open}});
+                    {"open", of.open},
+                    {"cut", of.cut}});
   }
-  for (const auto& [key, of] :
-       {std::pair("mean_height", "height"), {"mean_area", "area"}, {"mean_volume", "volume"}})
-    report[key] = closedMean(report["features"], of);
+  // As Sha, Sda, Shv and Sdv: an area is not whole once the border cuts it, a volume only above the saddle.
+  report["mean_height"] = meanWithout(rows, "height", "open");
+  report["mean_area"] = meanWithout(rows, "area", "cut");
+  report["mean_volume"] = meanWithout(rows, "volume", "open");
   return report;
 }
 
@@ -179,14 +181,15 @@ std::string featureCsv(const Report& report) {
   std::string text = fmt::format(
       "number,x [{1}],y [{1}],z [{0}],height [{0}],samples,area [{1}2],area above saddle [{1}2],volume above "
       "saddle "
-      "[{1}2 {0}],open,layer\n",
+      "[{1}2 {0}],open,cut,layer\n",
       height, length);
   for (const Report& f : report["features"])
-    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g},{},{}\n",
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g},{},{},{}\n",
                         f["number"].get<int>(), f["x"].get<double>(), f["y"].get<double>(),
                         f["z"].get<double>(), f["height"].get<double>(), f["samples"].get<std::int64_t>(),
                         f["area"].get<double>(), f["area_above"].get<double>(), f["volume"].get<double>(),
-                        f["open"].get<bool>() ? "yes" : "no", layerOf(report));
+                        f["open"].get<bool>() ? "yes" : "no", f["cut"].get<bool>() ? "yes" : "no",
+                        layerOf(report));
   return text;
 }
 

@@ -50,7 +50,7 @@ struct FieldFeatures {
                                                               const engine::Version& field,
                                                               engine::JobControl& job);
 
-/// As `fettle features` reports them: kind, units, sz, least_height, count, features, means of the closed ones.
+/// As `fettle features` reports them: kind, units, sz, least_height, count, features, means of heights and volumes of the closed ones, of areas of those that nothing cuts.
 [[nodiscard]] Report featureReport(const FieldFeatures& features, const engine::Grid& grid);
 /// A row for each of a report, with the form over the scan.
 [[nodiscard]] std::string featureCsv(const Report& report);

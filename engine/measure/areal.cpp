@@ -53,19 +53,21 @@ void leaveOut(ArealParameters& result, const ArealOptions& options, const std::s
   result.ratios.assign(options.at_heights.size(), kNone);
   result.heights.assign(options.at_ratios.size(), kNone);
   SpatialParameters& spatial = result.spatial;
-  spatial.sal = spatial.str = spatial.lay = spatial.sal_direction = spatial.slow_direction = kNone;
-  spatial.no_sal = spatial.no_str = spatial.no_lay = why;
-  result.feature.spd = result.feature.spc = kNone;
-  result.feature.no_spd = result.feature.no_spc = why;
+  spatial.sal = spatial.str = spatial.lay = spatial.ssw = spatial.sal_direction = spatial.slow_direction =
+      kNone;
+  spatial.no_sal = spatial.no_str = spatial.no_lay = spatial.no_ssw = why;
+  result.feature = withoutFeatures(why);
   const auto note = [&](bool wanted, std::initializer_list<const char*> keys) {
     if (!wanted) return;
     for (const char* const key : keys) result.not_stated.push_back({key, why});
   };
   note(true, {"sq", "ssk", "sku", "sp", "sv", "sz", "sa"});
-  note(options.spatial, {"sal", "str", "std"});
+  note(options.spatial, {"sal", "str", "std", "ssw"});
   note(options.hybrid, {"sdq", "sdr"});
   note(options.functional, {"sk", "spk", "svk", "smrk1", "smrk2", "vmp", "vmc", "vvc", "vvv", "sxp"});
-  note(options.feature, {"spd", "spc"});
+  if (options.feature)
+    result.not_stated.insert(result.not_stated.end(), result.feature.not_stated.begin(),
+                             result.feature.not_stated.end());
 }
 
 struct MeanPart {
@@ -164,8 +166,8 @@ Result<SpatialAnalysis> spatialOf(const Surface& surface, const ArealOptions& op
   if (free > 0.0 && wanted > 0.8 * free) {
     SpatialAnalysis nothing;
     SpatialParameters& none = nothing.parameters;
-    none.sal = none.str = none.lay = none.sal_direction = none.slow_direction = std::nan("");
-    none.no_sal = none.no_str = none.no_lay =
+    none.sal = none.str = none.lay = none.ssw = none.sal_direction = none.slow_direction = std::nan("");
+    none.no_sal = none.no_str = none.no_lay = none.no_ssw =
         fmt::format("it takes {:.1f} GiB of memory, of which {:.1f} are free: measure a smaller region",
                     wanted / kGibi, free / kGibi);
     return nothing;
@@ -288,13 +290,13 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     note("sal", result.spatial.no_sal);
     note("str", result.spatial.no_str);
     note("std", result.spatial.no_lay);
+    note("ssw", result.spatial.no_ssw);
   }
   if (options.feature) {
     auto feature = measureFeatures(*surface, result.sz, options.prune, job);
     if (!feature) return tl::unexpected(feature.error());
     result.feature = *std::move(feature);
-    note("spd", result.feature.no_spd);
-    note("spc", result.feature.no_spc);
+    for (const auto& [parameter, reason] : result.feature.not_stated) note(parameter.c_str(), reason);
   }
   return result;
 } catch (const std::bad_alloc&) {

@@ -10,7 +10,7 @@
 #include "engine/base/job.h"
 #include "engine/field/nominal_form.h"
 #include "engine/field/version.h"
-#include "engine/measure/hills.h"
+#include "engine/measure/features.h"
 #include "engine/measure/material_ratio.h"
 #include "engine/measure/region.h"
 #include "engine/measure/spatial.h"
@@ -47,10 +47,6 @@ struct ArealParameters {
       analysis;  ///< where it was asked for and there was memory; else null
   FeatureParameters feature;
 
-  struct NotStated {
-    std::string parameter;  ///< "ssk"
-    std::string reason;
-  };
   std::vector<NotStated> not_stated;  ///< of the groups that were asked for
 };
 
@@ -73,7 +69,7 @@ struct ArealOptions {
 /// wavelength L sampled every h both are lower than the sine's by (2 pi h / L)^2 / 12 of the gradient's square.
 ///
 /// Sums in double, compensated over the tiles; order statistics exact. Bit-identical for any number of threads. Memory:
-/// 4 bytes per sample while heights are sorted, 32 for features, 40 for spatial parameters, which are not stated where
+/// 4 bytes per sample while heights are sorted, 48 for features, 40 for spatial parameters, which are not stated where
 /// so much is not free. Errors: kInput for a region without samples; kFailed without memory;
 /// kCancelled. Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const NominalForm& form,

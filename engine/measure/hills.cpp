@@ -15,7 +15,6 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kLow =
     std::numeric_limits<std::uint32_t>::max();  // a sample that is still under water
 
@@ -25,8 +24,9 @@ struct Pass {
   std::uint32_t from = 0, to = 0;
 };
 
-std::vector<Pass> passesOf(const Surface& surface) {
-  std::vector<Pass> passes;
+// Calls `take(Pass)` for each pass across a cell, row by row.
+template <class Take>
+void forEachPass(const Surface& surface, const Take& take) {
   const auto index = [&](std::int32_t c, std::int32_t r) {
     return static_cast<std::uint32_t>(r) * static_cast<std::uint32_t>(surface.width) +
            static_cast<std::uint32_t>(c);
@@ -42,11 +42,9 @@ std::vector<Pass> passesOf(const Surface& surface) {
       const double middle = (a * e - b * d) / (a + e - b - d);
       const double lower = rising ? std::max(b, d) : std::max(a, e),
                    upper = rising ? std::min(a, e) : std::min(b, d);
-      passes.push_back({static_cast<float>(std::clamp(middle, lower, upper)),
-                        rising ? index(c, r) : index(c + 1, r),
-                        rising ? index(c + 1, r + 1) : index(c, r + 1)});
+      take(Pass{static_cast<float>(std::clamp(middle, lower, upper)), rising ? index(c, r) : index(c + 1, r),
+                rising ? index(c + 1, r + 1) : index(c, r + 1)});
     }
-  return passes;
 }
 
 // Least first: the highest, of equal heights the first sample.
@@ -61,16 +59,14 @@ std::uint32_t sampleOf(std::uint64_t key) noexcept {
 }
 
 // Hills that grow and merge while the water falls. A set's first sample is its peak.
-enum class Mapping : std::uint8_t { kNo, kYes };
 class Flood {
  public:
-  // `mapping`: whether hillsOfSamples() is to be known.
-  Flood(const Surface& surface, double least, Mapping mapping)
-      : surface_(surface), least_(least), parent_(surface.heights.size(), kLow) {
-    if (mapping == Mapping::kNo) return;
-    rises_to_.assign(surface.heights.size(), kLow);
-    becomes_.assign(surface.heights.size(), kLow);
-  }
+  Flood(const Surface& surface, double least)
+      : surface_(surface),
+        least_(least),
+        parent_(surface.heights.size(), kLow),
+        rises_to_(surface.heights.size(), kLow),
+        becomes_(surface.heights.size(), kLow) {}
 
   void emerge(std::uint32_t sample) {
     parent_[sample] = sample;
@@ -86,13 +82,11 @@ class Flood {
     add(column + 1 < width, sample + 1);
     add(row > 0, sample - width);
     add(row + 1 < static_cast<std::uint32_t>(surface_.height), sample + width);
-    if (!rises_to_.empty()) {
-      // The highest first: the sample is of its hill from then on, for the saddles between this and the others.
-      for (int i = 1; i < count; ++i)
-        if (before(neighbours[i], neighbours[0])) std::swap(neighbours[0], neighbours[i]);
-      rises_to_[sample] = count > 0 ? rises_to_[neighbours[0]] : sample;
-      if (count == 0) becomes_[sample] = sample;
-    }
+    // The highest first: the sample is of its hill from then on, for the saddles between this and the others.
+    for (int i = 1; i < count; ++i)
+      if (before(neighbours[i], neighbours[0])) std::swap(neighbours[0], neighbours[i]);
+    rises_to_[sample] = count > 0 ? rises_to_[neighbours[0]] : sample;
+    if (count == 0) becomes_[sample] = sample;
     for (int i = 0; i < count; ++i) join(sample, neighbours[i], height);
   }
   // At a saddle of this height.
@@ -107,8 +101,7 @@ class Flood {
     parent_[low] = high;
     // A hill that is pruned is one alone, as each that it had taken in was lower still over a higher saddle. A sample that
     // emerges is none.
-    if (!take(low, height) && !rises_to_.empty() && rises_to_[low] == low)
-      becomes_[keptOf(low)] = keptOf(rises_to_[beyond]);
+    if (!take(low, height) && rises_to_[low] == low) becomes_[keptOf(low)] = keptOf(rises_to_[beyond]);
   }
   // What is left when all is dry, over the lowest sample of each connected part.
   void finish(const std::vector<std::uint64_t>& order) {
@@ -181,12 +174,13 @@ class Flood {
   double least_;
   std::vector<std::uint32_t> parent_;
   std::vector<Peak> peaks_;
-  std::vector<std::uint32_t> rises_to_;  // of each sample its peak, before pruning; empty without a map
+  std::vector<std::uint32_t> rises_to_;  // of each sample its peak, before pruning
   std::vector<std::uint32_t> becomes_;   // of each peak that whose hill it is part of
 };
 
-// The flood after all has emerged.
-Result<Flood> flooded(const Surface& surface, double least, Mapping mapping, JobControl& job) {
+}  // namespace
+
+Result<HillMap> mapHills(const Surface& surface, double least, JobControl& job) {
   job.begin("segmenting hills", static_cast<std::uint64_t>(surface.samples));
   // Keys are sorted instead of samples, which would be looked up at each comparison: a half of the time.
   std::vector<std::uint64_t> order;
@@ -194,9 +188,10 @@ Result<Flood> flooded(const Surface& surface, double least, Mapping mapping, Job
   for (std::size_t i = 0; i < surface.heights.size(); ++i)
     if (!std::isnan(surface.heights[i]))
       order.push_back(emergenceKey(surface.heights[i], static_cast<std::uint32_t>(i)));
-  Flood flood(surface, least, mapping);
+  Flood flood(surface, least);
   tbb::parallel_sort(order.begin(), order.end());
-  std::vector<Pass> passes = passesOf(surface);
+  std::vector<Pass> passes;
+  forEachPass(surface, [&](const Pass& pass) { passes.push_back(pass); });
   tbb::parallel_sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
     return a.height > b.height || (a.height == b.height && a.from < b.from) ||
            (a.height == b.height && a.from == b.from && a.to < b.to);
@@ -217,49 +212,59 @@ Result<Flood> flooded(const Surface& surface, double least, Mapping mapping, Job
   // A pass is never below the lowest sample, so that each has been crossed but those at its very height.
   for (; pass < passes.size(); ++pass) flood.join(passes[pass].from, passes[pass].to, passes[pass].height);
   flood.finish(order);
-  return flood;
-}
-
-}  // namespace
-
-Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, JobControl& job) {
-  auto flood = flooded(surface, least, Mapping::kNo, job);
-  if (!flood) return tl::unexpected(flood.error());
-  return flood->hills();
-}
-
-Result<HillMap> mapHills(const Surface& surface, double least, JobControl& job) {
-  auto flood = flooded(surface, least, Mapping::kYes, job);
-  if (!flood) return tl::unexpected(flood.error());
   HillMap map;
-  map.hills = flood->hills();
-  map.of = flood->hillsOfSamples();
+  map.hills = flood.hills();
+  map.of = flood.hillsOfSamples();
   return map;
 }
 
 std::vector<HillFigures> figuresOfHills(const Surface& surface, const HillMap& map) {
+  constexpr double kUnder = -std::numeric_limits<double>::infinity();
   std::vector<HillFigures> figures;
-  for (const Hill& hill : map.hills) figures.push_back({.hill = hill});
+  for (const Hill& hill : map.hills) figures.push_back({.hill = hill, .saddle = kUnder});
+  const auto index = [&](std::int32_t c, std::int32_t r) {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(surface.width) +
+           static_cast<std::size_t>(c);
+  };
+  const auto meet = [&](std::size_t a, std::size_t b, double height) {
+    const std::int32_t one = map.of[a], other = map.of[b];
+    if (one == other || one == HillMap::kNone || other == HillMap::kNone) return;
+    for (const std::int32_t number : {one, other}) {
+      double& saddle = figures[static_cast<std::size_t>(number)].saddle;
+      saddle = std::max(saddle, height);
+    }
+  };
+  forEachPass(surface, [&](const Pass& pass) { meet(pass.from, pass.to, pass.height); });
+  for (std::int32_t r = 0; r < surface.height; ++r)
+    for (std::int32_t c = 0; c < surface.width; ++c) {
+      if (c + 1 < surface.width)
+        meet(index(c, r), index(c + 1, r), std::min(surface.at(c, r), surface.at(c + 1, r)));
+      if (r + 1 < surface.height)
+        meet(index(c, r), index(c, r + 1), std::min(surface.at(c, r), surface.at(c, r + 1)));
+    }
+  for (HillFigures& of : figures)
+    if (of.saddle == kUnder) of.saddle = of.hill.peak - of.hill.height;  // it meets no other
+
   std::vector<CompensatedSum> volumes(figures.size());
   std::vector<std::int64_t> above(figures.size());
   const double cell = surface.spacing_x * surface.spacing_y;
-  const auto hole = [&](std::int32_t c, std::int32_t r) {
+  const auto outside = [&](std::int32_t c, std::int32_t r) {
     return c < 0 || r < 0 || c >= surface.width || r >= surface.height || std::isnan(surface.at(c, r));
   };
   for (std::int32_t r = 0; r < surface.height; ++r)
     for (std::int32_t c = 0; c < surface.width; ++c) {
-      const std::int32_t number =
-          map.of[static_cast<std::size_t>(r) * static_cast<std::size_t>(surface.width) +
-                 static_cast<std::size_t>(c)];
+      const std::int32_t number = map.of[index(c, r)];
       if (number == HillMap::kNone) continue;
       const auto i = static_cast<std::size_t>(number);
       HillFigures& of = figures[i];
       ++of.samples;
-      const double over = surface.at(c, r) - (of.hill.peak - of.hill.height);
+      const bool rim = outside(c - 1, r) || outside(c + 1, r) || outside(c, r - 1) || outside(c, r + 1);
+      of.cut = of.cut || rim;
+      const double over = surface.at(c, r) - of.saddle;
       if (!(over > 0.0)) continue;
       ++above[i];
       volumes[i].add(over);
-      of.open = of.open || hole(c - 1, r) || hole(c + 1, r) || hole(c, r - 1) || hole(c, r + 1);
+      of.open = of.open || rim;
     }
   for (std::size_t i = 0; i < figures.size(); ++i) {
     figures[i].area_mm2 = static_cast<double>(figures[i].samples) * cell;
@@ -267,41 +272,6 @@ std::vector<HillFigures> figuresOfHills(const Surface& surface, const HillMap& m
     figures[i].volume_mm3 = volumes[i].value() * cell * surface.height_mm;
   }
   return figures;
-}
-
-Result<FeatureParameters> measureFeatures(const Surface& surface, double sz, double prune, JobControl& job) {
-  FeatureParameters result;
-  result.spd = result.spc = kNoFigure;
-  const auto none = [&](const char* why) {
-    result.no_spd = result.no_spc = why;
-    return result;
-  };
-  if (surface.width < 2 || surface.height < 2) return none("fewer than 2 columns or rows of samples");
-  if (!(sz > 0.0)) return none("the surface is flat");
-  if (surface.heights.size() >= kLow) return none("more than 4 294 967 294 samples");
-  const auto hills = segmentHills(surface, prune * sz, job);
-  if (!hills) return tl::unexpected(hills.error());
-  result.hills = static_cast<std::int64_t>(hills->size());
-  result.spd = static_cast<double>(result.hills) /
-               (static_cast<double>(surface.samples) * surface.spacing_x * surface.spacing_y);
-  CompensatedSum curvature;
-  for (const Hill& hill : *hills) {
-    const std::int32_t c = hill.column, r = hill.row;
-    if (c == 0 || r == 0 || c + 1 == surface.width || r + 1 == surface.height) continue;
-    const double middle = 2.0 * static_cast<double>(surface.at(c, r));
-    const double along_x = (static_cast<double>(surface.at(c - 1, r)) - middle + surface.at(c + 1, r)) /
-                           (surface.spacing_x * surface.spacing_x);
-    const double along_y = (static_cast<double>(surface.at(c, r - 1)) - middle + surface.at(c, r + 1)) /
-                           (surface.spacing_y * surface.spacing_y);
-    if (std::isnan(along_x + along_y)) continue;
-    ++result.curved;
-    curvature.add(-0.5 * (along_x + along_y) * surface.height_mm);
-  }
-  if (result.curved > 0)
-    result.spc = curvature.value() / static_cast<double>(result.curved);
-  else
-    result.no_spc = "every peak lies at the border or at a hole";
-  return result;
 }
 
 }  // namespace fettle::engine

@@ -15,6 +15,7 @@
 
 #include "engine/compare/tile_sums.h"
 #include "engine/measure/plane_transform.h"
+#include "engine/measure/wave_fit.h"
 
 namespace fettle::engine {
 
@@ -76,6 +77,36 @@ void toPowers(Padded& plane, JobControl& job) {
       here = there = power(here, there);
     }
   });
+}
+
+// That of the largest power of toPowers(); none where all have none.
+WavesOver strongestWave(Padded& plane, const Surface& surface) noexcept {
+  const double columns = static_cast<double>(surface.width) / plane.width,
+               rows = static_cast<double>(surface.height) / plane.height;
+  WavesOver strongest;
+  double most = 0.0;
+  // Those of a half plane; the others are the same waves.
+  for (std::int32_t r = 0; r <= plane.height / 2; ++r)
+    for (std::int32_t c = 0; c < plane.width; ++c) {
+      const double power = plane.at(c, r).real();
+      if (!(power > most) || (c == 0 && r == 0)) continue;  // the mean is no wave
+      most = power;
+      strongest = {(2 * c > plane.width ? c - plane.width : c) * columns, r * rows};
+    }
+  return strongest;
+}
+
+void setDominantWave(SpatialParameters& of, const Surface& surface, const WavesOver& strongest,
+                     JobControl& job) {
+  constexpr double kRounding = 1e-6;
+  const WavesOver wave = nearestWave(surface, strongest, job);
+  if (std::hypot(wave.columns, wave.rows) < 1.0 - kRounding) {
+    of.ssw = kNone;
+    of.no_ssw = "its largest wave is longer than the surface";
+    return;
+  }
+  of.ssw = 1.0 / std::hypot(wave.columns / (surface.width * surface.spacing_x),
+                            wave.rows / (surface.height * surface.spacing_y));
 }
 
 double meanSquare(const Surface& surface) noexcept {
@@ -213,7 +244,7 @@ Extreme extremeDecay(const Autocorrelation& correlation, double sign) noexcept {
 }
 
 SpatialParameters without(const std::string& why) {
-  return {kNone, kNone, kNone, kNone, kNone, why, why, why};
+  return {kNone, kNone, kNone, kNone, kNone, kNone, why, why, why, why};
 }
 
 // At a lag that is no whole number.
@@ -315,7 +346,7 @@ Result<SpatialAnalysis> correlate(const Surface& surface, JobControl& job) {
     result.parameters = without("the surface is flat");
     return result;
   }
-  job.begin("correlating", 5);
+  job.begin("correlating", 6);
   Padded plane;
   const auto size = paddedSize(surface);
   plane.width = size.first;
@@ -327,6 +358,8 @@ Result<SpatialAnalysis> correlate(const Surface& surface, JobControl& job) {
   job.advance();
   if (job.cancelled()) return cancelled();
   toPowers(plane, job);
+  if (job.cancelled()) return cancelled();
+  const WavesOver strongest = strongestWave(plane, surface);
   transformPlane(plane.values, plane.width, plane.height, Transform::kBackward, job);
   job.advance();
   if (job.cancelled()) return cancelled();
@@ -336,6 +369,9 @@ Result<SpatialAnalysis> correlate(const Surface& surface, JobControl& job) {
   job.advance();
   if (job.cancelled()) return cancelled();
   result.parameters = parametersOf(result.correlation, result.spectrum);
+  setDominantWave(result.parameters, surface, strongest, job);
+  job.advance();
+  if (job.cancelled()) return cancelled();
   return result;
 }
 

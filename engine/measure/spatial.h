@@ -51,8 +51,11 @@ struct SpatialParameters {
   /// above half of it) [degrees from x to y, 0 .. 180).
   /// As the standard's angle of the spectrum's maximum itself with the y axis as the reference direction.
   double lay = 0.0;
+  /// Ssw, dominant spatial wavelength: of the largest absolute value of the Fourier transform of the heights (holes are at the mean), there of the
+  /// wave that leaves least of them, nearestWave(); no longer than the surface [mm].
+  double ssw = 0.0;
   /// Why a figure is NaN; empty where it is none.
-  std::string no_sal, no_str, no_lay;
+  std::string no_sal, no_str, no_lay, no_ssw;
 };
 
 struct SpatialAnalysis {

@@ -24,6 +24,7 @@ constexpr ArealFigure kFigures[] = {
     {"sal", [](const P& p) { return p.spatial.sal; }, G::kPlain, kFromZero},
     {"str", [](const P& p) { return p.spatial.str; }, G::kPlain, kShareRange},
     {"std", [](const P& p) { return p.spatial.lay; }, G::kAxis, {0.0, 180.0}},
+    {"ssw", [](const P& p) { return p.spatial.ssw; }, G::kPlain, kFromZero},
     {"sdq", [](const P& p) { return p.sdq; }, G::kSquare, kFromZero},
     {"sdr", [](const P& p) { return p.sdr; }, G::kPlain, kFromZero},
     {"sk", [](const P& p) { return p.ratio.sk; }, G::kRank, kFromZero},
@@ -37,7 +38,16 @@ constexpr ArealFigure kFigures[] = {
     {"vvv", [](const P& p) { return p.ratio.vvv; }, G::kRank, kFromZero},
     {"sxp", [](const P& p) { return p.ratio.sxp; }, G::kRank, kFromZero},
     {"spd", [](const P& p) { return p.feature.spd; }, G::kPlaces, kFromZero},
+    {"svd", [](const P& p) { return p.feature.svd; }, G::kPlaces, kFromZero},
     {"spc", [](const P& p) { return p.feature.spc; }, G::kPlaces, kFromZero},
+    {"svc", [](const P& p) { return p.feature.svc; }, G::kPlaces, kFromZero},
+    {"s5p", [](const P& p) { return p.feature.s5p; }, G::kExtreme, kFromZero},
+    {"s5v", [](const P& p) { return p.feature.s5v; }, G::kExtreme, kFromZero},
+    {"s10z", [](const P& p) { return p.feature.s10z; }, G::kExtreme, kFromZero},
+    {"sha", [](const P& p) { return p.feature.sha; }, G::kPlaces, kFromZero},
+    {"sda", [](const P& p) { return p.feature.sda; }, G::kPlaces, kFromZero},
+    {"shv", [](const P& p) { return p.feature.shv; }, G::kPlaces, kFromZero},
+    {"sdv", [](const P& p) { return p.feature.sdv; }, G::kPlaces, kFromZero},
 };
 
 }  // namespace

@@ -63,6 +63,7 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
                        double share) {
   if (std::isnan(found) || std::isnan(of_part)) return {kNone, kNone};
   const GrowthRule& rule = ruleOf(growth);
+  if (rule.by_square && found < 0.0) return {kNone, kNone, "it is below 0"};  // its square says not which
   std::vector<double> halves, means;
   for (const TrialPair& pair : pairs) {
     const double more = grownBy(growth, pair.more, of_part), less = grownBy(growth, pair.less, of_part);
@@ -84,7 +85,7 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
   // As far as the part's figure is another one the raise may be, too.
   const double apart = growth == NoiseGrowth::kAxis ? nearestAxis(of_part, found) - found : part - whole;
   const double size = growth == NoiseGrowth::kAxis ? 90.0 : std::max(std::abs(part), std::abs(whole));
-  const double unlike = share < 1.0 && size > 0.0 ? apart / size : 0.0;
+  const double unlike = size > 0.0 ? apart / size : 0.0;
   const double doubt = std::hypot(rule.doubt, unlike) * raise, by_trials = widened * widened;
   const double error = std::sqrt(by_trials * (share * scatter + spread * (share + 1.0 / n)) + doubt * doubt);
   double without = whole - raise;
@@ -94,7 +95,8 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
   }
   // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
   without = std::sqrt(std::max(without, 0.0));
-  if (found - without > rule.most * found) return {kNone, kNone, "noise raises it by more than a fifth"};
+  if (std::abs(found - without) > rule.most * found)
+    return {kNone, kNone, "noise changes it by more than a fifth"};
   const double square = without * without;
   // Rounding of the squares is no error: no trial changed the figure.
   if (error <= 1e-12 * square) return {without, 0.0};

@@ -26,7 +26,7 @@ enum class NoiseGrowth : std::uint8_t {
   kRank,     ///< by square, of ranks of heights: heights and volumes of the material ratio curve
   kShare,    ///< the figure itself, of ranks of heights: material ratios
   kExtreme,  ///< by square, the greatest of many samples
-  kPlaces,   ///< by square, of single places that are chosen by their heights: peaks
+  kPlaces,   ///< by square, of single places that are chosen by their heights: peaks, hills
 };
 
 struct NoiseEffect {
@@ -78,7 +78,7 @@ class NoiseDraw {
 /// the scatter counts, and studentFactor() times all. Where noise explains all of a figure by square it is 0 without noise, with the error that leaves.
 /// docs/decisions/parameter-errors.md has the shares of simulated scans in which it covers.
 ///
-/// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise raises by a fifth of it and more. Time: 2 pairs + 1 times that of
+/// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise changes by a fifth of it and more. Time: 2 pairs + 1 times that of
 /// measuring; noise that the model does not see (in filtered scans what neighbours share along both directions) is left
 /// out. Bit-identical for any number of threads if `measure` is. Errors: those of `measure` and withNoise.
 [[nodiscard]] Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,

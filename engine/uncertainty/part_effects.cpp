@@ -207,7 +207,9 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
   const double share = std::min(1.0, static_cast<double>(result.samples) /
                                          static_cast<double>(std::max<std::int64_t>(measured.samples, 1)));
   for (std::size_t i = 0; i < found.size(); ++i)
-    result.effects[i] = partEffectOf(found[i], (*own)[i], pairs[i], growths[i], share);
+    // Of few places among all noise scatters no less where there are more of these.
+    result.effects[i] = partEffectOf(found[i], (*own)[i], pairs[i], growths[i],
+                                     growths[i] == NoiseGrowth::kExtreme ? 1.0 : share);
 
   // Of the whole surface, and of the reach that the part has.
   const double sigma = noise_left.root();
@@ -239,6 +241,8 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
     if ((key == "sal" && !(measured.spatial.sal < reach)) ||
         ((key == "str" || key == "std") && !(slowest < reach)))
       result.effects[i] = {kNoEffect, kNoEffect, "it reaches over half of the squares of trials"};
+    if (key == "ssw")
+      result.effects[i] = {kNoEffect, kNoEffect, "no wave goes on from one square of trials to the next"};
   }
   if (measured.sq > 0.0) addRankDoubt(result.effects, growths, noise.sigma / measured.sq);
   keepWithinRanges(result.effects, measured);

@@ -50,6 +50,8 @@ TEST(Features, AreATableLabelsAndOutlines) {
   EXPECT_NEAR(report["features"][1]["height"], 0.8, 1e-6);
   EXPECT_NEAR(report["features"][1]["volume"], own, 0.01 * own);
   EXPECT_EQ(report["features"][1]["open"], false);
+  EXPECT_EQ(report["features"][1]["cut"], true) << "its ground goes on to the border of the plate";
+  EXPECT_TRUE(report["mean_area"].is_null());
   // The last is a shoulder of the third: over the saddle between them.
   EXPECT_LT(report["features"][3]["height"], 0.4);
   engine::JobControl job;
@@ -80,6 +82,41 @@ TEST(Features, AreATableLabelsAndOutlines) {
   const Outcome text = fettle({"features", scan, "--unit", "mm", "--form", "none"});
   EXPECT_NE(text.out.find("4 hills at least"), std::string::npos) << text.out;
   EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+}
+
+// Means of the table are the parameters of `fettle measure`, in the scan's units.
+TEST(Features, MeansAreTheParametersOfMeasure) {
+  const TempFolder folder;
+  const std::string scan = folder.file("crate.asc");
+  {
+    std::ofstream out(scan);
+    out.precision(9);
+    out << "ncols 90\nnrows 80\nxllcenter 5e6\nyllcenter 5e6\ncellsize 0.1\n";
+    for (int r = 79; r >= 0; --r) {
+      for (int c = 0; c < 90; ++c)
+        out << 0.02 * std::cos(0.31 * (c - 0.3)) * std::cos(0.27 * (r - 0.2)) + 0.003 * std::sin(0.1 * c)
+            << ' ';
+      out << '\n';
+    }
+  }
+  const auto all = fettleJson(
+      {"measure", scan, "--unit", "mm", "--form", "none", "--noise-trials", "0", "--only", "feature"});
+  for (const bool dales : {false, true}) {
+    const auto report =
+        fettleJson({"features", scan, "--unit", "mm", "--form", "none", "--kind", dales ? "dales" : "hills"});
+    EXPECT_EQ(report["count"], all[dales ? "dales" : "hills"]);
+    EXPECT_NEAR(report["mean_area"], all[dales ? "sda" : "sha"], 1e-9);
+    const double volume = all[dales ? "sdv" : "shv"];
+    EXPECT_NEAR(report["mean_volume"], volume, 1e-9 * volume);
+    double five = 0.0;
+    for (int i = 0; i < 5; ++i) five += report["features"][i]["z"].get<double>() / 5.0;
+    EXPECT_NEAR(std::abs(five), all[dales ? "s5v" : "s5p"], 1e-9);
+    // Half of a square of the waves' lengths, each known to its ground's sides.
+    EXPECT_NEAR(report["mean_area"], 0.5 * (2.0 * M_PI / 3.1) * (2.0 * M_PI / 2.7), 0.15);
+  }
+  const Outcome text = fettle({"measure", scan, "--unit", "mm", "--only", "feature,spatial"});
+  for (const char* const row : {"\nSsw ", "\nS10z ", "\nSha ", "\nSdv "})
+    EXPECT_NE(text.out.find(row), std::string::npos) << row << text.out;
 }
 
 TEST(Features, OfHardScansAreNoneOrARefusal) {

@@ -101,8 +101,9 @@ TEST(Measure, TheSurfaceThatIsWrittenHasTheParameters) {
     EXPECT_EQ(again["cells"], stated["cells"]) << typed;
     int compared = 0;
     for (const char* key :
-         {"sq", "ssk", "sku", "sp",    "sv",    "sz",  "sa",  "sal", "str", "std", "sdq", "sdr",
-          "sk", "spk", "svk", "smrk1", "smrk2", "vmp", "vmc", "vvc", "vvv", "sxp", "spd", "spc"}) {
+         {"sq",  "ssk", "sku", "sp",  "sv",    "sz",    "sa",  "sal", "str", "std", "ssw", "sdq",
+          "sdr", "sk",  "spk", "svk", "smrk1", "smrk2", "vmp", "vmc", "vvc", "vvv", "sxp", "spd",
+          "svd", "spc", "svc", "s5p", "s5v",   "s10z",  "sha", "sda", "shv", "sdv"}) {
       ASSERT_EQ(again[key].is_null(), stated[key].is_null()) << typed << " " << key;
       if (again[key].is_null()) continue;
       const double value = stated[key];
@@ -261,12 +262,15 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   EXPECT_TRUE(all["str"].is_null());
   EXPECT_EQ(all["not_stated"][0]["parameter"], "str");
   EXPECT_NEAR(all["std"], 90.0, 1.0);
+  EXPECT_NEAR(all["ssw"], 1.2, 1e-3);
   EXPECT_EQ(all["smc"].size(), 2U);
   const auto only = fettleJson({"measure", scan, "--unit", "mm", "--only", "spatial,hybrid"});
   EXPECT_EQ(only["sal"], all["sal"]);
   EXPECT_EQ(only["sq"], all["sq"]);
   EXPECT_FALSE(only.contains("sk"));
-  EXPECT_FALSE(only.contains("spd"));
+  EXPECT_EQ(only["ssw"], all["ssw"]);
+  for (const char* const key : {"spd", "svc", "s10z", "sha", "sdv", "hills", "dales"})
+    EXPECT_FALSE(only.contains(key)) << key;
   // The word after the list is the scan; the option may be repeated.
   EXPECT_EQ(fettleJson({"measure", "--only", "spatial,hybrid", scan, "--unit", "mm"}), only);
   EXPECT_EQ(fettleJson({"measure", "--unit", "mm", "--only", "spatial", "--only", "hybrid", scan}), only);
@@ -277,7 +281,7 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   EXPECT_NE(
       text.out.find("figure is without noise, +- its standard error, by 16 trials, which is known to 25 %"),
       std::string::npos);
-  EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find(" nan"), std::string::npos) << text.out;
 }
 
 // Noise on a wave: the parameters without it are those of the wave, within what is stated; and they can be left out.
@@ -398,7 +402,7 @@ TEST(Measure, CsvHasARowPerScanAndParameter) {
   int rows = 0;
   while (std::getline(in, line)) ++rows, all += line + "\n";
   EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark,without_noise,error,layer\n"));
-  EXPECT_EQ(rows, 1 + 2 * (24 + 2));
+  EXPECT_EQ(rows, 1 + 2 * (34 + 2));
   EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat,,,\n"), std::string::npos)
       << all;
   EXPECT_NE(all.find(",height,Sq,0.0014"), std::string::npos) << all;

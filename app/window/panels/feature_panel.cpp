@@ -104,16 +104,18 @@ void outcome(const FeatureTool& features) {
   writeWrapped(fmt::format("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
                            report["kind"].get<std::string>(),
                            report["least_height"].get<double>() / units.height.size, units.height.name));
+  if (!report["mean_volume"].is_null())
+    writeWrapped(fmt::format("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}",
+                             report["mean_height"].get<double>() / units.height.size, units.height.name,
+                             report["mean_volume"].get<double>() / units.height.size, units.volume));
   if (!report["mean_area"].is_null())
-    writeWrapped(
-        fmt::format("closed ones in the mean: height {:.4g} {}, area {:.4g} {}\u00b2, volume {:.4g} {}",
-                    report["mean_height"].get<double>() / units.height.size, units.height.name,
-                    report["mean_area"].get<double>(), units.length,
-                    report["mean_volume"].get<double>() / units.height.size, units.volume));
+    writeWrapped(fmt::format("those that nothing cuts in the mean: area {:.4g} {}\u00b2",
+                             report["mean_area"].get<double>(), units.length));
   featureTable(report["features"], units);
   writeIn(render::PanelColour::kMuted,
-          fmt::format("places in {0}, areas in {0}\u00b2; * open: it reaches the border or a hole",
-                      units.length));
+          fmt::format(
+              "places in {0}, areas in {0}\u00b2; * open: above its saddle it reaches the border or a hole",
+              units.length));
 }
 
 }  // namespace

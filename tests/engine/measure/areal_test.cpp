@@ -273,8 +273,18 @@ TEST(Areal, StatesEachParameterOrTheReason) {
                                                       {"sal", p.spatial.sal},
                                                       {"str", p.spatial.str},
                                                       {"std", p.spatial.lay},
+                                                      {"ssw", p.spatial.ssw},
                                                       {"spd", p.feature.spd},
-                                                      {"spc", p.feature.spc}};
+                                                      {"svd", p.feature.svd},
+                                                      {"spc", p.feature.spc},
+                                                      {"svc", p.feature.svc},
+                                                      {"s5p", p.feature.s5p},
+                                                      {"s5v", p.feature.s5v},
+                                                      {"s10z", p.feature.s10z},
+                                                      {"sha", p.feature.sha},
+                                                      {"sda", p.feature.sda},
+                                                      {"shv", p.feature.shv},
+                                                      {"sdv", p.feature.sdv}};
     for (const auto& figure : figures) {
       const auto named = [&](const auto& each) { return each.parameter == figure.first; };
       EXPECT_EQ(std::ranges::count_if(p.not_stated, named), std::isfinite(figure.second) ? 0 : 1)
@@ -325,8 +335,8 @@ TEST(Areal, SpatialParametersThatMemoryIsNotFreeForAreNotStated) {
   const ArealParameters little = with(80 * 70 * 40);
   EXPECT_TRUE(std::isnan(little.spatial.sal) && std::isnan(little.spatial.str) &&
               std::isnan(little.spatial.lay));
-  for (const char* const key : {"sal", "str", "std"}) {
-    const auto why = std::ranges::find(little.not_stated, key, &ArealParameters::NotStated::parameter);
+  for (const char* const key : {"sal", "str", "std", "ssw"}) {
+    const auto why = std::ranges::find(little.not_stated, key, &NotStated::parameter);
     ASSERT_NE(why, little.not_stated.end()) << key;
     EXPECT_NE(why->reason.find("smaller region"), std::string::npos) << why->reason;
   }
@@ -368,9 +378,9 @@ TEST(Areal, AFormThroughAllSamplesLeavesNothingToState) {
   ASSERT_TRUE(measured);
   for (const double value :
        {measured->sq, measured->sku, measured->sz, measured->sdr, measured->ratio.sk, measured->ratio.sxp,
-        measured->spatial.sal, measured->feature.spd, measured->heights[0]})
+        measured->spatial.sal, measured->feature.spd, measured->feature.shv, measured->heights[0]})
     EXPECT_TRUE(std::isnan(value));
-  ASSERT_EQ(measured->not_stated.size(), 24U);
+  ASSERT_EQ(measured->not_stated.size(), 34U);
   EXPECT_EQ(measured->not_stated[0].reason, "the form goes through all 3 samples");
   EXPECT_EQ(measured->samples, 3);
 }

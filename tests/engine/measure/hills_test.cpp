@@ -20,16 +20,9 @@ namespace {
 
 std::vector<Hill> hillsOf(const Surface& surface, double least) {
   JobControl job;
-  const auto hills = segmentHills(surface, least, job);
-  EXPECT_TRUE(hills) << hills.error().line();
-  return hills ? *hills : std::vector<Hill>{};
-}
-
-FeatureParameters featuresOf(const Surface& surface, double sz) {
-  JobControl job;
-  const auto features = measureFeatures(surface, sz, 0.05, job);
-  EXPECT_TRUE(features) << features.error().line();
-  return features ? *features : FeatureParameters{};
+  const auto map = mapHills(surface, least, job);
+  EXPECT_TRUE(map) << map.error().line();
+  return map ? map->hills : std::vector<Hill>{};
 }
 
 // The widest way between any two samples by Floyd and Warshall's loops: the height over which a peak must come down on
@@ -98,16 +91,14 @@ TEST(Hills, AreWhatPlainLoopsFind) {
   }
 }
 
-// Watersheds by the words of their definition: each sample follows its highest neighbour up to a peak; then, as long as a hill is lower than `least` over
-// its highest saddle, the lowest of these becomes part of the hill across that saddle. Saddles are the lower of two neighbours of
-// different hills, and passes across cells.
-std::vector<int> plainMap(const Surface& surface, double least) {
-  const int width = surface.width, n = surface.width * surface.height;
+// Ways between neighbours of a surface: over the lower one, and over passes across cells.
+struct Way {
+  int a, b;
+  double height;
+};
+std::vector<Way> waysOf(const Surface& surface) {
+  const int width = surface.width;
   const auto z = [&](int i) { return static_cast<double>(surface.heights[static_cast<std::size_t>(i)]); };
-  struct Way {
-    int a, b;
-    double height;
-  };
   std::vector<Way> ways;
   for (int r = 0; r < surface.height; ++r)
     for (int c = 0; c < width; ++c) {
@@ -122,6 +113,16 @@ std::vector<int> plainMap(const Surface& surface, double least) {
       if (std::min(a, e) > std::max(b, d)) ways.push_back({i, i + width + 1, saddle});
       if (std::min(b, d) > std::max(a, e)) ways.push_back({i + 1, i + width, saddle});
     }
+  return ways;
+}
+
+// Watersheds by the words of their definition: each sample follows its highest neighbour up to a peak; then, as long as a hill is lower than `least` over
+// its highest saddle, the lowest of these becomes part of the hill across that saddle. Saddles are the lower of two neighbours of
+// different hills, and passes across cells.
+std::vector<int> plainMap(const Surface& surface, double least) {
+  const int width = surface.width, n = surface.width * surface.height;
+  const auto z = [&](int i) { return static_cast<double>(surface.heights[static_cast<std::size_t>(i)]); };
+  const std::vector<Way> ways = waysOf(surface);
   std::vector<int> peak(static_cast<std::size_t>(n), -1);
   for (int i = 0; i < n; ++i) {
     if (std::isnan(z(i))) continue;
@@ -179,8 +180,6 @@ TEST(Hills, EverySampleIsOfTheHillThatTheDefinitionSays) {
       JobControl job;
       const auto map = mapHills(surface, least, job);
       ASSERT_TRUE(map);
-      const std::vector<Hill> hills = hillsOf(surface, least);
-      ASSERT_EQ(map->hills.size(), hills.size());
       const std::vector<int> plain = plainMap(surface, least);
       for (std::size_t i = 0; i < plain.size(); ++i) {
         const std::int32_t number = map->of[i];
@@ -193,6 +192,70 @@ TEST(Hills, EverySampleIsOfTheHillThatTheDefinitionSays) {
   }
   EXPECT_GT(samples, 4000);
   EXPECT_EQ(elsewhere, 0);
+}
+
+// The highest way out of a hill, whether higher ground or lower lies beyond: a hill is no lower over it than pruning demands.
+TEST(Hills, SaddlesAreTheHighestWaysToOtherHills) {
+  int met = 0, open = 0, cut = 0, closed = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const Surface surface = surfaceOf(31, 27, [&](int c, int r) {
+      const double z = 0.2 * normal(random) + std::sin(c * 0.8) + std::cos(r * 0.7);
+      return seed > 6 && z < -1.8 ? std::nan("") : z;
+    });
+    const std::vector<Way> ways = waysOf(surface);
+    for (const double least : {0.0, 0.4, 1.2}) {
+      JobControl job;
+      const auto map = mapHills(surface, least, job);
+      ASSERT_TRUE(map);
+      const auto figures = figuresOfHills(surface, *map);
+      for (std::size_t i = 0; i < figures.size(); ++i) {
+        const auto number = static_cast<std::int32_t>(i);
+        double saddle = -std::numeric_limits<double>::infinity();
+        for (const Way& way : ways) {
+          const bool from = map->of[static_cast<std::size_t>(way.a)] == number,
+                     to = map->of[static_cast<std::size_t>(way.b)] == number;
+          if (from != to) saddle = std::max(saddle, way.height);
+        }
+        const HillFigures& of = figures[i];
+        if (std::isfinite(saddle)) {
+          ++met;
+          EXPECT_EQ(of.saddle, saddle);
+          EXPECT_GE(of.hill.peak - of.saddle, least);
+          EXPECT_GE(of.saddle, of.hill.peak - of.hill.height - 1e-12);
+        } else {
+          EXPECT_DOUBLE_EQ(of.saddle, of.hill.peak - of.hill.height);
+        }
+        bool reaches = false, reaches_above = false;
+        std::int64_t samples = 0;
+        double volume = 0.0;
+        for (int r = 0; r < surface.height; ++r)
+          for (int c = 0; c < surface.width; ++c) {
+            if (map->of[static_cast<std::size_t>(r * surface.width + c)] != number) continue;
+            bool rim = c == 0 || r == 0 || c + 1 == surface.width || r + 1 == surface.height;
+            for (const auto& [dc, dr] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+              rim = rim || std::isnan(surface.at(c + dc, r + dr));
+            const double over = surface.at(c, r) - of.saddle;
+            ++samples;
+            volume += std::max(over, 0.0);
+            reaches = reaches || rim;
+            reaches_above = reaches_above || (rim && over > 0.0);
+          }
+        EXPECT_EQ(of.samples, samples);
+        EXPECT_NEAR(of.volume_mm3, volume, 1e-12 * volume);
+        EXPECT_EQ(of.cut, reaches);
+        EXPECT_EQ(of.open, reaches_above);
+        open += of.open ? 1 : 0;
+        cut += of.cut && !of.open ? 1 : 0;
+        closed += of.cut ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_GT(open, 50);
+  EXPECT_GT(cut, 10);
+  EXPECT_GT(closed, 50);
 }
 
 // Two cones on a plane: half of the plane each, the cones' own volumes over their saddle.
@@ -212,114 +275,26 @@ TEST(Hills, OfTwoConesHaveTheirAreasAndVolumes) {
   const auto figures = figuresOfHills(surface, *map);
   EXPECT_EQ(figures[0].samples + figures[1].samples, kWide * kHigh);
   EXPECT_NEAR(static_cast<double>(figures[0].samples), 0.5 * kWide * kHigh, 0.02 * kWide * kHigh);
-  // The saddle lies at about -0.04; a cone of height h and slope 0.1 has a volume of pi h (10 h)^2 / 3, with its foot of the plane above the saddle.
-  const double saddle = figures[1].hill.peak - figures[1].hill.height;
-  EXPECT_NEAR(saddle, -0.04, 0.002);
+  // The saddle lies at about -0.04, of the higher one too; a cone of height h and slope 0.1 has a volume of pi h (10 h)^2 / 3, with its foot of the plane above the saddle.
+  EXPECT_NEAR(figures[1].saddle, -0.04, 0.002);
+  EXPECT_EQ(figures[0].saddle, figures[1].saddle);
   const auto cone = [](double height) { return std::numbers::pi * height * 100.0 * height * height / 3.0; };
   EXPECT_NEAR(figures[1].volume_mm3 / (0.25 * 0.01), cone(2.0),
               0.05 * cone(2.0) + 0.04 * static_cast<double>(figures[1].samples));
   EXPECT_GT(figures[1].volume_mm3 / (0.25 * 0.01), 0.97 * cone(2.0));
   EXPECT_DOUBLE_EQ(figures[0].area_mm2, 0.25 * static_cast<double>(figures[0].samples));
-  EXPECT_TRUE(figures[0].open) << "the highest has no saddle but the lowest sample";
+  EXPECT_NEAR(figures[0].volume_mm3 / (0.25 * 0.01), cone(3.0),
+              0.05 * cone(3.0) + 0.04 * static_cast<double>(figures[0].samples));
+  // The border is as low as the saddle between them, and lower.
+  EXPECT_TRUE(figures[0].cut);
+  EXPECT_FALSE(figures[0].open);
 }
 
-// A bump of 4 % of the height is part of the slope that it stands on, one of 6 % is a hill.
-TEST(Hills, BelowFivePerCentArePruned) {
-  for (const auto& [share, count] : {std::pair{0.04, 1}, {0.06, 2}}) {
-    const double bump = share;
-    const Surface surface = surfaceOf(41, 5, [&](int c, int) {
-      const double ramp = 1.0 - c / 40.0;
-      return c == 20 ? ramp + 1.0 / 40.0 + bump : ramp;
-    });
-    // The saddle is the sample before the bump, one step of the ramp above it.
-    EXPECT_EQ(featuresOf(surface, 1.0).hills, count) << share;
-  }
-}
-
-TEST(Hills, OfAParaboloidIsOneOfItsCurvature) {
-  Surface surface = surfaceOf(41, 33, [](int c, int r) {
-    return -((c - 20.0) * (c - 20.0) + 16.0 * (r - 15.0) * (r - 15.0)) / 2048.0;
-  });
-  surface.spacing_y = 4.0;
-  surface.height_mm = 0.5;
-  const FeatureParameters p = featuresOf(surface, 4.0);
-  EXPECT_EQ(p.hills, 1);
-  EXPECT_DOUBLE_EQ(p.spc, 0.5 / 1024.0);
-  EXPECT_DOUBLE_EQ(p.spd, 1.0 / (41.0 * 33.0 * 4.0));
-}
-
-// Of radius R: 1 / R, and by second differences (2 R - 2 sqrt(R^2 - h^2)) / h^2.
-TEST(Hills, OfASphereIsOneOfItsRadius) {
-  constexpr double kRadius = 40.0;
-  const Surface surface = surfaceOf(15, 15, [](int c, int r) {
-    return std::sqrt(kRadius * kRadius - (c - 7) * (c - 7) - (r - 7) * (r - 7)) - kRadius;
-  });
-  const double differences = 2.0 * kRadius - 2.0 * std::sqrt(kRadius * kRadius - 1.0);
-  EXPECT_NEAR(featuresOf(surface, 1.0).spc / differences, 1.0, 1e-6);
-  EXPECT_NEAR(differences * kRadius, 1.0, 2e-4);
-}
-
-// cos(kx) cos(ky): peaks at half waves of both, every other one; curvature A k^2, by second differences.
-TEST(Hills, OfCrossedSinesAreTheirPeaks) {
-  constexpr int kWave = 20, kWaves = 6;
-  constexpr double k = 2.0 * std::numbers::pi / kWave;
-  Surface surface = surfaceOf(kWave * kWaves, kWave * kWaves, [](int c, int r) {
-    return 3.0 * std::cos(k * (c - kWave / 4)) * std::cos(k * (r - kWave / 4));
-  });
-  surface.spacing_x = surface.spacing_y = 0.1;
-  const FeatureParameters p = featuresOf(surface, 6.0);
-  EXPECT_EQ(p.hills, 2 * kWaves * kWaves);
-  EXPECT_DOUBLE_EQ(p.spd, 2.0 / (kWave * kWave * 0.01));
-  EXPECT_NEAR(p.spc / (3.0 * 2.0 * (1.0 - std::cos(k)) / 0.01), 1.0, 1e-6);
-  EXPECT_EQ(p.curved, p.hills);
-}
-
-TEST(Hills, OfHardSurfacesAreAFigureOrAReason) {
-  const auto check = [](const Surface& surface, double sz) {
-    const FeatureParameters p = featuresOf(surface, sz);
-    EXPECT_EQ(std::isfinite(p.spd), p.no_spd.empty()) << p.no_spd;
-    EXPECT_EQ(std::isfinite(p.spc), p.no_spc.empty()) << p.no_spc;
-    return p;
-  };
-  EXPECT_FALSE(check(surfaceOf(0, 0, {}), 0.0).no_spd.empty());
-  EXPECT_FALSE(check(surfaceOf(9, 1, [](int c, int) { return c % 2; }), 1.0).no_spd.empty());
-  EXPECT_FALSE(check(surfaceOf(9, 9, [](int, int) { return 0.0; }), 0.0).no_spd.empty());
-  const FeatureParameters slope = check(surfaceOf(9, 9, [](int c, int) { return c; }), 8.0);
-  EXPECT_EQ(slope.hills, 1);
-  EXPECT_FALSE(slope.no_spc.empty());
-  EXPECT_NEAR(check(surfaceOf(9, 9, [](int c, int r) { return c == 4 && r == 4 ? 1e6 : 0.0; }), 1e6).spc, 2e6,
-              1.0);
-  // Two parts without a link: a hill each.
-  EXPECT_EQ(check(surfaceOf(9, 9, [](int c, int r) { return c == 4 ? std::nan("") : -std::abs(r - 4); }), 4.0)
-                .hills,
-            2);
+TEST(Hills, StopWhenTheJobIsCancelled) {
   JobControl job;
   job.cancel();
-  EXPECT_EQ(segmentHills(surfaceOf(400, 400, [](int c, int r) { return c * r; }), 0.0, job).error().kind,
+  EXPECT_EQ(mapHills(surfaceOf(400, 400, [](int c, int r) { return c * r; }), 0.0, job).error().kind,
             ErrorKind::kCancelled);
-}
-
-// Its curvature needs a sample on each side, and no more than that.
-TEST(Features, APeakBesideTheRimHasACurvatureAndOneOnItHasNone) {
-  for (const auto& [column, row, curved] : {std::tuple{4, 3, 1},
-                                            {1, 1, 1},
-                                            {7, 3, 1},
-                                            {4, 5, 1},
-                                            {7, 5, 1},
-                                            {0, 3, 0},
-                                            {8, 3, 0},
-                                            {4, 0, 0},
-                                            {4, 6, 0}}) {
-    Surface surface = surfaceOf(9, 7, [&](int c, int r) {
-      return -0.125 * ((c - column) * (c - column) + 2.0 * (r - row) * (r - row));
-    });
-    const FeatureParameters features = featuresOf(surface, 10.0);
-    EXPECT_EQ(features.hills, 1);
-    EXPECT_EQ(features.curved, curved) << column << ' ' << row;
-    if (curved > 0) {
-      EXPECT_NEAR(features.spc, 0.5 * (0.25 + 0.5), 1e-6) << column << ' ' << row;
-    }
-  }
 }
 
 }  // namespace

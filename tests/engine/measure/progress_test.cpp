@@ -18,7 +18,7 @@ double wavy(int c, int r) {
 TEST(MeasuringProgress, OfHillsIsThatOfTheSamples) {
   const Surface surface = surfaceOf(90, 70, wavy);
   JobControl job;
-  ASSERT_TRUE(segmentHills(surface, 0.1, job));
+  ASSERT_TRUE(mapHills(surface, 0.1, job));
   EXPECT_EQ(job.stage(), std::string("segmenting hills"));
   EXPECT_EQ(job.total(), 90U * 70U);
   EXPECT_LE(job.done(), job.total());
