@@ -382,8 +382,9 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
     long_enough = true;
     estimate.work_seconds += filter.share * (*sample)->seconds;
     tiles_taken = std::max(tiles_taken, filter.share * (*sample)->changed_share * field_bytes);
-    // Twice: pieces of the heap that were freed do not all fit what is asked for next (tgv, whose squares differ in size).
-    beside = std::max(beside, 2.0 * static_cast<double>((*sample)->scratch_bytes));
+    // Twice and a half: pieces of the heap that were freed do not all fit what is asked for next (tgv, whose squares differ in size), by
+    // an eighth of all memory more or less from run to run, as threads take turns.
+    beside = std::max(beside, 2.5 * static_cast<double>((*sample)->scratch_bytes));
     kept += filter.share * (*sample)->changed_share * 4.0 * samples * (filter.spec.passes > 1 ? 2.0 : 1.0);
     result = piecesOf(**sample);
   }
