@@ -30,9 +30,9 @@ struct NoiseParts {
 /// Its variance is that of the finest detail along rows or along columns, whichever is larger: noise is what a sample
 /// has and the next one has not, in one direction at least. Noise of scanners that work by lines has nothing in common
 /// from row to row; a rough surface has in both directions (in geostatistics: the nugget, G. Matheron 1963). What is
-/// correlated along the other direction as well is therefore the surface's. Of what samples of a line share no more counts
-/// than is missing from the finest detail along the line, where the surface has nearly none, against that across it: a
-/// surface that is rougher in one direction is not taken for noise of lines. Parts that are less than three standard
+/// correlated along the other direction as well is therefore the surface's. What samples of a line share is as much
+/// as is missing from the finest detail along the line against that across it, where a surface has nearly none in either:
+/// one that is rougher in one direction is not taken for noise of lines, and hides none. Parts that are less than three standard
 /// errors from 0 are 0. Any thread; allocates nothing.
 [[nodiscard]] NoiseParts noiseOf(const NoiseMoments& mean, std::int64_t windows) noexcept;
 
