@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <limits>
+#include <utility>
 
 namespace fettle::engine {
 
@@ -85,6 +89,15 @@ void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& mea
   ranges.resize(ranges.size() + measured.ratios.size(), kShareRange);
   ranges.resize(found.size());  // heights have any
   for (std::size_t i = 0; i < found.size(); ++i) effects[i] = withinRange(effects[i], found[i], ranges[i]);
+  // Where noise decides how many hills there are it decides how large they are.
+  const auto indexOf = [](std::string_view key) {
+    return static_cast<std::size_t>(&arealFigure(key) - kFigures);
+  };
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [size, density] :
+       {std::pair{"sha", "spd"}, {"shv", "spd"}, {"sda", "svd"}, {"sdv", "svd"}})
+    if (std::isnan(effects[indexOf(density)].without) && !std::isnan(effects[indexOf(size)].without))
+      effects[indexOf(size)] = {kNone, kNone, "noise changes how many there are"};
 }
 
 Result<std::vector<NoiseEffect>> arealEffects(

@@ -25,7 +25,8 @@ struct ArealFigure {
 [[nodiscard]] std::vector<double> valuesOf(const ArealParameters& measured);
 [[nodiscard]] std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured);
 
-/// withinRange() of each effect on what was found in valuesOf(): no figure with an error that leaves it open.
+/// withinRange() of each effect on what was found in valuesOf(): no figure with an error that leaves it open, and no size of hills or dales whose number noise
+/// leaves open.
 void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured);
 
 /// noiseEffects() of the parameters of a field, with addRankDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
