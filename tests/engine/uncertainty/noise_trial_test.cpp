@@ -1,8 +1,10 @@
 #include "engine/uncertainty/noise_trial.h"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -239,8 +241,27 @@ TEST(NoiseTrial, ParametersUnderMuchNoiseStayWithinTheirRanges) {
     EXPECT_LE(effect.without, range.high) << key;
     EXPECT_LE(effect.error, range.high - range.low) << key;
   }
-  const auto* const smrk1 = &arealFigure("smrk1");
-  EXPECT_FALSE((*effects)[static_cast<std::size_t>(smrk1 - arealFigures().data())].why.empty());
+  const auto smrk1 = static_cast<std::size_t>(&arealFigure("smrk1") - arealFigures().data());
+  EXPECT_FALSE((*effects)[smrk1].why.empty());
+}
+
+// Noise that makes other hills than there are says nothing of their sizes; of dales it may.
+TEST(NoiseTrial, SizesOfHillsAreNoneWhereTheirNumberIsOpen) {
+  ArealParameters measured;
+  measured.feature.spd = measured.feature.svd = 1.0;
+  measured.feature.sha = measured.feature.sda = measured.feature.shv = measured.feature.sdv = 2.0;
+  const auto indexOf = [](std::string_view key) {
+    return static_cast<std::size_t>(&arealFigure(key) - arealFigures().data());
+  };
+  std::vector<NoiseEffect> effects;
+  for (const double found : valuesOf(measured)) effects.push_back({found, 0.01 * found});
+  effects[indexOf("spd")] = {std::nan(""), std::nan(""), "noise changes it by more than a fifth"};
+  keepWithinRanges(effects, measured);
+  for (const char* const key : {"sha", "shv"}) {
+    EXPECT_TRUE(std::isnan(effects[indexOf(key)].without)) << key;
+    EXPECT_FALSE(effects[indexOf(key)].why.empty()) << key;
+  }
+  for (const char* const key : {"sda", "sdv"}) EXPECT_EQ(effects[indexOf(key)].without, 2.0) << key;
 }
 
 }  // namespace
