@@ -99,6 +99,21 @@ double slopeOf(std::span<const double> z, double step_mm) {
                       : std::numeric_limits<double>::quiet_NaN();
 }
 
+// What is left of a profile by the half of a length that a filter lacks at both ends; how much that was.
+std::size_t takeEndsOff(std::vector<double>& heights, double half_mm, double step_mm) {
+  const std::size_t end =
+      std::min(static_cast<std::size_t>(std::ceil(half_mm / step_mm - 1e-6)), heights.size() / 2);
+  heights.erase(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(end));
+  heights.resize(heights.size() - end);
+  return end;
+}
+
+constexpr ProfileInfo kProfiles[] = {
+    {ProfileKind::kRoughness, "roughness", 'R', "waves shorter than the cut-off", true},
+    {ProfileKind::kPrimary, "primary", 'P', "all but the line that is taken out, without a cut-off", false},
+    {ProfileKind::kWaviness, "waviness", 'W', "waves longer than the cut-off", true},
+};
+
 using Unit = RoughnessInfo::Unit;
 
 constexpr RoughnessInfo kRoughness[] = {
@@ -152,15 +167,19 @@ std::vector<double> gaussianMeanLine(std::span<const double> heights, double ste
 Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch& within,
                                           const ProfileFilters& filters) {
   const Run run = longestRun(section, within);
-  const double step = section.step_mm, cutoff_mm = filters.cutoff_mm, lambda_s_mm = filters.lambda_s_mm;
-  const double least = 4.0 * step;
+  const double step = section.step_mm, lambda_s_mm = filters.lambda_s_mm;
+  const bool primary = filters.kind == ProfileKind::kPrimary;
+  const double cutoff_mm = primary ? 0.0 : filters.cutoff_mm;
+  constexpr double kLeastPlaces = 4.0;
+  const double least = kLeastPlaces * step;
   const auto is_short = [least](double length_mm) { return !(length_mm >= least * (1.0 - 1e-9)); };
-  if (is_short(cutoff_mm) || (lambda_s_mm != 0.0 && is_short(lambda_s_mm)))
-    return inputError(fmt::format("a {} of {:.6g} mm is shorter than 4 places of the section",
-                                  is_short(cutoff_mm) ? "cut-off" : "lambda s",
-                                  is_short(cutoff_mm) ? cutoff_mm : lambda_s_mm),
-                      "section", fmt::format("give {:.6g} mm or more", least));
-  if (!(lambda_s_mm < cutoff_mm))
+  const bool short_cutoff = !primary && is_short(cutoff_mm);
+  if (short_cutoff || (lambda_s_mm != 0.0 && is_short(lambda_s_mm)))
+    return inputError(
+        fmt::format("a {} of {:.6g} mm is shorter than 4 places of the section",
+                    short_cutoff ? "cut-off" : "lambda s", short_cutoff ? cutoff_mm : lambda_s_mm),
+        "section", fmt::format("give {:.6g} mm or more", least));
+  if (!primary && !(lambda_s_mm < cutoff_mm))
     return inputError(fmt::format("a lambda s of {:.6g} mm leaves nothing below a cut-off of {:.6g} mm",
                                   lambda_s_mm, cutoff_mm),
                       "section", "give a shorter lambda s: a hundredth or a three-hundredth is usual");
@@ -170,39 +189,60 @@ Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch&
   std::size_t first = run.from;  // place of the section
   if (lambda_s_mm > 0.0) {
     heights = gaussianMeanLine(heights, step, lambda_s_mm);
-    const std::size_t end =
-        std::min(static_cast<std::size_t>(std::ceil(0.5 * lambda_s_mm / step - 1e-6)), heights.size() / 2);
-    heights.erase(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(end));
-    heights.resize(heights.size() - end);
-    first += end;
+    first += takeEndsOff(heights, 0.5 * lambda_s_mm, step);
   }
   const double length = heights.empty() ? 0.0 : static_cast<double>(heights.size() - 1) * step;
+  const char* const left_out = lambda_s_mm > 0.0 ? " or an end of the S-filter" : "";
+  if (primary && !(length >= (kLeastPlaces - 1.0) * step * (1.0 - 1e-9)))
+    return inputError(fmt::format("the section has {} places without a hole{}, fewer than {:.0f}",
+                                  heights.size(), left_out, kLeastPlaces),
+                      "section", "give a longer line");
   if (!(length >= 2.0 * cutoff_mm * (1.0 - 1e-9)))
     return inputError(
         fmt::format("the section has {:.6g} mm without a hole{}, less than two cut-offs of {:.6g} mm", length,
-                    lambda_s_mm > 0.0 ? " or an end of the S-filter" : "", cutoff_mm),
+                    left_out, cutoff_mm),
         "section", "give a longer line or a shorter cut-off");
-  const std::vector<double> line = gaussianMeanLine(heights, step, cutoff_mm);
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] -= line[i];
 
   RoughnessProfile result;
-  result.lengths = static_cast<int>(std::floor((length - cutoff_mm) / cutoff_mm + 1e-6));
-  // In the middle of the run.
-  const double start = 0.5 * (length - result.lengths * cutoff_mm);
-  const auto placeAt = [&](double at) {
-    return std::min(heights.size() - 1, static_cast<std::size_t>(std::ceil(at / step - 1e-6)));
-  };
-  const std::size_t from = placeAt(start), to = placeAt(start + result.lengths * cutoff_mm);
+  result.lengths = 1;
+  std::size_t from = 0, to = heights.size() - 1;
+  if (filters.kind == ProfileKind::kWaviness) {
+    heights = gaussianMeanLine(heights, step, cutoff_mm);
+    first += takeEndsOff(heights, 0.5 * cutoff_mm, step);
+    to = heights.size() - 1;
+  }
+  if (filters.kind == ProfileKind::kRoughness) {
+    const std::vector<double> line = gaussianMeanLine(heights, step, cutoff_mm);
+    for (std::size_t i = 0; i < heights.size(); ++i) heights[i] -= line[i];
+    result.lengths = static_cast<int>(std::floor((length - cutoff_mm) / cutoff_mm + 1e-6));
+    // In the middle of the run.
+    const double start = 0.5 * (length - result.lengths * cutoff_mm);
+    const auto placeAt = [&](double at) {
+      return std::min(heights.size() - 1, static_cast<std::size_t>(std::ceil(at / step - 1e-6)));
+    };
+    from = placeAt(start);
+    to = placeAt(start + result.lengths * cutoff_mm);
+    for (int k = 0; k <= result.lengths; ++k)
+      result.lengths_begin.push_back(placeAt(start + k * cutoff_mm) - from);
+  } else {
+    result.lengths_begin = {from, to};
+  }
   const double begin = section.along(first);
   result.evaluated = {begin + static_cast<double>(from) * step, begin + static_cast<double>(to) * step};
-  for (int k = 0; k <= result.lengths; ++k)
-    result.lengths_begin.push_back(placeAt(start + k * cutoff_mm) - from);
   result.heights.assign(heights.begin() + static_cast<std::ptrdiff_t>(from),
                         heights.begin() + static_cast<std::ptrdiff_t>(to) + 1);
   // The mean line of all is not exactly the mean of the evaluated part.
   const double mean = meanAlong(result.heights, [](double z) { return z; });
   for (double& z : result.heights) z -= mean;
   return result;
+}
+
+std::span<const ProfileInfo> profileInfos() noexcept {
+  return kProfiles;
+}
+
+const ProfileInfo& profileInfo(ProfileKind kind) noexcept {
+  return kProfiles[static_cast<std::size_t>(kind)];
 }
 
 std::span<const RoughnessInfo> roughnessInfos() noexcept {

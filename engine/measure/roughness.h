@@ -20,31 +20,48 @@ namespace fettle::engine {
 [[nodiscard]] std::vector<double> gaussianMeanLine(std::span<const double> heights, double step_mm,
                                                    double cutoff_mm);
 
-/// The Gaussian filters that make the roughness profile of a section.
+/// The profiles of ISO 21920-2, whose parameters differ by their first letter alone.
+enum class ProfileKind : std::uint8_t { kRoughness, kPrimary, kWaviness };
+
+/// One row per profile.
+struct ProfileInfo {
+  ProfileKind kind;
+  std::string_view word;  ///< "roughness"
+  char letter;            ///< of its parameters: 'R', 'P', 'W'
+  std::string_view text;  ///< what it is, for the user
+  bool by_cutoff;         ///< a cut-off makes it; the primary profile has none
+};
+[[nodiscard]] std::span<const ProfileInfo> profileInfos() noexcept;
+[[nodiscard]] const ProfileInfo& profileInfo(ProfileKind kind) noexcept;
+
+/// The Gaussian filters that make a profile of a section.
 struct ProfileFilters {
-  double cutoff_mm = 0.0;    ///< L-filter (lambda c): longer waves are taken out
+  double cutoff_mm =
+      0.0;  ///< lambda c: longer waves are taken out of a roughness profile, shorter ones of waviness
   double lambda_s_mm = 0.0;  ///< S-filter: shorter waves are taken out first; 0: none
+  ProfileKind kind = ProfileKind::kRoughness;
 };
 
-/// A roughness profile as far as it is evaluated.
+/// A profile as far as it is evaluated.
 struct RoughnessProfile {
-  Stretch evaluated;            ///< a whole number of section lengths, each one cut-off
-  int lengths = 0;              ///< of these
+  Stretch
+      evaluated;    ///< a whole number of section lengths, each one cut-off; of the others one section length
+  int lengths = 0;  ///< of these
   std::vector<double> heights;  ///< about their mean by the trapezoidal rule [mm]
   std::vector<std::size_t>
       lengths_begin;  ///< places at which section lengths begin, and where the last one ends: lengths + 1
 };
 
 /// Of a stretch of a section: its least-squares line is taken out, then it is filtered by the S-filter (ISO 16610-21, which leaves the primary
-/// profile of ISO 21920-2), then its Gaussian mean line is taken out. At both ends, where a filter lacks neighbours (end effects
+/// profile of ISO 21920-2: that of kPrimary), then its Gaussian mean line is taken out, or is what is left of kWaviness. At both ends, where a filter lacks neighbours (end effects
 /// of ISO 16610-21 and -28: weights are those that are left), half a lambda s is cut off before the mean line is found, and
-/// half a cut-off is not evaluated. Where the stretch has places without a height, its longest part without one counts.
+/// half a cut-off is not evaluated, of the primary profile all is. Where the stretch has places without a height, its longest part without one counts.
 /// Errors (kInput): a cut-off or a lambda s shorter than 4 places (ISO 21920-3 has 5 and more), a lambda s not below the
-/// cut-off, a cut-off longer than half of the part.
+/// cut-off, a cut-off longer than half of the part; a primary profile of fewer than 4 places.
 [[nodiscard]] Result<RoughnessProfile> roughnessProfile(const Section& section, const Stretch& within,
                                                         const ProfileFilters& filters);
 
-/// Profile roughness of ISO 21920-2:2021 [mm]. NaN where the profile does not determine a figure. Means along the profile are integrals by
+/// Profile parameters of ISO 21920-2:2021, named as those of the roughness profile [mm]. NaN where the profile does not determine a figure. Means along the profile are integrals by
 /// the trapezoidal rule: the places at both ends count half.
 struct Roughness {
   Stretch evaluated;  ///< as of RoughnessProfile
@@ -63,7 +80,8 @@ struct Roughness {
   double rk = 0.0, rpk = 0.0, rvk = 0.0, rmrk1 = 0.0, rmrk2 = 0.0;
 };
 
-/// One row per figure of Roughness, in the order in which they are shown.
+/// One row per figure of Roughness, in the order in which they are shown. Key and symbol are those of the roughness profile; of another one the first
+/// letter is its own.
 struct RoughnessInfo {
   enum class Unit : std::uint8_t {
     kHeight,

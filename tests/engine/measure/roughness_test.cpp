@@ -88,6 +88,81 @@ TEST(Roughness, OfASineIsThatOfTheSine) {
   EXPECT_NEAR(r.rsm, wavelength, 1e-4);
 }
 
+Roughness measuredOf(ProfileKind kind, const Section& section, double cutoff_mm, double lambda_s_mm = 0.0) {
+  const auto figures = roughnessOf(section, {0.0, section.lengthMm()}, {cutoff_mm, lambda_s_mm, kind});
+  EXPECT_TRUE(figures) << figures.error().line();
+  return figures ? *figures : Roughness{};
+}
+
+// Two sines on a slope: the primary profile has both, roughness the short one, waviness exp(-ln 2 (c / L)^2) of the long one.
+TEST(Roughness, OfTwoSinesIsSharedByTheProfiles) {
+  const double step = 0.001, cutoff = 0.8, small = 0.001, large = 0.004, wavelength = 4.0;
+  std::vector<double> heights(16801);  // 16.8 mm: four long waves, and half a cut-off at each end
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double x = static_cast<double>(i) * step - 0.4;
+    heights[i] =
+        7.0 - 0.02 * x + small * std::sin(kTurn * x / 0.08) + large * std::cos(kTurn * x / wavelength);
+  }
+  const Section section = profileOf(heights, step);
+  const double left = large * std::exp(-std::numbers::ln2 * std::pow(cutoff / wavelength, 2));
+  const Roughness w = measuredOf(ProfileKind::kWaviness, section, cutoff);
+  EXPECT_EQ(w.lengths, 1);
+  EXPECT_NEAR(w.evaluated.from_mm, 0.4, 1e-9);
+  EXPECT_NEAR(w.evaluated.to_mm, 16.4, 1e-9);
+  // Of the line that is taken out the cosine's ends leave a tilt, below 1 % of it.
+  EXPECT_NEAR(w.rq, left / std::numbers::sqrt2, 0.01 * left);
+  EXPECT_NEAR(w.ra, left * 2.0 / std::numbers::pi, 0.01 * left);
+  EXPECT_NEAR(w.rt, 2.0 * left, 0.02 * left);
+  EXPECT_EQ(w.rz, w.rt) << "one section length";
+  EXPECT_NEAR(w.rsm, wavelength, 0.01 * wavelength);
+  EXPECT_NEAR(w.rku, 1.5, 0.02);
+  const Roughness r = measuredOf(ProfileKind::kRoughness, section, cutoff);
+  const double leaves = large - left;  // 2.7 % of the long wave
+  EXPECT_NEAR(r.rq, std::hypot(small, leaves) / std::numbers::sqrt2, 0.01 * small);
+  const Roughness p = measuredOf(ProfileKind::kPrimary, section, 0.0);
+  EXPECT_EQ(p.lengths, 1);
+  EXPECT_EQ(p.evaluated.from_mm, 0.0);
+  EXPECT_NEAR(p.evaluated.to_mm, 16.8, 1e-9);
+  EXPECT_NEAR(p.rt, 2.0 * (small + large), 0.02 * large);
+  EXPECT_EQ(p.rz, p.rt);
+  // Over 16.8 mm, where the long wave has 4.2 of its own.
+  EXPECT_NEAR(p.rq, std::hypot(small, large) / std::numbers::sqrt2, 0.03 * large);
+  // The S-filter takes half of the short wave, where its length is lambda s.
+  const Roughness smooth = measuredOf(ProfileKind::kPrimary, section, 0.0, 0.08);
+  EXPECT_NEAR(p.rt - smooth.rt, small, 0.1 * small);
+  EXPECT_NEAR(smooth.evaluated.from_mm, 0.04, 1e-9);
+}
+
+TEST(Roughness, OfPrimaryProfilesAndWavinessHardCasesHaveAFigureOrAnError) {
+  const auto all = [](const Section& section, double cutoff, ProfileKind kind) {
+    return roughnessOf(section, {0.0, section.lengthMm()}, {cutoff, 0.0, kind});
+  };
+  const Section flat = profileOf(std::vector<double>(400, 3.0), 0.01);
+  for (const ProfileInfo& info : profileInfos()) {
+    EXPECT_EQ(&profileInfo(info.kind), &info);
+    const auto r = all(flat, 0.5, info.kind);
+    ASSERT_TRUE(r) << info.word;
+    EXPECT_LT(r->rt, 1e-12) << "rounding of the line that is taken out";
+  }
+  std::vector<double> spike(400, 0.0);
+  spike[200] = 1e6;
+  for (const ProfileInfo& info : profileInfos()) {
+    const auto r = all(profileOf(spike, 0.01), 0.5, info.kind);
+    ASSERT_TRUE(r) << info.word;
+    EXPECT_TRUE(std::isfinite(r->rq) && r->rq > 0.0);
+  }
+  // The longest part without a hole counts.
+  std::vector<double> holed(400, 0.0);
+  for (std::size_t i = 0; i < holed.size(); ++i) holed[i] = std::sin(0.3 * static_cast<double>(i));
+  holed[100] = std::numeric_limits<double>::quiet_NaN();
+  const auto part = all(profileOf(holed, 0.01), 0.5, ProfileKind::kPrimary);
+  ASSERT_TRUE(part);
+  EXPECT_NEAR(part->evaluated.from_mm, 1.01, 1e-9);
+  EXPECT_FALSE(all(profileOf({1.0, 2.0, 1.0}, 0.01), 0.0, ProfileKind::kPrimary));
+  EXPECT_FALSE(all(profileOf(std::vector<double>(90, 0.0), 0.01), 0.5, ProfileKind::kWaviness));
+  EXPECT_FALSE(all(flat, 0.03, ProfileKind::kWaviness)) << "a cut-off of 3 places";
+}
+
 // A ripple far below a tenth of Rz makes no elements of its own.
 TEST(Roughness, SmallPeaksCountToTheirNeighbours) {
   const double step = 0.0005, wavelength = 0.1;
