@@ -1,5 +1,6 @@
 #include "app/commands/section_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -9,6 +10,7 @@
 
 #include "app/plots/gnuplot.h"
 #include "app/work/interpolation_words.h"
+#include "engine/measure/roughness.h"
 
 namespace fettle::app {
 
@@ -20,6 +22,28 @@ std::vector<Word> wordsOfInterpolation() {
   return words;
 }
 
+std::vector<Word> wordsOfProfiles() {
+  std::vector<Word> words;
+  for (const engine::ProfileInfo& profile : engine::profileInfos())
+    words.emplace_back(std::string(profile.word), std::string(profile.text));
+  return words;
+}
+
+// Whether the profiles that are named fit to the cut-off.
+engine::Status checkProfiles(const SectionArguments& options) {
+  bool by_cutoff = options.profiles.empty();
+  for (const std::string& word : options.profiles) {
+    const auto profile = std::ranges::find(engine::profileInfos(), word, &engine::ProfileInfo::word);
+    if (profile->by_cutoff && !options.cutoff)
+      return engine::inputError(fmt::format("{} needs a cut-off", word), "--profile", "add --cutoff");
+    by_cutoff = by_cutoff || profile->by_cutoff;
+  }
+  if (options.cutoff && !by_cutoff)
+    return engine::inputError("an option would have no effect", "--cutoff",
+                              "add roughness or waviness to --profile, or leave it out");
+  return {};
+}
+
 constexpr const char* kLineGroup = "The line";
 constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
 
@@ -29,9 +53,11 @@ engine::Status checkEffects(const SectionArguments& options) {
     return engine::inputError("an option would have no effect", option,
                               fmt::format("add {}, or leave it out", what));
   };
-  if (!options.within.empty() && options.step.empty() && options.groove.empty() && !options.cutoff)
-    return needs("--within", "--step, --groove or --cutoff");
-  if (options.lambda_s && !options.cutoff) return needs("--lambda-s", "--cutoff");
+  const bool profiles = options.cutoff || !options.profiles.empty();
+  if (!options.within.empty() && options.step.empty() && options.groove.empty() && !profiles)
+    return needs("--within", "--step, --groove, --cutoff or --profile");
+  if (options.lambda_s && !profiles) return needs("--lambda-s", "--cutoff or --profile");
+  if (auto status = checkProfiles(options); !status) return status;
   if (options.probe_radius && options.probes.empty()) return needs("--probe-radius", "--probe");
   if (!options.from.empty() || !options.to.empty() || !options.polylines.empty() || !options.lines.empty() ||
       options.kept)
@@ -45,6 +71,7 @@ engine::Status checkEffects(const SectionArguments& options) {
                                       {!options.angle.empty(), "--angle"},
                                       {!options.arc.empty(), "--arc"},
                                       {options.cutoff.has_value(), "--cutoff"},
+                                      {!options.profiles.empty(), "--profile"},
                                       {!options.csv.empty(), "--csv"},
                                       {!options.plot.empty(), "--plot"},
                                       {!options.dxf.empty(), "--dxf"}})
@@ -130,7 +157,7 @@ void addFigureOptions(Command command, SectionArguments& options) {
   command.add(
       {{.name = "--within",
         .to = &options.within,
-        .text = "Stretch for --step, --groove and --cutoff",
+        .text = "Stretch for --step, --groove, --cutoff and --profile",
         .shown = "A,B",
         .otherwise = "the whole line",
         .values = 2,
@@ -173,9 +200,17 @@ void addFigureOptions(Command command, SectionArguments& options) {
                 "Gaussian cut-off",
         .range = Range{1e-9, 1e9},
         .unit = "mm"},
+       {.name = "--profile",
+        .to = &options.profiles,
+        .text = "The profiles whose parameters are measured, named with R, P or W",
+        .words = wordsOfProfiles(),
+        .shown = "PROFILE[,PROFILE...]",
+        .otherwise = "roughness with --cutoff",
+        .between = ','},
        {.name = "--lambda-s",
         .to = &options.lambda_s,
-        .text = "S-filter of --cutoff: waves shorter than this are taken out first, by a Gaussian too",
+        .text = "S-filter of --cutoff and --profile: waves shorter than this are taken out first, by a "
+                "Gaussian too",
         .range = Range{1e-9, 1e9},
         .unit = "mm",
         .otherwise = "none"},

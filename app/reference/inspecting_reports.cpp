@@ -16,13 +16,14 @@ Keys fittedLine() {
           {"places", "integer", ""}};
 }
 
-Keys roughnessKeys() {
-  Keys keys = {{"cutoff_mm", "number", ""},
-               {"lambda_s_mm?", "number", "with --lambda-s"},
-               {"evaluated", "[number]", "from and to"},
-               {"lengths", "integer", "section lengths of one cut-off"}};
+Keys profileKeys(const engine::ProfileInfo& profile) {
+  Keys keys = {{"lambda_s_mm?", "number", "with --lambda-s"}, {"evaluated", "[number]", "from and to"}};
+  keys.push_back({"lengths", "integer",
+                  profile.kind == engine::ProfileKind::kRoughness ? "section lengths of one cut-off"
+                                                                  : "section lengths: 1"});
+  if (profile.by_cutoff) keys.push_back({"cutoff_mm", "number", ""});
   for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
-    const RoughnessKeys names = keysOf(info);
+    const RoughnessKeys names = keysOf(info, profile);
     keys.push_back({names.value, "number", info.text});
     keys.push_back({names.without, "number", "without noise"});
     keys.push_back({names.error, "number", "standard error of that"});
@@ -91,7 +92,12 @@ Keys sectionFigures() {
             {"hollow", "boolean", "the centre is above the surface"},
             {"rms_mm", "number", ""},
             {"places", "integer", ""}}},
-          {"roughness?", "object", "with --cutoff, ISO 21920-2", roughnessKeys()}};
+          {"roughness?", "object", "with --cutoff, ISO 21920-2",
+           profileKeys(engine::profileInfo(engine::ProfileKind::kRoughness))},
+          {"primary?", "object", "with --profile primary",
+           profileKeys(engine::profileInfo(engine::ProfileKind::kPrimary))},
+          {"waviness?", "object", "with --profile waviness and --cutoff",
+           profileKeys(engine::profileInfo(engine::ProfileKind::kWaviness))}};
 }
 
 // A motion of one scan onto another.

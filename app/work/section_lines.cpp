@@ -72,16 +72,23 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                            shownLength(arc["centre_along_mm"], along),
                            shownHeight(arc["centre_height_mm"], along), shownLength(arc["rms_mm"], height)));
   }
-  if (of.contains("roughness")) {
-    const Report& r = of["roughness"];
-    const ReadAs as = readLengthAs(r["ra_mm"].get<double>(), 1.0, "mm");
-    row("roughness", fmt::format("over {} cut-offs of {}{}; without noise +- standard error",
-                                 r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along),
-                                 r.contains("lambda_s_mm")
-                                     ? fmt::format(", lambda s {}", shownLength(r["lambda_s_mm"], along))
-                                     : ""));
+  for (const engine::ProfileInfo& profile : engine::profileInfos()) {
+    const std::string word(profile.word);
+    if (!of.contains(word)) continue;
+    const Report& r = of[word];
+    const ReadAs as =
+        readLengthAs(r[keysOf(engine::roughnessInfos().front(), profile).value].get<double>(), 1.0, "mm");
+    const std::string smooth =
+        r.contains("lambda_s_mm") ? fmt::format(", lambda s {}", shownLength(r["lambda_s_mm"], along)) : "";
+    const std::string over = profile.kind == engine::ProfileKind::kRoughness
+                                 ? fmt::format("over {} cut-offs of {}", r["lengths"].get<int>(),
+                                               shownLength(r["cutoff_mm"], along))
+                             : profile.by_cutoff
+                                 ? fmt::format("cut-off {}", shownLength(r["cutoff_mm"], along))
+                                 : std::string("without a cut-off");
+    row(word.c_str(), fmt::format("{}{}; without noise +- standard error", over, smooth));
     for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
-      const RoughnessKeys keys = keysOf(info);
+      const RoughnessKeys keys = keysOf(info, profile);
       if (!r.contains(keys.value)) continue;  // of a session of before it was measured
       using Unit = engine::RoughnessInfo::Unit;
       const ReadAs in = info.unit == Unit::kHeight  ? as
@@ -93,7 +100,7 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
         const double by = error.get<double>() / in.size;
         text += fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);
       }
-      row("", fmt::format("{:<5} {}", info.symbol, text));
+      row("", fmt::format("{:<5} {}", keys.symbol, text));
     }
   }
   return lines;

@@ -19,8 +19,13 @@ using engine::Estimate;
 using engine::Section;
 using engine::Stretch;
 
-constexpr std::string_view kSectionKeys[] = {"cursors", "line", "step",     "groove",
-                                             "angle",   "arc",  "roughness"};
+// The last ones are those of profiles.
+constexpr std::string_view kSectionKeys[] = {"cursors", "line",      "step",    "groove",  "angle",
+                                             "arc",     "roughness", "primary", "waviness"};
+
+const engine::ProfileInfo& profileNamed(std::string_view word) {
+  return *std::ranges::find(engine::profileInfos(), word, &engine::ProfileInfo::word);
+}
 
 Report lineReport(const engine::LineFigures& line) {
   Report report;
@@ -54,7 +59,7 @@ class SectionMeasurement {
     if (key == "groove") return groove(section, marks);
     if (key == "angle") return angle(section, marks);
     if (key == "arc") return arc(section, marks);
-    return roughness(section);
+    return profile(section, profileNamed(key));
   }
 
  private:
@@ -160,20 +165,20 @@ class SectionMeasurement {
     report.update({{"hollow", figures->hollow}, {"rms_mm", figures->rms_mm}, {"places", figures->places}});
     return report;
   }
-  engine::Result<Report> roughness(const Section& section) const {
-    const engine::ProfileFilters filters{*options_.cutoff, options_.lambda_s.value_or(0.0)};
+  engine::Result<Report> profile(const Section& section, const engine::ProfileInfo& info) const {
+    const engine::ProfileFilters filters{info.by_cutoff ? *options_.cutoff : 0.0,
+                                         options_.lambda_s.value_or(0.0), info.kind};
     const auto figures = engine::roughnessOf(section, within(section), filters);
     if (!figures) return tl::unexpected(figures.error());
     const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_mm_,
                                               {.pairs = kRoughnessPairs});
     if (!noise) return tl::unexpected(noise.error());
-    Report report{{"cutoff_mm", *options_.cutoff},
-                  {"evaluated", stretchOf(figures->evaluated)},
-                  {"lengths", figures->lengths}};
+    Report report{{"evaluated", stretchOf(figures->evaluated)}, {"lengths", figures->lengths}};
+    if (info.by_cutoff) report["cutoff_mm"] = *options_.cutoff;
     if (options_.lambda_s) report["lambda_s_mm"] = *options_.lambda_s;
     const std::span<const engine::RoughnessInfo> infos = engine::roughnessInfos();
     for (std::size_t f = 0; f < infos.size(); ++f) {
-      const RoughnessKeys keys = keysOf(infos[f]);
+      const RoughnessKeys keys = keysOf(infos[f], info);
       report[keys.value] = numberOrNull((*figures).*infos[f].figure);
       report[keys.without] = numberOrNull((*noise)[f].without);
       report[keys.error] = numberOrNull((*noise)[f].error);
@@ -235,11 +240,13 @@ engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text, cons
   return points;
 }
 
-RoughnessKeys keysOf(const engine::RoughnessInfo& info) {
+RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInfo& profile) {
   using Unit = engine::RoughnessInfo::Unit;
   const char* ending = info.unit == Unit::kHeight || info.unit == Unit::kAlong ? "_mm" : "";
-  return {fmt::format("{}{}", info.key, ending), fmt::format("{}_without{}", info.key, ending),
-          fmt::format("{}_error{}", info.key, ending)};
+  // The same words behind another first letter: "wa".
+  const std::string key = fmt::format("{}{}", profile.word.substr(0, 1), info.key.substr(1));
+  return {fmt::format("{}{}", key, ending), fmt::format("{}_without{}", key, ending),
+          fmt::format("{}_error{}", key, ending), fmt::format("{}{}", profile.letter, info.symbol.substr(1))};
 }
 
 std::span<const std::string_view> sectionFigureKeys() noexcept {
@@ -253,7 +260,10 @@ bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept {
   if (key == "groove") return !wants.groove.empty();
   if (key == "angle") return !wants.angle.empty();
   if (key == "arc") return !wants.arc.empty();
-  return key == "roughness" && wants.cutoff.has_value();
+  const engine::ProfileInfo& profile = profileNamed(key);
+  if (profile.by_cutoff && !wants.cutoff) return false;
+  if (wants.profiles.empty()) return profile.kind == engine::ProfileKind::kRoughness;
+  return std::ranges::find(wants.profiles, key) != wants.profiles.end();
 }
 
 engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants, const Section& section,

@@ -25,8 +25,10 @@ struct SectionWants {
   std::vector<double> arc;         ///< A,B
   std::string step;                ///< the edge's length, or "auto"
   std::string groove;              ///< both edges' lengths A,B, or "auto"
-  std::optional<double> cutoff;    ///< of roughness
-  std::optional<double> lambda_s;  ///< of its S-filter
+  std::optional<double> cutoff;    ///< of roughness and waviness
+  std::optional<double> lambda_s;  ///< of their S-filter and that of the primary profile
+  /// Words of engine::profileInfos(), whose parameters are measured; empty: those of roughness where there is a cut-off.
+  std::vector<std::string> profiles;
 };
 
 /// A place along a section that a picture shows.
@@ -35,7 +37,8 @@ struct SectionMark {
   std::string name;  ///< "edge"
 };
 
-/// Keys of the figures, in the order in which they are reported: cursors, line, step, groove, angle, arc, roughness.
+/// Keys of the figures, in the order in which they are reported: cursors, line, step, groove, angle, arc, and
+/// the words of engine::profileInfos().
 [[nodiscard]] std::span<const std::string_view> sectionFigureKeys() noexcept;
 [[nodiscard]] bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept;
 
@@ -60,11 +63,11 @@ struct FailedFigure {
 [[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
                                                                  const std::string& option);
 
-/// Of a figure in a section's "roughness": what it is, without noise, and the standard error of that.
+/// Of a figure in a section's "roughness", "primary" or "waviness": what it is, without noise, and the standard error of that; and its symbol, "Wa".
 struct RoughnessKeys {
-  std::string value, without, error;
+  std::string value, without, error, symbol;
 };
-[[nodiscard]] RoughnessKeys keysOf(const engine::RoughnessInfo& info);
+[[nodiscard]] RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInfo& profile);
 
 /// A number of a report; null for NaN.
 [[nodiscard]] Report numberOrNull(double value);

@@ -115,6 +115,54 @@ TEST(SectionCommand, RefusesWhatItCannotMeasure) {
   refused({"--line", "1,2:7,2", "--spacing", "1", "--spacing", "2"}, "more than once");
 }
 
+// Two sines on a slope: P has both, W the long one, R the short one; each under its own letter.
+TEST(SectionCommand, ProfilesAreThoseAskedFor) {
+  const TempFolder folder;
+  const std::string scan = folder.file("two.asc");
+  {
+    std::ofstream out(scan);
+    out.precision(9);
+    out << "ncols 410\nnrows 6\nxllcenter 5e6\nyllcenter 5e6\ncellsize 0.05\n";
+    for (int r = 0; r < 6; ++r) {
+      for (int c = 0; c < 410; ++c)
+        out << 0.01 * c + 0.02 * std::sin(2.0 * M_PI * c / 10.0) + 0.1 * std::cos(2.0 * M_PI * c / 100.0)
+            << ' ';
+      out << '\n';
+    }
+  }
+  const std::vector<std::string> line = {"section", scan,     "--unit", "mm",
+                                         "--start", "0,0.12", "--end",  "20.45,0.12"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), line.begin(), line.end());
+    return fettleJson(more)["sections"][0];
+  };
+  const auto plain = with({"--cutoff", "1.5"});
+  EXPECT_FALSE(plain.contains("primary") || plain.contains("waviness"));
+  const auto all = with({"--cutoff", "1.5", "--profile", "roughness,primary,waviness"});
+  EXPECT_EQ(all["roughness"], plain["roughness"]);
+  const double left = 0.1 * std::exp(-std::log(2.0) * std::pow(1.5 / 5.0, 2));
+  EXPECT_NEAR(all["waviness"]["wq_mm"], left / std::sqrt(2.0), 0.05 * left);
+  EXPECT_NEAR(all["waviness"]["wsm_mm"], 5.0, 0.1);
+  EXPECT_NEAR(all["primary"]["pq_mm"], std::hypot(0.02, 0.1) / std::sqrt(2.0), 0.005);
+  EXPECT_NEAR(all["primary"]["pt_mm"], 0.24, 0.01);
+  EXPECT_FALSE(all["primary"].contains("cutoff_mm") || all["primary"].contains("ra_mm"));
+  const auto primary = with({"--profile", "primary"});
+  EXPECT_EQ(primary["primary"], all["primary"]);
+  EXPECT_FALSE(primary.contains("roughness"));
+  std::vector<std::string> text = line;
+  text.insert(text.end(), {"--cutoff", "1.5", "--profile", "primary", "--profile", "waviness"});
+  const Outcome shown = fettle(text);
+  for (const char* const part : {"waviness", "cut-off 1.5 mm", "Wq ", "WSm ", "PSm ", "without a cut-off"})
+    EXPECT_NE(shown.out.find(part), std::string::npos) << part << shown.out;
+  const auto refused = [&](std::vector<std::string> more, const char* why) {
+    more.insert(more.begin(), line.begin(), line.end());
+    expectRefused(fettle(more), why);
+  };
+  refused({"--profile", "waviness"}, "add --cutoff");
+  refused({"--profile", "primary", "--cutoff", "1.5"}, "--cutoff");
+  refused({"--profile", "w"}, "--profile");
+}
+
 TEST(SectionCommand, AFigureThatIsNotDeterminedLeavesTheOthers) {
   const TempFolder folder;
   const std::string scan = folder.file("groove.asc");
