@@ -139,8 +139,8 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
       for (std::size_t i = 0; i < curve.values.size(); ++i)
         points.emplace_back(static_cast<double>(i) * states[s].decay_step_mm * length.per_unit,
                             curve.values[i]);
-      addCurve(plot, s, states.size(), c,
-               fmt::format("{}, {:.0f} degrees from x", curve.name, curve.degrees), std::move(points));
+      addCurve(plot, s, states.size(), c, fmt::format("{}, {:.0f} degrees from x", curve.name, curve.degrees),
+               std::move(points));
     }
   return plot;
 }
@@ -155,8 +155,8 @@ CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& u
       std::vector<glm::dvec2> points;
       for (std::size_t i = 1; i < spectrum->density.size(); ++i)
         points.emplace_back(spectrum->frequency(i), spectrum->density[i] * per_mm * per_mm);
-      addCurve(plot, s, states.size(), static_cast<std::size_t>(c),
-               c == 0 ? "along x" : "along y", std::move(points));
+      addCurve(plot, s, states.size(), static_cast<std::size_t>(c), c == 0 ? "along x" : "along y",
+               std::move(points));
     }
   return plot;
 }
