@@ -15,7 +15,7 @@ using State = User::State;
 // High enough for the panels of the test at once.
 class SteadyRows : public WindowTest {
  protected:
-  SteadyRows() : WindowTest(1300, 1300) {}
+  explicit SteadyRows(int height = 1300) : WindowTest(1300, height) {}
 
   [[nodiscard]] std::string settingsFile() const {
     return (folder.path() / "fettle" / "window.json").string();
@@ -114,8 +114,14 @@ TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
   expectSilence(*program);
 }
 
+// The table of all parameters and what is below it.
+class SteadyFigures : public SteadyRows {
+ protected:
+  SteadyFigures() : SteadyRows(1550) {}
+};
+
 // By a click on the button the table takes its place; nothing moves when the figures come, grow old or are measured again.
-TEST_F(SteadyRows, no_row_moves_while_parameters_are_measured) {
+TEST_F(SteadyFigures, no_row_moves_while_parameters_are_measured) {
   const std::string large = folder.file("large.tif");
   ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", large, "--size", "1000x1000", "--seed", "5"}).status, 0);
   writePanels({"Measure"});
@@ -130,7 +136,7 @@ TEST_F(SteadyRows, no_row_moves_while_parameters_are_measured) {
   });
   const auto before = placesOf(computed, rows);
   EXPECT_EQ(before.size(), rows.size());
-  user.at({20, 1290});
+  user.at({20, 1540});
   const State measured = user.rest("measured");
   EXPECT_EQ(measured["measuring"], false);
   EXPECT_FALSE(measured["parameters"].empty());
@@ -141,7 +147,7 @@ TEST_F(SteadyRows, no_row_moves_while_parameters_are_measured) {
       "old", [](const State& s) { return s["parameters_outdated"] == true && s["settled"] == true; });
   EXPECT_EQ(placesOf(old, rows), before);
   (void)user.click("Measure now");
-  user.at({20, 1290});
+  user.at({20, 1540});
   const State both = user.rest();
   EXPECT_EQ(both["parameters"]["Sq"].size(), 2U);
   EXPECT_EQ(placesOf(both, rows), before);
