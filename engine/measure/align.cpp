@@ -74,14 +74,6 @@ Frame frameOf(const glm::dvec3& centre, double arm, const AlignMoves& moves) {
   return frame;
 }
 
-// As far as coordinates are known after some sums of theirs: a scan lies on itself, not somewhere about there.
-bool agree(const RigidMotion& a, const RigidMotion& b, double arm) noexcept {
-  const double rounded = 16.0 * std::numeric_limits<double>::epsilon() * arm;
-  double apart = glm::length(a.shift - b.shift);
-  for (int k = 0; k < 3; ++k) apart += arm * glm::length(a.rotation[k] - b.rotation[k]);
-  return apart <= rounded;
-}
-
 struct Refined {
   RigidMotion motion;
   AlignSpread spread;                                      // of the residuals
@@ -433,8 +425,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
     refined.resize(std::min<std::size_t>(refined.size(), last ? 1 : kFinerStarts));
     candidates = std::move(refined);
   }
-  Refined& best = candidates.front();
-  if (agree(best.motion, stated, frame.arm)) best.motion = stated;
+  const Refined& best = candidates.front();
   constexpr double kLeastOverlap = 0.05;
   const double overlap = static_cast<double>(best.common) / static_cast<double>(whole);
   if (best.common < 12 || overlap < kLeastOverlap)

@@ -443,19 +443,6 @@ TEST(AlignUncertainty, OfTwoAlikeFilesIsThatOfHeightsRoundedToFloat) {
   EXPECT_NEAR(alike->shift_error.z / rounding / (noisy->shift_error.z / noisy->rms_mm), 0.975, 0.05);
 }
 
-// Not somewhere within what coordinates are rounded to: what is written, and moved by it, is the same to the bit.
-TEST(Align, AFieldLiesOnItself) {
-  const Version one = sampledField(squareGrid(96, 80, 0.1, 0.13), hilly, {}, 0.01, 6);
-  JobControl job;
-  const auto found = alignFields(one, one, {}, job);
-  ASSERT_TRUE(found) << found.error().line();
-  EXPECT_EQ(found->motion.shift, glm::dvec3(0.0));
-  EXPECT_EQ(found->angles.tilt_x, 0.0);
-  EXPECT_EQ(found->angles.tilt_y, 0.0);
-  EXPECT_EQ(found->angles.rotation_z, 0.0);
-  EXPECT_GT(found->shift_error.x, 0.0);
-}
-
 TEST(MovedOnto, ThroughNoMotionEveryBitStays) {
   const Grid grid = squareGrid(70, 66, 0.1, 0.3);
   const Version field =
