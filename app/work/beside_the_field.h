@@ -14,7 +14,7 @@ namespace fettle::app {
 template <class Work>
 class BesideTheField {
  public:
-  /// Begins anew; what works is dropped.
+  /// Starts this work in place of the one that is running, whose result is not taken.
   void begin(typename Background<Work>::Work work) { working_.replace(std::move(work)); }
   void cancel() noexcept { working_.cancel(); }
 
