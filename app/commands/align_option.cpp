@@ -12,6 +12,7 @@
 
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
+#include "app/work/align_moves.h"
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
@@ -20,18 +21,6 @@
 namespace fettle::app {
 
 namespace {
-
-struct NamedMoves {
-  const char* word;
-  const char* text;
-  engine::AlignMoves moves;
-};
-constexpr NamedMoves kMoves[] = {
-    {"all", "shift, height, rotation about z and tilt", {true, true, true}},
-    {"in-plane", "shift, height and rotation about z", {true, true, false}},
-    {"shift", "shift and height", {true, false, false}},
-    {"level", "height and tilt", {false, false, true}},
-};
 
 struct AlignFigure {
   const char* key;
@@ -44,9 +33,9 @@ constexpr AlignFigure kAlignFigures[] = {
 };
 
 const NamedMoves& movesNamed(const std::string& word) {
-  for (const NamedMoves& moves : kMoves)
+  for (const NamedMoves& moves : kNamedMoves)
     if (word == moves.word) return moves;
-  return kMoves[0];
+  return kNamedMoves[0];
 }
 
 std::string alignKey(const AlignFigure& figure, const char* between) {
@@ -76,8 +65,8 @@ engine::Result<engine::Alignment> namedAlignment(const engine::Imported& a, cons
 
 std::vector<Word> alignWords() {
   std::vector<Word> words;
-  words.reserve(std::size(kMoves));
-  for (const NamedMoves& moves : kMoves) words.emplace_back(moves.word, moves.text);
+  words.reserve(kNamedMoves.size());
+  for (const NamedMoves& moves : kNamedMoves) words.emplace_back(moves.word, moves.text);
   return words;
 }
 

@@ -25,7 +25,7 @@ bool isOn(const Parts& p) {
   return p.settings.display.*flag;
 }
 inline bool hasCompared(const Parts& p) {
-  return hasField(p) && p.compare.compared().has_value();
+  return hasField(p) && p.compare.compared() != nullptr;
 }
 inline void compareWithScan(Parts& p) {
   ask(p, Question::Kind::kCompare, hasCompared(p) ? p.compare.compared()->path : p.document.path());

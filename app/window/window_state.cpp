@@ -218,10 +218,10 @@ void addFilters(const Parts& p, Report& r) {
   r["parameters_outdated"] = p.measure.outdated();
   const auto& profiles = p.section.profiles();
   r["comparing"] = p.compare.busy();
-  const auto& compared = p.compare.compared();
-  r["compared_rms_mm"] = compared ? Report(compared->rms_mm) : Report();
+  const auto* compared = p.compare.compared();
+  r["compared_rms_mm"] = compared != nullptr ? Report(compared->rms_mm) : Report();
   r["compared_rotation"] =
-      compared && compared->alignment ? Report(compared->alignment->angles.rotation_z) : Report();
+      compared != nullptr && compared->alignment ? Report(compared->alignment->angles.rotation_z) : Report();
   r["fitting"] = p.fit.busy();
   r["fits"] = p.fit.fits() != nullptr ? p.fit.fits()->report : Report();
   r["finding_features"] = p.features.busy();

@@ -21,6 +21,7 @@ class BesideTheField {
   struct Polled {
     bool changed = false;  ///< something visible
     bool taken = false;    ///< there is a new result
+    bool failed = false;   ///< what ran has ended without one
   };
   /// Takes over a result; an error becomes a notice.
   [[nodiscard]] Polled poll(const LoopClient& client, std::vector<Notice>& notices) {
@@ -31,8 +32,10 @@ class BesideTheField {
       if (!dropped && *done) {
         work_ = **std::move(done);
         polled.taken = true;
-      } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
-        notices.push_back({done->error().what, done->error().remedy});
+      } else {
+        polled.failed = true;
+        if (!dropped && done->error().kind != engine::ErrorKind::kCancelled)
+          notices.push_back(noticeOf(done->error()));
       }
     }
     if (!work_) return polled;

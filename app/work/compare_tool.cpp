@@ -20,14 +20,11 @@ namespace fettle::app {
 
 namespace {
 
-constexpr engine::AlignMoves kMovesOf[] = {
-    {true, true, true}, {true, true, false}, {true, false, false}, {false, false, true}};
-
 // None: the other stays where it is.
 std::optional<engine::AlignOptions> alignOptionsOf(const CompareTool::Options& what) {
-  if (what.moves == CompareTool::Moves::kNone) return std::nullopt;
+  if (!what.moves) return std::nullopt;
   engine::AlignOptions how;
-  how.moves = kMovesOf[static_cast<std::size_t>(what.moves)];
+  how.moves = *what.moves;
   how.region = what.region;
   return how;
 }
@@ -74,8 +71,8 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
 void CompareTool::compareWith(const LoopClient& client, std::string path, const ScanOptions& reading) {
   reading_ = reading;
   following_ = false;
-  working_.replace([field = client.newest(), path = std::move(path), reading = reading_,
-                    what = options](engine::JobControl& job) {
+  work_.begin([field = client.newest(), path = std::move(path), reading = reading_,
+               what = options](engine::JobControl& job) {
     return isNominalFile(path) ? withMesh(field, path, what, job) : withScan(field, path, reading, what, job);
   });
 }
@@ -154,59 +151,42 @@ engine::Status CompareTool::see(Work& work, const engine::Version& field, engine
   if (!seen) return tl::unexpected(seen.error());
   work.compared.other = *seen;
   work.compared.under = field.formOver();
-  work.seen = field;
+  work.field = field;
   return {};
 }
 
 // A form came over the field or went: the other scan is seen under it as well, what was found stays.
 void CompareTool::followForm(const LoopClient& client) {
   following_ = true;
-  working_.replace([field = client.newest(), work = Work{*compared_, samples_, of_}](
-                       engine::JobControl& job) mutable -> engine::Result<Work> {
-    const engine::Version before = work.seen;
+  work_.begin([field = client.newest(),
+               work = *work_.get()](engine::JobControl& job) mutable -> engine::Result<Work> {
+    const engine::Version before = work.field;
     if (auto seen = see(work, field, job); !seen) return tl::unexpected(seen.error());
     const auto samples = engine::withoutLayer(field, job);
     if (!samples) return tl::unexpected(samples.error());
-    if (!engine::sameHeights(work.samples, *samples)) work.seen = before;
+    if (!engine::sameHeights(work.samples, *samples)) work.field = before;
     return work;
   });
 }
 
 bool CompareTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
-  const bool dropped = working_.cancelling();
-  bool changed = false;
-  if (auto done = working_.take()) {
-    changed = true;
-    if (!dropped && *done) {
-      of_ = std::move((*done)->seen);
-      samples_ = std::move((*done)->samples);
-      compared_ = std::move((*done)->compared);
-      lines_ = linesOf(*compared_);
-    } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {
-      notices.push_back({done->error().line(), done->error().remedy});
-    }
-    // Else it would be tried again for ever.
-    if (following_ && (dropped || !*done)) clear();
-  }
-  if (!compared_) return changed;
-  if (!working_.busy() && client.newest().formOver() != compared_->under) {
-    followForm(client);
-    changed = true;
-  }
-  const bool outdated = !(client.newest() == of_);
-  return std::exchange(outdated_, outdated) != outdated || changed;
+  const auto polled = work_.poll(client, notices);
+  if (polled.taken) lines_ = linesOf(*compared());
+  // Else it would be tried again for ever.
+  if (polled.failed && following_) clear();
+  if (compared() == nullptr || work_.busy() || client.newest().formOver() == compared()->under)
+    return polled.changed;
+  followForm(client);
+  return true;
 }
 
 const engine::Version* CompareTool::beside(const engine::Version& field) const noexcept {
-  return compared_ && compared_->under == field.formOver() ? &compared_->other : nullptr;
+  return compared() != nullptr && compared()->under == field.formOver() ? &compared()->other : nullptr;
 }
 
 void CompareTool::clear() {
-  working_.cancel();
-  compared_.reset();
+  work_.clear();
   lines_.clear();
-  of_ = samples_ = {};
-  outdated_ = false;
 }
 
 }  // namespace fettle::app

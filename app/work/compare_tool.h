@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/work/background.h"
+#include "app/work/beside_the_field.h"
 #include "app/work/loop_client.h"
 #include "app/work/nominal_compare.h"
 #include "app/work/scan_reading.h"
@@ -19,11 +19,10 @@ namespace fettle::app {
 /// counts: both are compared as they were measured. Threading: main.
 class CompareTool {
  public:
-  /// How the other scan may be moved.
-  enum class Moves : std::uint8_t { kAll, kInPlane, kShift, kLevel, kNone };
   /// Edited by the panel.
   struct Options {
-    Moves moves = Moves::kAll;
+    std::optional<engine::AlignMoves> moves =
+        engine::AlignMoves{};                      ///< none: the other scan stays where it is
     engine::Region region = engine::Region::kAll;  ///< samples of the field that count
     NominalChoice nominal;                         ///< of a mesh
   };
@@ -49,19 +48,22 @@ class CompareTool {
   void compareWith(const LoopClient& client, std::string path, const ScanOptions& reading);
   /// The same scan with the newest field.
   void again(const LoopClient& client) {
-    if (compared_) compareWith(client, compared_->path, reading_);
+    if (compared() != nullptr) compareWith(client, compared()->path, reading_);
   }
-  void cancel() noexcept { working_.cancel(); }
+  void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
   [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices);
 
-  [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
-  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
-  [[nodiscard]] const std::optional<Compared>& compared() const noexcept { return compared_; }
+  [[nodiscard]] bool busy() const noexcept { return work_.busy(); }
+  [[nodiscard]] WorkProgress progress() const { return work_.progress(); }
+  /// Null before, and of another document.
+  [[nodiscard]] const Compared* compared() const noexcept {
+    return work_.get() != nullptr ? &work_.get()->compared : nullptr;
+  }
   /// The other scan as the field is seen, for its colours; null until it is known under the form over the field.
   [[nodiscard]] const engine::Version* beside(const engine::Version& field) const noexcept;
   /// Whether the field has changed since.
-  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
+  [[nodiscard]] bool outdated() const noexcept { return work_.outdated(); }
   /// Lines of what was found, as `fettle align` prints them.
   [[nodiscard]] const std::vector<std::string>& lines() const noexcept { return lines_; }
   /// Forgets the other scan.
@@ -71,7 +73,7 @@ class CompareTool {
   struct Work {
     Compared compared;
     engine::Version samples;  // of the field, without a form
-    engine::Version seen;     // the field itself
+    engine::Version field;    // as it is seen
   };
   [[nodiscard]] static engine::Result<Work> withScan(const engine::Version& field, const std::string& path,
                                                      const ScanOptions& reading, const Options& what,
@@ -81,13 +83,10 @@ class CompareTool {
   [[nodiscard]] static engine::Status see(Work& work, const engine::Version& field, engine::JobControl& job);
   void followForm(const LoopClient& client);
 
-  std::optional<Compared> compared_;
   ScanOptions reading_;
   std::vector<std::string> lines_;
-  engine::Version of_, samples_;  // that it was compared with: as it is seen, and as it was measured
-  bool outdated_ = false;
   bool following_ = false;  // what works is followForm()
-  Background<Work> working_;
+  BesideTheField<Work> work_;
 };
 
 }  // namespace fettle::app

@@ -13,6 +13,10 @@
 
 namespace fettle::app {
 
+Notice noticeOf(const engine::Error& error) {
+  return {engine::Error{error.kind, error.what, error.where, ""}.line(), error.remedy};
+}
+
 void addNotice(std::vector<Notice>& notices, Notice notice) {
   const auto same = std::ranges::find_if(notices, [&](const Notice& other) {
     return !notice.several.empty() && other.several == notice.several;

@@ -35,6 +35,9 @@ struct Notice {
   std::optional<std::chrono::steady_clock::time_point> seen = {};  ///< since when it is on the screen
 };
 
+/// What went wrong and where, and what to do about it.
+[[nodiscard]] Notice noticeOf(const engine::Error& error);
+
 /// Adds a notice; one with Notice::several is counted where it stands already.
 void addNotice(std::vector<Notice>& notices, Notice notice);
 

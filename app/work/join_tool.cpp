@@ -15,13 +15,10 @@
 namespace fettle::app {
 namespace {
 
-constexpr engine::AlignMoves kMovesOfJoin[] = {
-    {true, true, true}, {true, true, false}, {true, false, false}, {false, false, true}};
-
 engine::Result<engine::JoinOptions> joinOptionsOf(const JoinTool::Options& what,
                                                   const std::vector<engine::Version>& scans) {
   engine::JoinOptions how;
-  how.align.moves = kMovesOfJoin[static_cast<std::size_t>(what.moves)];
+  how.align.moves = what.moves;
   how.blend = what.blend;
   if (what.columns == 0) {
     how.places = engine::statedPlaces(scans);
@@ -93,8 +90,7 @@ std::optional<std::string> JoinTool::poll(std::vector<Notice>& notices) {
     notices.push_back({(*done)->outcome, ""});
     return std::move((*done)->path);
   }
-  if (done->error().kind != engine::ErrorKind::kCancelled)
-    notices.push_back({done->error().line(), done->error().remedy});
+  if (done->error().kind != engine::ErrorKind::kCancelled) notices.push_back(noticeOf(done->error()));
   return std::nullopt;
 }
 

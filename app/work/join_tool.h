@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
 #include "app/work/scan_reading.h"
+#include "engine/measure/align.h"
 #include "engine/mosaic/blended.h"
 
 namespace fettle::app {
@@ -17,11 +17,9 @@ namespace fettle::app {
 /// steps that led to the field, so that it is a session of its own beside the scan; the work here stays as it is. Threading: main.
 class JoinTool {
  public:
-  /// How scans may be moved.
-  enum class Moves : std::uint8_t { kAll, kInPlane, kShift, kLevel };
   /// Edited by the panel.
   struct Options {
-    Moves moves = Moves::kAll;
+    engine::AlignMoves moves;
     engine::Blend blend = engine::Blend::kFade;
     int columns = 0;        ///< of scans in a row; 0: by the places that files state, else searched for
     double overlap = 20.0;  ///< with columns: share of a side that neighbours have in common [%]

@@ -71,8 +71,7 @@ std::optional<std::string> TransformTool::poll(std::vector<Notice>& notices) {
   auto done = working_.take();
   if (!done || dropped) return std::nullopt;
   if (*done) return **std::move(done);
-  if (done->error().kind != engine::ErrorKind::kCancelled)
-    notices.push_back({done->error().line(), done->error().remedy});
+  if (done->error().kind != engine::ErrorKind::kCancelled) notices.push_back(noticeOf(done->error()));
   return std::nullopt;
 }
 

@@ -18,6 +18,8 @@ struct AlignMoves {
   bool shift = true;     ///< along x and y
   bool rotation = true;  ///< about z
   bool tilt = true;      ///< about x and y
+
+  friend bool operator==(const AlignMoves&, const AlignMoves&) = default;
 };
 
 /// What one resolution of alignFields() took, by which the time of larger fields is foreseen (finestAlignment).

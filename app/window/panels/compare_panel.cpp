@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include "app/window/panels/moves_choice.h"
 #include "app/window/panels/panels.h"
 #include "engine/io/import.h"
 
@@ -42,14 +43,7 @@ void meshFields(const PanelContext& context, NominalChoice& nominal) {
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture) {
   ImGui::BeginDisabled(compare.busy());
   beginFields();
-  (void)field("it is moved", [&] {
-    constexpr const char* kMoves[] = {"shift, rotation, tilt", "shift, rotation", "shift", "height and tilt",
-                                      "not"};
-    int moves = static_cast<int>(compare.options.moves);
-    const bool changed = ImGui::Combo("##compare moves", &moves, kMoves, std::size(kMoves));
-    if (changed) compare.options.moves = static_cast<CompareTool::Moves>(moves);
-    return changed;
-  });
+  (void)field("it is moved", [&] { return chooseMoves("##compare moves", compare.options.moves, "not"); });
   (void)field("by", [&] {
     constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
@@ -64,8 +58,8 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   meshFields(context, compare.options.nominal);
   endFields();
   actionButton("Choose a scan", Action::kCompare, context.act);
-  const auto& compared = compare.compared();
-  ImGui::BeginDisabled(!compared.has_value());
+  const auto* compared = compare.compared();
+  ImGui::BeginDisabled(compared == nullptr);
   sameLineIfFits("Again");
   actionButton("Again##compare", Action::kCompareAgain, context.act);
   sameLineIfFits("Remove");
@@ -80,10 +74,10 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   }
   ImGui::EndDisabled();
   ImGui::EndDisabled();
-  beginPlace("##compare outcome", compare.busy() || compared ? kComparedLines : kUncomparedLines);
+  beginPlace("##compare outcome", compare.busy() || compared != nullptr ? kComparedLines : kUncomparedLines);
   if (compare.busy()) {
     if (cancelledBar(compare.progress(), "aligning", "Cancel##compare")) compare.cancel();
-  } else if (compared) {
+  } else if (compared != nullptr) {
     if (compare.outdated()) writeWrapped("the field has changed since: Again");
     writeWrapped(std::filesystem::path(compared->path).filename().string());
     for (const std::string& line : compare.lines()) writeWrapped(line);

@@ -1,9 +1,11 @@
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include <imgui.h>
 
+#include "app/window/panels/moves_choice.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -40,10 +42,9 @@ bool joinPanel(const PanelContext& context, JoinTool& join) {
   actionButton("Add a scan", Action::kJoin, context.act);
   beginFields();
   (void)field("they are moved", [&] {
-    constexpr const char* kMoves[] = {"shift, rotation, tilt", "shift, rotation", "shift", "height and tilt"};
-    int moves = static_cast<int>(options.moves);
-    const bool changed = ImGui::Combo("##join moves", &moves, kMoves, std::size(kMoves));
-    if (changed) options.moves = static_cast<JoinTool::Moves>(moves);
+    std::optional<engine::AlignMoves> moves = options.moves;
+    const bool changed = chooseMoves("##join moves", moves);
+    options.moves = *moves;
     return changed;
   });
   (void)field("where several are", "The height where several scans have one.", [&] {

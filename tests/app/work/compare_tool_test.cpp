@@ -83,16 +83,16 @@ constexpr double kRounding = 4.0 * 1e-6;
 TEST_F(CompareToolTest, a_form_that_is_taken_out_counts_as_it_was_measured) {
   take(Form::kOut);
   ASSERT_NE(bench.client().newest().formOver(), nullptr);
-  tool.options.moves = CompareTool::Moves::kNone;
+  tool.options.moves = std::nullopt;
   tool.compareWith(bench.client(), other, {});
   ASSERT_TRUE(rest());
-  ASSERT_TRUE(tool.compared().has_value());
+  ASSERT_NE(tool.compared(), nullptr);
   EXPECT_NEAR(tool.compared()->rms_mm, 0.02, kRounding);
   EXPECT_NEAR(mostSeen(), 0.02, kRounding);
   EXPECT_EQ(tool.lines().back(), "heights count with the form that was taken out");
 
   // Aligned, the slope is no tilt between the two.
-  tool.options.moves = CompareTool::Moves::kLevel;
+  tool.options.moves = engine::AlignMoves{.shift = false, .rotation = false, .tilt = true};
   tool.again(bench.client());
   ASSERT_TRUE(rest());
   ASSERT_TRUE(tool.compared()->alignment.has_value());
@@ -102,7 +102,7 @@ TEST_F(CompareToolTest, a_form_that_is_taken_out_counts_as_it_was_measured) {
 }
 
 TEST_F(CompareToolTest, the_other_scan_follows_a_form_that_goes_and_comes) {
-  tool.options.moves = CompareTool::Moves::kNone;
+  tool.options.moves = std::nullopt;
   tool.compareWith(bench.client(), other, {});
   ASSERT_TRUE(rest());
   EXPECT_NEAR(mostSeen(), 0.02, kRounding);
@@ -124,11 +124,11 @@ TEST_F(CompareToolTest, a_nominal_mesh_is_compared_as_a_scan) {
   const std::string mesh = folder.file("nominal.stl");
   engine::JobControl job;
   ASSERT_TRUE(engine::exportField(slopedField(0.02), mesh, {}, job));
-  tool.options.moves = CompareTool::Moves::kNone;
+  tool.options.moves = std::nullopt;
   tool.options.nominal.tolerance = 0.01;
   tool.compareWith(bench.client(), mesh, {});
   ASSERT_TRUE(rest());
-  ASSERT_TRUE(tool.compared()) << (bench.notices().empty() ? "" : bench.notices().back().what);
+  ASSERT_NE(tool.compared(), nullptr) << (bench.notices().empty() ? "" : bench.notices().back().what);
   // Of the corners of the mesh, which are samples; an STL rounds them to float as well.
   EXPECT_NEAR(tool.compared()->mean_mm, -0.02, kRounding);
   EXPECT_NEAR(mostSeen(), 0.02, 2.0 * kRounding);
