@@ -38,8 +38,12 @@ using Keys = std::vector<ReportKey>;
 [[nodiscard]] Keys form();
 [[nodiscard]] Keys formFigures();
 
-/// Of info, measure, section, align, fit, compare, lines, journal, recipe, devices.
+/// Of info, measure, features, fit, lines, journal, recipe, devices.
 [[nodiscard]] std::vector<ReportSchema> inspecting();
+/// Of section.
+[[nodiscard]] std::vector<ReportSchema> sectioning();
+/// Of compare, align, mosaic.
+[[nodiscard]] std::vector<ReportSchema> comparing();
 /// Of filter, convert, level, fill, transform, report, apply, mark, synth, replay, record.
 [[nodiscard]] std::vector<ReportSchema> changing();
 /// Of plan, gather, status, submit.

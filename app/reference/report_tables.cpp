@@ -9,8 +9,8 @@ namespace {
 std::vector<ReportSchema> all() {
   std::vector<ReportSchema> schemas;
   for (std::vector<ReportSchema>& part :
-       std::vector{reports::inspecting(), reports::changing(), reports::sharing(), reports::showing(),
-                   reports::measuring()})
+       std::vector{reports::inspecting(), reports::sectioning(), reports::comparing(), reports::changing(),
+                   reports::sharing(), reports::showing(), reports::measuring()})
     schemas.insert(schemas.end(), part.begin(), part.end());
   schemas.push_back({"error",
                      1,
