@@ -239,6 +239,23 @@ double medianHeight(std::vector<Sample> samples) {
   return middle->z;
 }
 
+// The rounding of heights: of most of them, since one spike may be as high as all others' rounding is less.
+double roundingOf(const std::vector<Sample>& samples, double range) {
+  constexpr double kRounding = std::numeric_limits<float>::epsilon();
+  if (samples.empty()) return kRounding * range;
+  std::vector<double> heights;
+  heights.reserve(samples.size());
+  for (const Sample& sample : samples) heights.push_back(sample.z);
+  const auto quantile = [&](std::size_t twentieths) {
+    const auto at = heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) * twentieths / 20);
+    std::ranges::nth_element(heights, at);
+    return *at;
+  };
+  const double low = quantile(1), high = quantile(19);
+  // Where most are of one height it has none to speak of.
+  return kRounding * std::max(high - low, kRounding * range);
+}
+
 // Coefficients of a lower degree as those of a higher one.
 std::vector<double> raised(const std::vector<double>& coefficients, int degree, int higher) {
   std::vector<double> result;
@@ -277,8 +294,8 @@ Status refine(const Version& field, const FormOptions& options, const FormAxes& 
 // leaves decides which samples the next one sees.
 Status fitRobustly(const Version& field, const FormOptions& options, const FormAxes& axes, double range,
                    FormFit& fit, JobControl& job) {
-  const double least = std::numeric_limits<float>::epsilon() * range;  // the rounding of heights
   const std::vector<Sample> samples = spreadSamples(field, options.region);
+  const double least = roundingOf(samples, range);
   PolynomialForm& form = fit.form;
   const int first = std::min(options.degree, 1);
   form.degree = first;

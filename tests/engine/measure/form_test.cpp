@@ -140,6 +140,21 @@ TEST(Form, RobustOfAnExactPlaneIsThatPlane) {
   EXPECT_NEAR(fit.form.gradient().by_row, -0.125, 1e-6);
 }
 
+// The height of one spike says nothing of how finely the others are rounded.
+TEST(Form, RobustWithASpikeBesideAStepIsThePlane) {
+  for (const double spike : {1e3, 1e5, 1e6}) {
+    const Version field = fieldOf(200, 150, [&](int c, int r) {
+      const double plane = 0.02 * c + 0.01 * r;
+      return c == 120 && r == 40 ? spike : c > 160 ? plane + 0.5 : plane + 1e-3 * ((c * 7 + r * 13) % 5 - 2);
+    });
+    for (int degree = 1; degree <= PolynomialForm::kMostDegree; ++degree) {
+      const FormFit fit = fitted(field, {degree, Region::kAll, true});
+      for (const auto& [c, r] : {std::pair{0.0, 0.0}, {80.0, 75.0}, {150.0, 149.0}})
+        EXPECT_NEAR(fit.form.heightAt(c, r), 0.02 * c + 0.01 * r, 1e-3) << spike << ' ' << degree;
+    }
+  }
+}
+
 TEST(Form, OfHardFieldsIsFinite) {
   const auto check = [](const Version& field, double most) {
     for (int degree = 0; degree <= PolynomialForm::kMostDegree; ++degree)
