@@ -13,6 +13,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/filling.h"
+#include "app/commands/filter_warnings.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/known_steps.h"
 #include "app/commands/level_layer.h"
@@ -25,7 +26,6 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/transforming.h"
 #include "app/commands/typed_values.h"
-#include "app/commands/weightless.h"
 #include "app/terminal.h"
 #include "app/work/line_edits.h"
 #include "app/work/memory_places.h"
@@ -108,6 +108,7 @@ engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& j
   if (engine::hasRange(spec.kind)) done["range_sigma"] = ready->range_sigma;
   addWeightless(done, engine::filterOf(spec.kind), filtered->report,
                 fmt::format("{}: step {}", shownInput(at.task.in), at.step()));
+  warnOfCutoff(*ready, at.field.grid(), fmt::format("{}: step {}", shownInput(at.task.in), at.step()));
   addKept(done, kept->get(), spec.passes);
   at.steps.push_back(std::move(done));
   return {};

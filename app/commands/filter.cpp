@@ -15,6 +15,7 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/filter_arguments.h"
 #include "app/commands/filter_suggestion.h"
+#include "app/commands/filter_warnings.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/known_steps.h"
 #include "app/commands/list_text.h"
@@ -27,7 +28,6 @@
 #include "app/commands/shards/list_shard.h"
 #include "app/commands/shards/plan.h"
 #include "app/commands/typed_values.h"
-#include "app/commands/weightless.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
@@ -209,6 +209,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"max_change", filtered->report.max_change},
                  {"rms_change", filtered->report.rms_change}});
   addWeightless(report, filter, filtered->report, shownInput(task.in));
+  warnOfCutoff(spec, field.grid(), shownInput(task.in));
   report.update(
       {{"seconds", seconds}, {"samples_per_second", samples / seconds}, {"hash", hashOf(filtered->field)}});
   if (!options.residual.empty()) report["residual"] = options.residual;

@@ -1,4 +1,4 @@
-#include "app/commands/weightless.h"
+#include "app/commands/filter_warnings.h"
 
 #include "app/terminal.h"
 
@@ -9,6 +9,10 @@ void addWeightless(Report& report, const engine::Filter& filter, const engine::F
   if (!filter.robust) return;
   report["weightless"] = done.weightless;
   if (const std::string warning = engine::warningOf(done); !warning.empty()) warn(of + ": " + warning);
+}
+
+void warnOfCutoff(const engine::FilterSpec& spec, const engine::Grid& grid, const std::string& of) {
+  if (const std::string warning = engine::warningOf(spec, grid); !warning.empty()) warn(of + ": " + warning);
 }
 
 }  // namespace fettle::app

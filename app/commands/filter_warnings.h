@@ -12,4 +12,7 @@ namespace fettle::app {
 void addWeightless(Report& report, const engine::Filter& filter, const engine::FilterReport& done,
                    const std::string& of);
 
+/// A warning where a filter's cut-off is longer than the field.
+void warnOfCutoff(const engine::FilterSpec& spec, const engine::Grid& grid, const std::string& of);
+
 }  // namespace fettle::app

@@ -1,5 +1,6 @@
 #include "app/commands/scale_option.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/filter_warnings.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "engine/filter/catalogue.h"
@@ -23,22 +25,33 @@ namespace {
 // In millimetres: the default unit of a grid. 0 where nothing was typed.
 engine::Result<double> cutOffOf(const std::string& typed, const std::string& option) {
   if (typed.empty()) return 0.0;
-  return parseHeight(typed, engine::Grid{}, option);
+  const auto length = parseHeight(typed, engine::Grid{}, option);
+  if (length && *length == 0.0)
+    return engine::inputError("a filter of length 0 leaves all as it is", option,
+                              "leave it out, or take a longer one");
+  return length;
 }
 
 const std::string kUsualKind = "areal-gaussian";
 
 engine::Result<engine::Version> filteredBy(const engine::Version& field, const std::string& kind,
                                            double length, engine::Waves waves, const std::string& option,
-                                           engine::JobControl& job) {
+                                           engine::JobControl& job,
+                                           const engine::NominalForm* about = nullptr) {
   engine::FilterSpec spec;
   spec.kind = engine::filterNamed(kind)->kind;
   spec.nesting_mm = length;
   engine::FilterReport report;
-  auto filtered = engine::scaleFiltered(field, spec, waves, job, &report);
+  auto filtered = engine::scaleFiltered(field, spec, waves, job, &report, about);
+  warnOfCutoff(spec, field.grid(), option);
   if (const std::string warning = engine::warningOf(report); !warning.empty()) warn(option + ": " + warning);
   if (filtered || filtered.error().kind != engine::ErrorKind::kInput) return filtered;
   return engine::inputError(filtered.error().what, option, filtered.error().remedy);
+}
+
+// Whether a Gaussian of such a form is another one.
+bool bends(engine::FormKind kind) {
+  return kind != engine::FormKind::kMean && kind != engine::FormKind::kPlane;
 }
 
 }  // namespace
@@ -91,8 +104,22 @@ engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const st
     return engine::inputError("the L-filter leaves nothing of what the S-filter left", "--l-filter",
                               fmt::format("take more than {} mm", *short_));
   ScaleLimited result{field, {}, {}};
-  if (!scale.s_filter.empty()) {
-    auto smooth = filteredBy(result.field, scale.s_kind, *short_, engine::Waves::kLong, "--s-filter", job);
+  const engine::FormChoice choice = formChoiceOf(form);
+  if (*short_ > 0.0 || *long_ > 0.0) {
+    // What does not count is as good as a hole for filters, too.
+    auto counted = engine::onlyRegion(field, field, choice.region, job);
+    if (!counted) return tl::unexpected(counted.error());
+    result.field = *std::move(counted);
+  }
+  if (*short_ > 0.0) {
+    // About a bent form: the ends of a bow would be bent up by what it is filtered with. Where it cannot be fitted formOf() says why.
+    std::optional<engine::FittedForm> bow;
+    if (bends(choice.kind)) {
+      auto fitted = engine::fitNominalForm(result.field, choice, job);
+      if (fitted) bow = *std::move(fitted);
+    }
+    auto smooth = filteredBy(result.field, scale.s_kind, *short_, engine::Waves::kLong, "--s-filter", job,
+                             bow ? &bow->form : nullptr);
     if (!smooth) return tl::unexpected(smooth.error());
     result.field = *std::move(smooth);
   }
@@ -100,7 +127,7 @@ engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const st
   if (!fit) return tl::unexpected(fit.error());
   result.fit = *std::move(fit);
   result.form = result.fit.form;
-  if (scale.l_filter.empty()) return result;
+  if (*long_ == 0.0) return result;
   auto rest = engine::withoutForm(result.field, result.form, job);
   if (!rest) return tl::unexpected(rest.error());
   auto rough = filteredBy(*rest, scale.l_kind, *long_, engine::Waves::kShort, "--l-filter", job);

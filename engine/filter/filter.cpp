@@ -101,6 +101,14 @@ std::string warningOf(const FilterReport& report) {
       100.0 * share);
 }
 
+std::string warningOf(const FilterSpec& spec, const Grid& grid) {
+  const double x = grid.width * grid.spacingXMm(), y = grid.height * grid.spacingYMm();
+  if (filterOf(spec.kind).nesting_word != "cutoff" || !(spec.nesting_mm > std::max(x, y))) return {};
+  return fmt::format(
+      "a cut-off of {:.6g} mm is longer than the field, {:.6g} x {:.6g} mm: what it leaves is of ends alone",
+      spec.nesting_mm, x, y);
+}
+
 Status validate(const FilterSpec& spec) {
   const Filter& filter = filterOf(spec.kind);
   const FilterParameter& window = filter.window;

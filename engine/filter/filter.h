@@ -185,6 +185,9 @@ inline constexpr double kManyWeightless = 0.2;
 /// What to say of it and to do, without a full stop; empty where they are fewer.
 [[nodiscard]] std::string warningOf(const FilterReport& report);
 
+/// The same of a cut-off that is longer than the field, where no place has all samples of its window.
+[[nodiscard]] std::string warningOf(const FilterSpec& spec, const Grid& grid);
+
 struct Filtered {
   Version field;  ///< sign, grid and memory of the input; shares each tile with it in which no bit changed
   FilterReport report;

@@ -15,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 // Without marks, which would keep samples.
-Result<Version> heightsAbout(const Version& field, const PolynomialForm& plane, JobControl& job) {
+Result<Version> heightsAbout(const Version& field, const NominalForm& form, JobControl& job) {
   Grid grid = field.grid();
   grid.height_per_count = 0.0;
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), "the levelled field");
@@ -27,7 +27,7 @@ Result<Version> heightsAbout(const Version& field, const PolynomialForm& plane, 
     float z[kTileSamples];
     double nominal[kTileSamples];
     from.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
-    plane.readHeights(rect, nominal, kTileSide);
+    form.readHeights(rect, nominal, kTileSide);
     for (int r = 0; r < rect.rows; ++r)
       for (int k = r * kTileSide; k < r * kTileSide + rect.columns; ++k)
         z[k] = static_cast<float>(z[k] - nominal[k]);
@@ -40,15 +40,20 @@ Result<Version> heightsAbout(const Version& field, const PolynomialForm& plane, 
 }  // namespace
 
 Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Waves waves, JobControl& job,
-                              FilterReport* report) {
+                              FilterReport* report, const NominalForm* about) {
   if (Status valid = validate(filter, field.grid()); !valid) return tl::unexpected(valid.error());
-  const auto fit = fitForm(field, {.degree = 1, .region = Region::kAll, .robust = false}, job);
-  if (!fit && fit.error().kind == ErrorKind::kInput) return field;  // of holes alone
-  if (!fit) return tl::unexpected(fit.error());
-  const PolynomialForm& plane = fit->form;
-  const auto about = heightsAbout(field, plane, job);
-  if (!about) return tl::unexpected(about.error());
-  const auto filtered = applyFilter(*about, *about, filter, job);
+  NominalForm form;
+  if (about != nullptr) {
+    form = *about;
+  } else {
+    const auto fit = fitForm(field, {.degree = 1, .region = Region::kAll, .robust = false}, job);
+    if (!fit && fit.error().kind == ErrorKind::kInput) return field;  // of holes alone
+    if (!fit) return tl::unexpected(fit.error());
+    form = fit->form;
+  }
+  const auto heights = heightsAbout(field, form, job);
+  if (!heights) return tl::unexpected(heights.error());
+  const auto filtered = applyFilter(*heights, *heights, filter, job);
   if (!filtered) return tl::unexpected(filtered.error());
   if (report != nullptr) *report = filtered->report;
   const FieldReader low = filtered->field.reader(), from = field.reader();
@@ -56,7 +61,7 @@ Result<Version> scaleFiltered(const Version& field, const FilterSpec& filter, Wa
       field, "filtering",
       [&](const SampleRect& rect, double* taken) {
         float z[kTileSamples], of_filter[kTileSamples];
-        plane.readHeights(rect, taken, kTileSide);
+        form.readHeights(rect, taken, kTileSide);
         low.readHeights(rect.column, rect.row, rect.columns, rect.rows, of_filter, kTileSide);
         if (waves == Waves::kLong)
           from.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -49,6 +50,60 @@ TEST(Measure, OfATiltedWaveIsTheWave) {
   const Outcome text = fettle({"measure", scan, "--unit", "mm"});
   EXPECT_NE(text.out.find("Sq             1.4"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find(" um "), std::string::npos) << text.out;
+}
+
+// Grid of a height by column and row, of cells of 0.05 mm.
+void writeHeights(const std::string& path, int columns, int rows,
+                  const std::function<double(int, int)>& height) {
+  std::ofstream out(path);
+  out.precision(9);
+  out << fmt::format("ncols {}\nnrows {}\nxllcenter 0\nyllcenter 0\ncellsize 0.05\n", columns, rows);
+  for (int r = rows - 1; r >= 0; --r) {
+    for (int c = 0; c < columns; ++c) out << height(c, r) << ' ';
+    out << '\n';
+  }
+}
+
+// What lies beyond a region is as good as holes for the filters, too: figures are those of the part alone.
+TEST(Measure, FiltersOfARegionKnowNothingBeyondIt) {
+  const TempFolder folder;
+  const std::string scan = folder.file("step.asc"), part = folder.file("part.tif");
+  const std::string marks = folder.file("marks.png"), marked = folder.file("marked.tif");
+  writeHeights(scan, 80, 50, [](int c, int r) {
+    return 1e-3 * std::sin(1.3 * c) * std::cos(0.9 * r) + (c > 40 ? 0.2 : 0.0);
+  });
+  ASSERT_EQ(fettle({"transform", scan, part, "--unit", "mm", "--crop-samples", "0,0,50,41"}).status, 0);
+  const std::vector<std::string> filters{"--s-filter", "0.12", "--l-filter", "0.8", "--noise-trials", "0"};
+  const auto figures = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "measure");
+    arguments.insert(arguments.end(), filters.begin(), filters.end());
+    return fettleJson(arguments);
+  };
+  const auto of_part = figures({part});
+  const auto of_region = figures({scan, "--unit", "mm", "--region", "rectangle 0,0,2.01,2.5"});
+  EXPECT_EQ(of_region["samples"], of_part["samples"]);
+  for (const char* key : {"sq", "sz", "sdq", "sal", "sk"})
+    EXPECT_NEAR(of_region[key], of_part[key], 1e-3 * of_part[key].get<double>()) << key;
+}
+
+// A bow is bent up at its ends by what it is filtered with, unless it is filtered about its form.
+TEST(Measure, AnSFilterOfABentSurfaceKeepsItsEnds) {
+  const TempFolder folder;
+  const std::string scan = folder.file("bow.asc"), level = folder.file("level.tif");
+  writeHeights(scan, 80, 60, [](int c, int r) {
+    const double x = 0.05 * (c - 39.5);
+    return std::sqrt(25.0 - x * x) - 5.0 + 2e-4 * std::sin(0.4 * c + 0.3 * r);
+  });
+  ASSERT_EQ(fettle({"level", scan, level, "--unit", "mm", "--form", "cylinder"}).status, 0);
+  const std::vector<std::string> s{"--s-filter", "0.15", "--noise-trials", "0", "--only", "height"};
+  const auto sz = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "measure");
+    arguments.insert(arguments.end(), s.begin(), s.end());
+    return fettleJson(arguments)["sz"].get<double>();
+  };
+  const double alone = sz({level, "--form", "none"});
+  EXPECT_NEAR(sz({scan, "--unit", "mm", "--form", "cylinder"}) / alone, 1.0, 0.02);
+  EXPECT_GT(sz({scan, "--unit", "mm", "--form", "plane"}) / alone, 10.0) << "it has a bow to filter";
 }
 
 TEST(Measure, OfALevelledScanIsThatOfTheScan) {
@@ -370,6 +425,9 @@ TEST(Measure, FiltersLimitTheScales) {
   EXPECT_NEAR(sq({"--l-filter", "1.2", "--l-filter-kind", "spline"}) / all, 0.5, 0.06);
   EXPECT_LT(sq({"--s-filter", "1e5", "--s-filter-kind", "closing"}) / all, 0.05);
   EXPECT_LT(sq({"--l-filter", "0.12", "--l-filter-kind", "opening"}) / all, 0.05);
+  EXPECT_NE(fettle({"measure", scan, "--unit", "mm", "--s-filter", "7"}).err.find("longer than the field"),
+            std::string::npos);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "0"}), "--s-filter");
   // A radius is no wavelength: neither has to be the longer.
   EXPECT_GT(sq({"--s-filter", "5", "--s-filter-kind", "closing", "--l-filter", "2"}), 0.0);
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--l-filter-kind", "robust-gaussian"}),
