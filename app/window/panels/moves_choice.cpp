@@ -4,8 +4,6 @@
 
 #include <imgui.h>
 
-#include "app/work/align_moves.h"
-
 namespace fettle::app {
 
 bool chooseMoves(const char* id, std::optional<engine::AlignMoves>& moves, const char* none) {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "engine/measure/align.h"
+#include "app/work/align_moves.h"
 
 namespace fettle::app {
 

@@ -7,8 +7,10 @@
 namespace fettle::app {
 namespace {
 
-// A section of the panels that can be collapsed; its state is stored in the settings.
-bool section(Parts& parts, const char* name, bool open_at_first) {
+// A section of the panels that can be collapsed; its state is stored in the settings. Names of fields are its own: a text field and
+// a list of one name in two sections would be one item, which ends the program when the field is typed into.
+template <class Panel>
+void section(Parts& parts, const char* name, bool open_at_first, const Panel& panel) {
   Settings& settings = parts.settings;
   const auto known = settings.panels.find(name);
   if (parts.enter_panel == name) {
@@ -19,7 +21,10 @@ bool section(Parts& parts, const char* name, bool open_at_first) {
   ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first);
   const bool open = ImGui::CollapsingHeader(name);
   settings.panels[name] = open;
-  return open;
+  if (!open) return;
+  ImGui::PushID(name);
+  panel();
+  ImGui::PopID();
 }
 
 }  // namespace
@@ -36,35 +41,39 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
     ImGui::SetKeyboardFocusHere();
   }
   const PanelContext context{*parts.document.client(), parts.feedback.notices, act, parts.units};
-  if (section(parts, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
-  if (section(parts, "Edges", false)) edgePanel(context, parts.marking.edges);
-  if (section(parts, "Edge lines", false)) {
+  section(parts, "Tool", true, [&] { toolPanel(context, parts.stylus, parts.marking, settings.display); });
+  section(parts, "Edges", false, [&] { edgePanel(context, parts.marking.edges); });
+  section(parts, "Edge lines", false, [&] {
     placePanel(context, parts.marking.places);
     linePanel(context, parts.marking.lines, settings.draw_lines);
-  }
-  if (section(parts, "Suggested filters", false))
-    suggestionPanel(context, parts.suggester, parts.filters, parts.marking.edges);
-  if (section(parts, "Filters", true)) filterPanel(context, parts.filters, settings.display);
-  if (section(parts, "Remove samples", false))
-    removePanel(context, parts.heights, parts.removal, parts.picture);
-  if (section(parts, "Holes and lines", false)) heightsPanel(context, parts.heights);
-  if (section(parts, "Form", false)) formPanel(context, parts.form, parts.plane_points);
-  if (section(parts, "Steps", true)) historyPanel(context, parts.marking.edit, parts.pointed_step);
-  if (section(parts, "Change since the scan", true)) changePanel(context, parts.change);
-  if (section(parts, "Measure", false)) measurePanel(context, parts.measure, parts.picture);
-  if (section(parts, "Section", false)) sectionPanel(context, parts.section);
-  if (section(parts, "Fit", false)) fitPanel(context, parts.fit, parts.picture);
-  if (section(parts, "Features", false)) featurePanel(context, parts.features, parts.picture);
-  if (section(parts, "Transform", false) && transformPanel(context, parts.transform))
-    parts.writeTransformed();
-  if (section(parts, "Join", false) && joinPanel(context, parts.join)) parts.writeJoined();
-  if (section(parts, "Compare", false)) comparePanel(context, parts.compare, parts.picture);
+  });
+  section(parts, "Suggested filters", false,
+          [&] { suggestionPanel(context, parts.suggester, parts.filters, parts.marking.edges); });
+  section(parts, "Filters", true, [&] { filterPanel(context, parts.filters, settings.display); });
+  section(parts, "Remove samples", false,
+          [&] { removePanel(context, parts.heights, parts.removal, parts.picture); });
+  section(parts, "Holes and lines", false, [&] { heightsPanel(context, parts.heights); });
+  section(parts, "Form", false, [&] { formPanel(context, parts.form, parts.plane_points); });
+  section(parts, "Steps", true, [&] { historyPanel(context, parts.marking.edit, parts.pointed_step); });
+  section(parts, "Change since the scan", true, [&] { changePanel(context, parts.change); });
+  section(parts, "Measure", false, [&] { measurePanel(context, parts.measure, parts.picture); });
+  section(parts, "Section", false, [&] { sectionPanel(context, parts.section); });
+  section(parts, "Fit", false, [&] { fitPanel(context, parts.fit, parts.picture); });
+  section(parts, "Features", false, [&] { featurePanel(context, parts.features, parts.picture); });
+  section(parts, "Transform", false, [&] {
+    if (transformPanel(context, parts.transform)) parts.writeTransformed();
+  });
+  section(parts, "Join", false, [&] {
+    if (joinPanel(context, parts.join)) parts.writeJoined();
+  });
+  section(parts, "Compare", false, [&] { comparePanel(context, parts.compare, parts.picture); });
   parts.colours.handles.reset();
-  if (section(parts, "Colours", false)) colourPanel(context, settings.display, parts.colours, parts.picture);
-  if (section(parts, "Display", false))
-    displayPanel(context, settings, parts.picture, parts.view, parts.costs);
-  if (section(parts, "Status", false)) statusPanel(context, parts.picture, parts.opening.times());
-  if (section(parts, "Haptics", false)) requests = hapticsPanel(context, parts);
+  section(parts, "Colours", false,
+          [&] { colourPanel(context, settings.display, parts.colours, parts.picture); });
+  section(parts, "Display", false,
+          [&] { displayPanel(context, settings, parts.picture, parts.view, parts.costs); });
+  section(parts, "Status", false, [&] { statusPanel(context, parts.picture, parts.opening.times()); });
+  section(parts, "Haptics", false, [&] { requests = hapticsPanel(context, parts); });
   ImGui::End();
   return requests;
 }
