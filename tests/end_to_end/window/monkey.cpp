@@ -16,6 +16,8 @@ namespace {
 
 using render::Key;
 
+constexpr int kScrollBar = 10;  // pixels at the right of the panels
+
 std::string nameOf(Key key) {
   const int code = static_cast<int>(key);
   if ((code >= 'A' && code <= 'Z')) return std::string(1, static_cast<char>(code - 'A' + 'a'));
@@ -235,8 +237,8 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
   for (const State& open : state.value("panels", State::array()))
     if (open == name) return {};
   const int left = picture[0].get<int>() + picture[2].get<int>();
-  if (left >= state.value("frame", State{width_, height_})[0].get<int>())
-    return {"key", "--delay", "0", "Tab"};
+  const int right = state.value("frame", State{width_, height_})[0].get<int>();
+  if (left >= right) return {"key", "--delay", "0", "Tab"};
   std::vector<std::string> words;
   const auto placeOf = [](const std::string& panel) {
     return std::ranges::find(namesOfPanels(), panel) - namesOfPanels().begin();
@@ -252,8 +254,10 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
     say(words, {"click", "--delay", "0", "1"});
     return words;
   }
-  // Scrolled away: some way towards it.
-  moveTo(words, left + 20, picture[1].get<int>() + picture[3].get<int>() / 2);
+  // Scrolled away: some way towards it, with the wheel over the scroll bar, since some of what is listed scrolls by itself.
+  moveTo(words, right - kScrollBar / 2, picture[1].get<int>() + picture[3].get<int>() / 2);
+  // What reads like a header may be none.
+  if (below(4) == 0) above = !above;
   const std::string notches = std::to_string(1 + below(40));
   say(words, {"click", "--repeat", notches, "--delay", "0", above ? "4" : "5"});
   return words;

@@ -16,7 +16,8 @@ struct Reach {
   std::function<bool(const ViewProgram::State&)> is;
   /// Steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME", "over X Y" (per cent of the picture), "type TEXT", "hold KEY", "release KEY".
   std::vector<std::string> way;
-  int times = 0;  ///< reported so far
+  int times = 0;                      ///< reported so far
+  std::function<void()> before = {};  ///< lays out what the way needs, which chance may have used up
 };
 
 /// Keys, clicks, strokes and texts without sense, from a seed. It is curious: it clicks on what it has

@@ -145,10 +145,9 @@ ViewProgram::State ViewProgram::now() {
 
 void ViewProgram::each(const std::function<void(const State&)>& look) {
   const std::scoped_lock lock(mutex_);
-  for (; seen_ < states_.size(); ++seen_) look(states_[seen_]);
-  if (states_.size() < 2) return;
-  states_.erase(states_.begin(), states_.end() - 1);
-  seen_ = states_.size();
+  for (; shown_ < states_.size(); ++shown_) look(states_[shown_]);
+  if (states_.size() > 1) states_.erase(states_.begin(), states_.end() - 1);
+  seen_ = shown_ = states_.size();
 }
 
 void ViewProgram::skipToNewest() {

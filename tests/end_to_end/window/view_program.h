@@ -38,8 +38,8 @@ class ViewProgram {
   State until(const std::string& what, const std::function<bool(const State&)>& is);
   /// The newest state reported; null before the first.
   [[nodiscard]] State now();
-  /// Shows every state reported since the last call of this, or of skipToNewest(), without waiting for more; what was
-  /// reported before the newest is gone afterwards. For those who drive the program for a long time.
+  /// Shows every state reported since the last call of this, those that until() has looked at among them, without waiting for more;
+  /// what was reported before the newest is gone afterwards. For those who drive the program for a long time.
   void each(const std::function<void(const State&)>& look);
   /// Skips what was reported up to now: until() looks at what comes from here on, beginning with the newest.
   void skipToNewest();
@@ -69,7 +69,8 @@ class ViewProgram {
   std::condition_variable reported_;
   std::vector<State> states_;  // guarded by mutex_
   bool ended_ = false;         // guarded by mutex_
-  std::size_t seen_ = 0;
+  std::size_t seen_ = 0;       // by until()
+  std::size_t shown_ = 0;      // by each()
   std::jthread listener_;
 };
 
