@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include "engine/filter/median.h"
 #include "engine/filter/ranks.h"
 #include "engine/simd/kernel.h"
@@ -24,6 +26,8 @@ namespace {
 
 constexpr int kMaxLanes = 16;
 constexpr int kMostSets = 2 * kMaxLanes - 1;
+// Words in a line of the cache: each set begins with one, and the first pivot is the lowest rank of one.
+constexpr std::size_t kLineWords = 8;
 
 /// A column that not all windows of a group have: the lanes that have it, and the sets that make these up.
 struct Column {
@@ -34,7 +38,7 @@ struct Column {
 
 /// Neighbouring windows. Set 0 is for all lanes, sets 1 and 2 for half of them each, and so on.
 struct WindowGroup {
-  alignas(64) std::int32_t pivots[kMaxLanes];  // of each lane, a multiple of 64
+  alignas(64) std::int32_t pivots[kMaxLanes];  // each the first rank of a word, with AVX-512 of a line
   alignas(64) std::int32_t below[kMaxLanes];   // ranks of the window below the pivot
   alignas(64) std::int32_t sizes[kMaxLanes];   // samples of the window
   alignas(64) std::int32_t all_lanes[kMaxLanes];
@@ -68,13 +72,13 @@ class RankMedian final : public BlockFilter {
 
   bool run(const Block& block, const JobControl& job) override {
     ranks_.sort(block);
-    const std::size_t words = ranks_.words();
+    const std::size_t words = (ranks_.words() + kLineWords - 1) / kLineWords * kLineWords;
     const auto sets = static_cast<std::size_t>(2 * group_.lanes - 1);
     words_.resize(words * sets);
     for (std::size_t s = 0; s < sets; ++s) group_.sets[s] = words_.data() + s * words;
     group_.hole_rank = ranks_.holeRank();
     // Where the first window's median is likely to be: the block's.
-    std::int32_t pivot = static_cast<std::int32_t>(group_.hole_rank / 128 * 64);
+    std::int32_t pivot = static_cast<std::int32_t>(group_.hole_rank / (128 * kLineWords) * (64 * kLineWords));
     for (int c = 0; c < block.out_columns; c += group_.lanes)
       if (!runGroup(block, c, pivot, job)) return false;
     return true;
@@ -144,7 +148,7 @@ class RankMedian final : public BlockFilter {
   Ranks ranks_;
   WindowGroup group_{};
   std::vector<Column> columns_;
-  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t, tbb::cache_aligned_allocator<std::uint64_t>> words_;
 };
 
 }  // namespace

@@ -39,6 +39,7 @@ constexpr FilterBudget kFilterBudgets[] = {
     {"Gaussian31", engine::FilterKind::kGaussian, 31, 441.6},
     {"median3", engine::FilterKind::kMedian, 3, 88.2},
     {"median5", engine::FilterKind::kMedian, 5, 157.4},
+    {"median31", engine::FilterKind::kMedian, 31, 437.9},
 };
 
 class FilterInstructions : public testing::TestWithParam<FilterBudget> {};
