@@ -138,3 +138,102 @@ double testsAlone(const float* heights, const float* bowls, int rounds) noexcept
     }
   return static_cast<double>(low[0][0]) + static_cast<double>(low[1][0]);
 }
+
+// Of as many pivots as a register holds: one more of those above a rank, in each.
+#if !defined(FETTLE_CPU_LEVELS)
+using Pivots = Ints;
+FETTLE_INLINE Pivots everyPivot(int x) noexcept {
+  return Ints{} + x;
+}
+FETTLE_INLINE Pivots countedAbove(const Pivots& counts, const Pivots& pivots, int rank) noexcept {
+  return counts - (pivots > rank);
+}
+#elif FETTLE_LEVEL == 2
+using Pivots = __m512i;
+FETTLE_INLINE Pivots everyPivot(int x) noexcept {
+  return _mm512_set1_epi32(x);
+}
+FETTLE_INLINE Pivots countedAbove(Pivots counts, Pivots pivots, int rank) noexcept {
+  const __mmask16 above = _mm512_cmpgt_epi32_mask(pivots, everyPivot(rank));
+  return _mm512_mask_sub_epi32(counts, above, counts, everyPivot(-1));
+}
+#elif FETTLE_LEVEL == 1
+using Pivots = __m256i;
+FETTLE_INLINE Pivots everyPivot(int x) noexcept {
+  return _mm256_set1_epi32(x);
+}
+FETTLE_INLINE Pivots countedAbove(Pivots counts, Pivots pivots, int rank) noexcept {
+  return _mm256_sub_epi32(counts, _mm256_cmpgt_epi32(pivots, everyPivot(rank)));
+}
+#else
+using Pivots = __m128i;
+FETTLE_INLINE Pivots everyPivot(int x) noexcept {
+  return _mm_set1_epi32(x);
+}
+FETTLE_INLINE Pivots countedAbove(Pivots counts, Pivots pivots, int rank) noexcept {
+  return _mm_sub_epi32(counts, _mm_cmpgt_epi32(pivots, everyPivot(rank)));
+}
+#endif
+
+// What a sample does that enters sixteen windows or leaves them.
+double movesAlone(RankPlaces& places, int rounds) noexcept {
+  constexpr int kParts = sizeof(Ints) / sizeof(Pivots), kLane = sizeof(Pivots) / sizeof(int);
+  Pivots pivots[kParts], below[kParts];
+  for (int i = 0; i < kParts; ++i) {
+    // Different ones, as compilers would otherwise compare once for all.
+    pivots[i] = everyPivot(64 * (static_cast<int>(RankPlaces::kWords) / 2 + i));
+    below[i] = everyPivot(0);
+  }
+  for (int k = 0; k < rounds; ++k) {
+    const std::uint32_t rank = places.ranks[static_cast<std::size_t>(k) % RankPlaces::kRanks];
+    places.shared[rank / 64] ^= std::uint64_t{1} << (rank % 64);
+#pragma GCC unroll 4
+    for (int i = 0; i < kParts; ++i) below[i] = countedAbove(below[i], pivots[i], static_cast<int>(rank));
+  }
+  int counts[kParts * kLane];
+  for (int i = 0; i < kParts; ++i) store(counts + i * kLane, below[i]);
+  return counts[0] + counts[kParts * kLane - 1];
+}
+
+double flipsAlone(RankPlaces& places, int rounds) noexcept {
+  for (int k = 0; k < rounds; ++k) {
+    const std::uint32_t rank = places.ranks[static_cast<std::size_t>(k) % RankPlaces::kRanks];
+    places.shared[rank / 64] ^= std::uint64_t{1} << (rank % 64);
+  }
+  return static_cast<double>(places.shared[0] & 1U);
+}
+
+// The bit is one of the first eight that are set; where pdep takes longer than that, the lowest.
+double selectionsAlone(RankPlaces& places, int rounds) noexcept {
+  for (int k = 0; k < rounds; ++k) {
+    const std::size_t at = static_cast<std::size_t>(k) % RankPlaces::kRanks;
+    const std::uint32_t rank = places.ranks[at];
+    const std::uint32_t word = rank / 64;
+    std::uint64_t bits = places.sets[word];
+#pragma GCC unroll 4
+    for (std::size_t s = 1; s < RankPlaces::kSets; ++s) bits |= places.sets[s * RankPlaces::kWords + word];
+#if FETTLE_LEVEL == 2
+    bits = _pdep_u64(std::uint64_t{1} << (rank % 8), bits);
+#endif
+    places.medians[at] = places.heights[word % 16 * 64 + static_cast<std::uint32_t>(__builtin_ctzll(bits))];
+  }
+  return static_cast<double>(places.medians[0]);
+}
+
+double sortsAlone(RankPlaces& places, int rounds) noexcept {
+  constexpr std::uint32_t kDigits = 1U << RankPlaces::kDigitBits;
+  for (int k = 0; k < rounds; ++k) {
+    const RankPlaces::Item item = places.items[static_cast<std::size_t>(k) % RankPlaces::kRanks];
+#pragma GCC unroll 3
+    for (std::uint32_t p = 0; p < 3; ++p) {
+      const std::uint32_t digit = (item.key >> (RankPlaces::kDigitBits * p)) & (kDigits - 1);
+      ++places.counters[p * kDigits + digit];
+    }
+#pragma GCC unroll 3
+    for (std::uint32_t p = 0; p < 3; ++p) {
+      const std::uint32_t digit = (item.key >> (RankPlaces::kDigitBits * p)) & (kDigits - 1);
+      places.moved[places.counters[p * kDigits + digit]++ % RankPlaces::kRanks] = item;
+    }
+  }
+  return places.moved[0].place;
+}

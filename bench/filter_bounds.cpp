@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +19,36 @@
 namespace fettle::bench {
 
 namespace {
+
+/// What medians by ranks and sets work on, in the nearest cache.
+struct RankPlaces {
+  static constexpr std::size_t kRanks = 256, kWords = 128, kSets = 5;
+  static constexpr unsigned kDigitBits = 11;
+  struct Item {
+    std::uint32_t key, place;
+  };
+
+  RankPlaces() {
+    std::uint32_t random = 1;
+    for (std::size_t i = 0; i < kRanks; ++i) {
+      random = random * 1664525U + 1013904223U;
+      ranks[i] = (random >> 8) % (64 * kWords);
+      items[i] = {random ^ (random >> 13), static_cast<std::uint32_t>(i)};
+    }
+    // Every fifth bit in each, so that together they have all.
+    for (std::size_t s = 0; s < kSets; ++s)
+      for (std::size_t bit = s; bit < 64 * kWords; bit += kSets)
+        sets[s * kWords + bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+
+  alignas(64) std::array<std::uint32_t, kRanks> ranks;
+  alignas(64) std::array<Item, kRanks> items, moved{};
+  alignas(64) std::array<std::uint64_t, kSets * kWords> sets{};
+  alignas(64) std::array<std::uint64_t, kWords> shared{};
+  alignas(64) std::array<float, 64 * kWords> heights{};
+  alignas(64) std::array<float, kRanks> medians{};
+  alignas(64) std::array<std::uint32_t, 3U << kDigitBits> counters{};
+};
 
 #define FETTLE_KERNEL "bench/filter_bounds-inl.h"
 #include "engine/simd/each_cpu-inl.h"
@@ -84,6 +115,14 @@ class OperationTimes {
       return FETTLE_AT_LEVEL(level, testsAlone)(floats_.data(), floats_.data() + kMostPlaces * kMostLanes,
                                                 kRounds);
     });
+    add(&Operations::moves, moves_, 1.0,
+        [&] { return FETTLE_AT_LEVEL(level, movesAlone)(*ranks_, kRounds); });
+    add(&Operations::flips, flips_, 1.0,
+        [&] { return FETTLE_AT_LEVEL(level, flipsAlone)(*ranks_, kRounds); });
+    add(&Operations::selections, selections_, 1.0,
+        [&] { return FETTLE_AT_LEVEL(level, selectionsAlone)(*ranks_, kRounds); });
+    add(&Operations::sorts, sorts_, 1.0,
+        [&] { return FETTLE_AT_LEVEL(level, sortsAlone)(*ranks_, kRounds); });
   }
 
   // Of the repeats until now; only of what was measured.
@@ -92,10 +131,13 @@ class OperationTimes {
       return count > 0.0 ? count * median(times) : 0.0;
     };
     return part(way.products, products_) + part(way.extrema, extrema_) + part(way.chords, chords_) +
-           part(way.sums, sums_) + part(way.tests, tests_);
+           part(way.sums, sums_) + part(way.tests, tests_) + part(way.moves, moves_) +
+           part(way.flips, flips_) + part(way.selections, selections_) + part(way.sorts, sorts_);
   }
   void forget() {
-    for (auto* times : {&products_, &extrema_, &chords_, &sums_, &tests_}) times->clear();
+    for (auto* times :
+         {&products_, &extrema_, &chords_, &sums_, &tests_, &moves_, &flips_, &selections_, &sorts_})
+      times->clear();
   }
 
  private:
@@ -104,9 +146,20 @@ class OperationTimes {
 
   alignas(64) std::array<float, 4 * (kMostPlaces + kMostChains) * kMostLanes> floats_;
   alignas(64) std::array<double, kMostPlaces * 8> doubles_;
-  std::vector<double> products_, extrema_, chords_, sums_, tests_;
+  std::unique_ptr<RankPlaces> ranks_ = std::make_unique<RankPlaces>();
+  std::vector<double> products_, extrema_, chords_, sums_, tests_, moves_, flips_, selections_, sorts_;
   volatile double kept_ = 0.0;
 };
+
+// Sixteen windows side by side, `window` columns each: those at the sides are in as many sets as the numbers 1 .. 15 have bits set.
+Operations sharedSets(int window) {
+  constexpr double kWindows = 16.0, kAtTheSides = 2.0 * 15.0, kSetsOfThese = 2.0 * 32.0;
+  // Into the windows and out of them again, for one row of their results.
+  return {.moves = 2.0 * (window + 15.0) / kWindows,
+          .flips = 2.0 * (kSetsOfThese - kAtTheSides) / kWindows,
+          .selections = 1.0,
+          .sorts = 1.0};
+}
 
 }  // namespace
 
@@ -119,6 +172,7 @@ std::vector<Operations> operationsOf(const engine::Version& field, const engine:
   // 244 of the networks in median_small-inl.h: 72 to sort rows, 60 for pairs of them, 72 for the middle ranks of both fours, 40 at the end.
   if (spec.kind == engine::FilterKind::kMedian && spec.window == 3) return {Operations{.extrema = 17.0}};
   if (spec.kind == engine::FilterKind::kMedian && spec.window == 5) return {Operations{.extrema = 61.0}};
+  if (spec.kind == engine::FilterKind::kMedian && spec.window > 16) return {sharedSets(spec.window)};
   if (!engine::filterOf(spec.kind).has_element || spec.element == engine::Element::kSquare) return {};
   if (spec.element == engine::Element::kDisk)
     return {Operations{.chords = static_cast<double>(chordsOfDisk(spec, field.grid()))}};

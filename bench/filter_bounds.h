@@ -16,6 +16,13 @@ struct Operations {
   double chords = 0.0;    ///< two loads and two minima of floats; of doubles two
   double sums = 0.0;      ///< a load, a sum and a minimum of doubles
   double tests = 0.0;     ///< of samples or groups of them, as BowlTest of engine/filter/bowls.h
+  // Of medians by ranks and sets (engine/filter/median_rank.cpp); more sets in which a sample is than the first one, whose move counts
+  // it, have `flips`.
+  double moves = 0.0;       ///< a rank's bit of a set, and the rank held against the pivots of 16 windows
+  double flips = 0.0;       ///< a rank's bit of a set alone
+  double selections = 0.0;  ///< of five sets the word that holds a median, its bit and its height
+  double sorts =
+      0.0;  ///< of a sample: three digits of 11 bits are counted, and three times it is moved by one
 };
 
 /// What a filter of one thread cannot do without, measured alone, beside the filter in the same run. Seconds per sample of processor
@@ -30,8 +37,10 @@ struct FilterBound {
       false;  ///< whether that is all it cannot do without; false: nothing was counted for this filter
 };
 
-/// Of a Gaussian's two passes, a median's shared networks, both erosions of an opening or closing by a disk or ball: of each way in
-/// which the results can be had; of a box nothing, since a sample takes part in four sums whatever its window. Empty: not counted. Throws std::bad_alloc.
+/// Of a Gaussian's two passes, a median's shared networks or shared sets, both erosions of an opening or closing by a disk or ball: of
+/// each way in which the results can be had; of a box nothing, since a sample takes part in four sums whatever its window. Shared sets
+/// are those of 16 windows, from a window of 17 on, in a block without edges: each sample is sorted once and enters a window's sets once
+/// a group of 16; where a median's word is, is known. Empty: not counted. Throws std::bad_alloc.
 [[nodiscard]] std::vector<Operations> operationsOf(const engine::Version& field,
                                                    const engine::FilterSpec& spec);
 

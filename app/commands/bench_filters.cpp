@@ -22,11 +22,12 @@ struct OperationName {
   const char* key;
   double bench::Operations::*count;
 };
-constexpr OperationName kOperationNames[] = {{"products", &bench::Operations::products},
-                                             {"extrema", &bench::Operations::extrema},
-                                             {"chords", &bench::Operations::chords},
-                                             {"sums", &bench::Operations::sums},
-                                             {"tests", &bench::Operations::tests}};
+constexpr OperationName kOperationNames[] = {
+    {"products", &bench::Operations::products}, {"extrema", &bench::Operations::extrema},
+    {"chords", &bench::Operations::chords},     {"sums", &bench::Operations::sums},
+    {"tests", &bench::Operations::tests},       {"moves", &bench::Operations::moves},
+    {"flips", &bench::Operations::flips},       {"selections", &bench::Operations::selections},
+    {"sorts", &bench::Operations::sorts}};
 
 Report countsOf(const bench::Operations& operations) {
   Report counts;
