@@ -33,13 +33,13 @@ struct FilterBudget {
 };
 
 constexpr FilterBudget kFilterBudgets[] = {
-    {"box11", engine::FilterKind::kBox, 11, 92.8},
-    {"Gaussian3", engine::FilterKind::kGaussian, 3, 79.9},
-    {"Gaussian11", engine::FilterKind::kGaussian, 11, 209.1},
-    {"Gaussian31", engine::FilterKind::kGaussian, 31, 441.6},
-    {"median3", engine::FilterKind::kMedian, 3, 88.2},
-    {"median5", engine::FilterKind::kMedian, 5, 157.4},
-    {"median31", engine::FilterKind::kMedian, 31, 437.9},
+    {"box11", engine::FilterKind::kBox, 11, 63.5},
+    {"Gaussian3", engine::FilterKind::kGaussian, 3, 50.5},
+    {"Gaussian11", engine::FilterKind::kGaussian, 11, 179.7},
+    {"Gaussian31", engine::FilterKind::kGaussian, 31, 412.2},
+    {"median3", engine::FilterKind::kMedian, 3, 59.1},
+    {"median5", engine::FilterKind::kMedian, 5, 128.3},
+    {"median31", engine::FilterKind::kMedian, 31, 408.7},
 };
 
 class FilterInstructions : public testing::TestWithParam<FilterBudget> {};
