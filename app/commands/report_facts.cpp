@@ -71,11 +71,10 @@ engine::Status addScanFacts(ReportDraft& draft) {
   addLayer(draft.report, draft.imported.field);
   if (draft.states.size() > 1) draft.report["original_hash"] = hashOf(draft.states.front().field);
   std::vector<std::string> row = {"Noise, standard deviation"};
-  for (ShownState& state : draft.states) {
+  for (const ShownState& state : draft.states) {
     const auto noise = engine::measureNoise(state.field, draft.job);
     if (!noise) return tl::unexpected(noise.error());
     row.push_back(plain(noise->sigma));
-    state.noise_mm = noise->sigma * state.field.grid().height_unit.mm;
   }
   heights.rows.insert(heights.rows.end() - 1, std::move(row));
   for (std::size_t i = 0; i < heights.rows.size(); ++i)

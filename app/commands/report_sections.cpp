@@ -15,6 +15,7 @@
 #include "app/work/layer_over.h"
 #include "app/work/read_units.h"
 #include "app/work/section_files.h"
+#include "app/work/section_noise.h"
 #include "app/work/section_report.h"
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
@@ -258,6 +259,13 @@ engine::Status addSections(ReportPage& page, const ReportSections& sections,
 
 engine::Status addKeptSections(ReportPage& page, const std::vector<KeptSection>& kept,
                                const std::vector<ShownState>& states, engine::JobControl& job) {
+  if (kept.empty()) return {};
+  std::vector<engine::SectionNoise> noise;
+  for (const ShownState& state : states) {
+    const auto own = sectionNoiseOf(state.field, job);
+    if (!own) return tl::unexpected(own.error());
+    noise.push_back(noise.empty() ? *own : louderOf(noise.back(), *own));
+  }
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const std::vector<glm::dvec2> points{kept[i].from, kept[i].to};
     const auto taken = takenAlong(points, kept[i].width_mm, states, job);
@@ -266,14 +274,11 @@ engine::Status addKeptSections(ReportPage& page, const std::vector<KeptSection>&
     std::vector<FigureRow> rows;
     std::vector<SectionMark> marks;
     std::string note;
-    double loudest = 0.0;
     for (std::size_t s = 0; s < states.size(); ++s) {
-      // What a filter has made smooth still has the noise of before in what is averaged over more than its window.
-      loudest = std::fmax(loudest, states[s].noise_mm);
       for (const std::string_view key : sectionFigureKeys()) {
         if (!wantsFigure(wants, key)) continue;
         std::vector<SectionMark> found;
-        const auto figure = sectionFigure(key, wants, taken->sections[s], loudest, found);
+        const auto figure = sectionFigure(key, wants, taken->sections[s], noise[s], found);
         if (!figure) {
           note +=
               fmt::format("{}{}, {}: {}.", note.empty() ? "" : " ", states[s].name, key, figure.error().what);

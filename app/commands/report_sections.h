@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +16,6 @@ namespace fettle::app {
 struct ShownState {
   std::string name;  ///< "Before"
   engine::Version field;
-  double noise_mm = std::numeric_limits<double>::quiet_NaN();  ///< of a sample, where it is known
 };
 
 /// The sections of a report: polylines "X,Y:X,Y" in mm from the lower left sample.

@@ -25,10 +25,10 @@
 #include "app/work/kept_sections.h"
 #include "app/work/layer_over.h"
 #include "app/work/section_files.h"
+#include "app/work/section_noise.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
-#include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/around.h"
 #include "engine/measure/probe.h"
@@ -84,7 +84,7 @@ engine::Result<std::vector<Points>> pathsOf(const SectionArguments& options, con
 
 struct ReadScan {
   engine::Version field;
-  double noise_mm = 0.0;
+  engine::SectionNoise noise;
   std::string sections;                     // kept in the session
   std::optional<engine::Version> measured;  // without the samples that were filled, where there are any
 };
@@ -95,10 +95,9 @@ engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments
   if (!imported) return tl::unexpected(imported.error());
   auto marked = countedOf(imported->field, imported->original, path, options, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto noise = engine::estimateNoise(*marked, job);
+  const auto noise = sectionNoiseOf(*marked, job);
   if (!noise) return tl::unexpected(noise.error());
-  ReadScan scan{*std::move(marked), 0.0, imported->sections, std::nullopt};
-  scan.noise_mm = noise->sigma * scan.field.grid().height_unit.mm;
+  ReadScan scan{*std::move(marked), *noise, imported->sections, std::nullopt};
   if (imported->original && engine::countFilled(scan.field, *imported->original) > 0) {
     auto measured = engine::withoutFilled(scan.field, *imported->original, job);
     if (!measured) return tl::unexpected(measured.error());
@@ -177,8 +176,8 @@ engine::Result<Report> probed(const SectionArguments& options, const ReadScan& s
   const double radius = options.probe_radius.value_or(engine::usualProbeRadiusMm(grid));
   for (const std::string& text : options.probes) {
     const std::vector<double> at = numbersOf(text, 2);
-    const auto figures =
-        engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region, scan.noise_mm);
+    const auto figures = engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region,
+                                         scan.noise.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     Report one{{"x", at[0]}, {"y", at[1]}, {"radius_mm", radius}};
     addEstimate(one, "height", "mm", figures->height_mm);
@@ -247,12 +246,13 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
   if (!options.compare.empty()) {
     auto other = readOne(options.compare, options, job);
     if (!other) return tl::unexpected(other.error());
-    // What a filter has made smooth still has the noise of before in what is averaged over more than its window.
-    other->noise_mm = std::fmax(other->noise_mm, scan->noise_mm);
+    other->noise = louderOf(other->noise, scan->noise);
     others.push_back(*std::move(other));
   }
   SectionTaking taking{sectionOptionsOf(options).interpolation, layerOver(scan->field), {}};
-  Report report{{"noise_mm", numberOrNull(scan->noise_mm)},
+  Report report{{"noise_mm", numberOrNull(scan->noise.sample_mm)},
+                {"noise_rows_mm", scan->noise.rows_mm},
+                {"noise_columns_mm", scan->noise.columns_mm},
                 {"interpolation", interpolationWord(taking.interpolation)},
                 {"sections", Report::array()}};
   addLayer(report, scan->field);
@@ -277,7 +277,7 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
       one["filled"] = *filled;
     }
     std::vector<FailedFigure> failed;
-    Report figures = sectionFigures(plan.wants, last.section, scan->noise_mm, last.marks, failed);
+    Report figures = sectionFigures(plan.wants, last.section, scan->noise, last.marks, failed);
     // Of several sections, and of several figures, one may be undetermined where others are not.
     if (figures.empty() && !failed.empty() && planned->size() == 1 && !options.kept)
       return tl::unexpected(failed.front().error);
@@ -298,7 +298,7 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
       one["deviation"] = deviationOf(last.section, last.other);
       std::vector<SectionMark> unused;
       failed.clear();
-      one["other"] = sectionFigures(plan.wants, last.other, other.noise_mm, unused, failed);
+      one["other"] = sectionFigures(plan.wants, last.other, other.noise, unused, failed);
       for (const FailedFigure& each : failed)
         warn(fmt::format("{}, section {}, {}: {}", shownInput(options.compare), i, each.key,
                          each.error.line()));
@@ -347,7 +347,8 @@ void addSection(Command root, Chosen& chosen) {
       "Positions count from the lower left sample, x to the right and y up the picture. The section is taken "
       "as the "
       "scan stands: fettle level takes a tilt out first.\n"
-      "Standard errors are those that the noise of single samples gives. Of noise that neighbours share, as "
+      "Standard errors are those that the noise of single samples gives, between cursors that of rows and "
+      "columns, too. Of noise that neighbours share otherwise, as "
       "in filtered "
       "scans, they are too small; those of --compare's scan are by the greater noise of both. Step: the "
       "third of the width next to the edge does not count, as beside a groove in "

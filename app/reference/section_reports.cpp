@@ -133,6 +133,8 @@ std::vector<ReportSchema> sectioning() {
        1,
        {{"",
          {{"noise_mm", "number", "standard deviation in a sample"},
+          {"noise_rows_mm", "number", "of what whole rows are off"},
+          {"noise_columns_mm", "number", "of what whole columns are off"},
           {"interpolation", "string", "of heights between samples: bilinear or nearest"},
           layer(),
           {"other_layer?", "string", "the same of the scan of --compare"},

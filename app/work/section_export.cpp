@@ -9,7 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/work/layer_over.h"
-#include "engine/inspect/noise.h"
+#include "app/work/section_noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/input_file.h"
 
@@ -18,11 +18,11 @@ namespace {
 
 // What a figure measured at, as thin lines of a picture: those that the heights determine.
 std::vector<SectionMark> figureMarks(const KeptSection& kept, const engine::Section& section,
-                                     double noise_mm) {
+                                     const engine::SectionNoise& noise) {
   const SectionWants wants = wantsOf(kept);
   std::vector<SectionMark> marks;
   for (const std::string_view key : sectionFigureKeys())
-    if (wantsFigure(wants, key)) (void)sectionFigure(key, wants, section, noise_mm, marks);
+    if (wantsFigure(wants, key)) (void)sectionFigure(key, wants, section, noise, marks);
   return marks;
 }
 
@@ -41,9 +41,8 @@ engine::Result<engine::Section> sectionBeside(const engine::Version& before,
 
 engine::Result<std::vector<DrawnSection>> drawnSections(const SectionsToWrite& what,
                                                         engine::JobControl& job) {
-  const auto noise = engine::estimateNoise(what.field, job);
+  const auto noise = sectionNoiseOf(what.field, job);
   if (!noise) return tl::unexpected(noise.error());
-  const double noise_mm = noise->sigma * what.field.grid().height_unit.mm;
   std::vector<DrawnSection> drawn;
   drawn.reserve(what.sections.size());
   job.begin("taking sections", what.sections.size());
@@ -59,7 +58,7 @@ engine::Result<std::vector<DrawnSection>> drawnSections(const SectionsToWrite& w
     }
     drawn.push_back({fmt::format("section {}", drawn.size()), *std::move(section), {}, {}, {}});
     DrawnSection& last = drawn.back();
-    last.marks = figureMarks(kept, last.section, noise_mm);
+    last.marks = figureMarks(kept, last.section, *noise);
     if (!what.before.empty()) {
       auto beside = sectionBeside(what.before, points, options, last.section, job);
       if (!beside) return tl::unexpected(beside.error());

@@ -49,7 +49,8 @@ class SectionMeasurement {
   static constexpr int kRoughnessPairs = 32;  // of trials with noise
 
  public:
-  SectionMeasurement(const SectionWants& options, double noise_mm) : options_(options), noise_mm_(noise_mm) {}
+  SectionMeasurement(const SectionWants& options, const engine::SectionNoise& noise)
+      : options_(options), noise_(noise) {}
 
   engine::Result<Report> of(std::string_view key, const Section& section,
                             std::vector<SectionMark>& marks) const {
@@ -78,7 +79,7 @@ class SectionMeasurement {
   }
 
   engine::Result<Report> cursors(const Section& section, std::vector<SectionMark>& marks) const {
-    const auto figures = engine::cursorFigures(section, options_.cursors[0], options_.cursors[1], noise_mm_);
+    const auto figures = engine::cursorFigures(section, options_.cursors[0], options_.cursors[1], noise_);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.cursors, "cursor", marks);
     Report report{{"dx_mm", figures->dx_mm}};
@@ -90,7 +91,7 @@ class SectionMeasurement {
     return report;
   }
   engine::Result<Report> line(const Section& section, std::vector<SectionMark>& marks) const {
-    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_mm_);
+    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.line, "line", marks);
     return lineReport(*figures);
@@ -100,7 +101,7 @@ class SectionMeasurement {
     if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
     if (std::isnan(edge))
       return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
-    const auto figures = engine::stepFigures(section, edge, within(section), noise_mm_);
+    const auto figures = engine::stepFigures(section, edge, within(section), noise_.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.step == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no step stands out from the noise of the section", "--step",
@@ -124,7 +125,7 @@ class SectionMeasurement {
     if (std::isnan(edges.from_mm))
       return engine::inputError("no groove or ridge stands out in the section", "--groove",
                                 "give a longer line, or the lengths of both edges");
-    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_mm_);
+    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
@@ -142,7 +143,7 @@ class SectionMeasurement {
   }
   engine::Result<Report> angle(const Section& section, std::vector<SectionMark>& marks) const {
     const auto figures = engine::angleFigures(section, {options_.angle[0], options_.angle[1]},
-                                              {options_.angle[2], options_.angle[3]}, noise_mm_);
+                                              {options_.angle[2], options_.angle[3]}, noise_.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.angle, "angle", marks);
     Report report;
@@ -155,7 +156,7 @@ class SectionMeasurement {
     return report;
   }
   engine::Result<Report> arc(const Section& section, std::vector<SectionMark>& marks) const {
-    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_mm_);
+    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_.sample_mm);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.arc, "arc", marks);
     Report report;
@@ -170,7 +171,7 @@ class SectionMeasurement {
                                          options_.lambda_s.value_or(0.0), info.kind};
     const auto figures = engine::roughnessOf(section, within(section), filters);
     if (!figures) return tl::unexpected(figures.error());
-    const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_mm_,
+    const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_.sample_mm,
                                               {.pairs = kRoughnessPairs});
     if (!noise) return tl::unexpected(noise.error());
     Report report{{"evaluated", stretchOf(figures->evaluated)}, {"lengths", figures->lengths}};
@@ -187,7 +188,7 @@ class SectionMeasurement {
   }
 
   const SectionWants& options_;
-  double noise_mm_;
+  engine::SectionNoise noise_;
 };
 
 }  // namespace
@@ -267,16 +268,16 @@ bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept {
 }
 
 engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants, const Section& section,
-                                     double noise_mm, std::vector<SectionMark>& marks) {
-  return SectionMeasurement(wants, noise_mm).of(key, section, marks);
+                                     const engine::SectionNoise& noise, std::vector<SectionMark>& marks) {
+  return SectionMeasurement(wants, noise).of(key, section, marks);
 }
 
-Report sectionFigures(const SectionWants& wants, const Section& section, double noise_mm,
+Report sectionFigures(const SectionWants& wants, const Section& section, const engine::SectionNoise& noise,
                       std::vector<SectionMark>& marks, std::vector<FailedFigure>& failed) {
   Report report = Report::object();
   for (const std::string_view key : kSectionKeys) {
     if (!wantsFigure(wants, key)) continue;
-    auto figure = sectionFigure(key, wants, section, noise_mm, marks);
+    auto figure = sectionFigure(key, wants, section, noise, marks);
     if (figure)
       report[std::string(key)] = *std::move(figure);
     else

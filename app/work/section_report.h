@@ -13,6 +13,7 @@
 #include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 #include "engine/measure/section_figures.h"
+#include "engine/measure/section_noise.h"
 
 namespace fettle::app {
 
@@ -42,10 +43,11 @@ struct SectionMark {
 [[nodiscard]] std::span<const std::string_view> sectionFigureKeys() noexcept;
 [[nodiscard]] bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept;
 
-/// One figure as `fettle section` reports it, and the window with it. `noise_mm`: of a sample, NaN where it is not known. `marks`: places of it
+/// One figure as `fettle section` reports it, and the window with it. `noise`: sectionNoiseOf() the scan. `marks`: places of it
 /// are added. Errors (kInput): what the heights do not determine, with the option to blame and a remedy.
 [[nodiscard]] engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants,
-                                                   const engine::Section& section, double noise_mm,
+                                                   const engine::Section& section,
+                                                   const engine::SectionNoise& noise,
                                                    std::vector<SectionMark>& marks);
 
 /// All that is wanted, a key each, but for what the heights do not determine: that is in `failed`.
@@ -54,7 +56,7 @@ struct FailedFigure {
   engine::Error error;
 };
 [[nodiscard]] Report sectionFigures(const SectionWants& wants, const engine::Section& section,
-                                    double noise_mm, std::vector<SectionMark>& marks,
+                                    const engine::SectionNoise& noise, std::vector<SectionMark>& marks,
                                     std::vector<FailedFigure>& failed);
 
 /// Numbers with commas between them, exactly so many; none when the text is something else.

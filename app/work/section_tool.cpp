@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/inspect/noise.h"
+#include "app/work/section_noise.h"
 
 namespace fettle::app {
 
@@ -27,13 +27,14 @@ void addSpanOf(const engine::Section& section, double& low, double& high) {
 }
 
 // Each figure, or why there is none.
-std::vector<SectionLine> linesOf(const SectionWants& wants, const engine::Section& section, double noise_mm,
-                                 const SectionUnits& units, Report& report) {
+std::vector<SectionLine> linesOf(const SectionWants& wants, const engine::Section& section,
+                                 const engine::SectionNoise& noise, const SectionUnits& units,
+                                 Report& report) {
   std::vector<SectionLine> lines;
   std::vector<SectionMark> marks;
   for (const std::string_view key : sectionFigureKeys()) {
     if (!wantsFigure(wants, key)) continue;
-    auto figure = sectionFigure(key, wants, section, noise_mm, marks);
+    auto figure = sectionFigure(key, wants, section, noise, marks);
     if (!figure) {
       lines.push_back({std::string(key), figure.error().what});
       continue;
@@ -128,7 +129,7 @@ void SectionTool::reset() {
   chosen_ = 0;
   lineChanged();
   taken_ = noise_of_ = {};
-  noise_mm_.reset();
+  noise_.reset();
 }
 
 std::optional<std::size_t> SectionTool::chosen() const noexcept {
@@ -148,7 +149,7 @@ const KeptSection* SectionTool::section() const noexcept {
 void SectionTool::start(const LoopClient& client) {
   due_ = false;
   taken_ = client.newest();
-  const std::optional<double> known = noise_of_ == client.original() ? noise_mm_ : std::nullopt;
+  const std::optional<engine::SectionNoise> known = noise_of_ == client.original() ? noise_ : std::nullopt;
   working_.replace([field = taken_, scan = client.original(), kept = *section(),
                     known](engine::JobControl& job) -> engine::Result<Work> {
     engine::SectionOptions options;
@@ -156,7 +157,7 @@ void SectionTool::start(const LoopClient& client) {
     const glm::dvec2 points[] = {kept.from, kept.to};
     auto now = engine::sectionAlong(field, points, options, job);
     if (!now) return tl::unexpected(now.error());
-    Work work{{*std::move(now), {}, known.value_or(0.0)}, scan};
+    Work work{{*std::move(now), {}, known.value_or(engine::SectionNoise{})}, scan};
     if (engine::measureChange(scan, field).tiles > 0) {
       auto before = engine::sectionAlong(scan, points, options, job);
       // Where the scan has holes that were filled there is no section of it.
@@ -164,9 +165,9 @@ void SectionTool::start(const LoopClient& client) {
       if (job.cancelled()) return engine::cancelled();
     }
     if (!known) {
-      const auto noise = engine::estimateNoise(scan, job);
+      const auto noise = sectionNoiseOf(scan, job);
       if (!noise) return tl::unexpected(noise.error());
-      work.profiles.noise_mm = noise->sigma * scan.grid().height_unit.mm;
+      work.profiles.noise = *noise;
     }
     return work;
   });
@@ -182,9 +183,9 @@ void SectionTool::startFigures() {
         const SectionUnits units = sectionUnits(profiles.now.lengthMm(), low < high ? high - low : 0.0);
         Figures figures;
         Report unused;
-        figures.now = linesOf(wants, profiles.now, profiles.noise_mm, units, figures.report);
+        figures.now = linesOf(wants, profiles.now, profiles.noise, units, figures.report);
         if (profiles.before.size() > 0)
-          figures.before = linesOf(wants, profiles.before, profiles.noise_mm, units, unused);
+          figures.before = linesOf(wants, profiles.before, profiles.noise, units, unused);
         return figures;
       });
 }
@@ -196,7 +197,7 @@ bool SectionTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
     changed = true;
     if (!dropped && *done) {
       noise_of_ = std::move((*done)->scan);
-      noise_mm_ = (*done)->profiles.noise_mm;
+      noise_ = (*done)->profiles.noise;
       profiles_ = std::move((*done)->profiles);
       figures_due_ = true;
     } else if (!dropped && done->error().kind != engine::ErrorKind::kCancelled) {

@@ -15,6 +15,7 @@
 #include "app/work/section_lines.h"
 #include "engine/field/version.h"
 #include "engine/measure/section.h"
+#include "engine/measure/section_noise.h"
 
 namespace fettle::app {
 
@@ -25,8 +26,8 @@ class SectionTool {
   /// Of the chosen section.
   struct Profiles {
     engine::Section now;
-    engine::Section before;  ///< of the scan; no places where the field does not differ from it
-    double noise_mm = 0.0;   ///< of a sample of the scan; NaN where it is not known
+    engine::Section before;      ///< of the scan; no places where the field does not differ from it
+    engine::SectionNoise noise;  ///< of the scan
   };
   /// A figure with its text as `fettle section` writes it, or why there is none.
   struct Figures {
@@ -99,7 +100,7 @@ class SectionTool {
   std::optional<Profiles> profiles_;
   Figures figures_;
   engine::Version noise_of_;
-  std::optional<double> noise_mm_;  // of noise_of_
+  std::optional<engine::SectionNoise> noise_;  // of noise_of_
   Background<Work> working_;
   Background<Figures> measuring_;
 };

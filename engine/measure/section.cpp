@@ -138,6 +138,53 @@ double sampleAlong(glm::dvec2 unit, glm::dvec2 spacing) noexcept {
   return 1.0 / glm::length(unit / spacing);
 }
 
+// Lines side by side along a path, whose heights are averaged.
+struct Lanes {
+  Path path;
+  double apart_mm = std::numeric_limits<double>::infinity();  // one sample
+  double count = 1.0;
+};
+
+Lanes lanesOf(const SectionSource& source) {
+  const Grid& grid = source.field.grid();
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  Lanes lanes{pathOf(source.points)};
+  const Path& path = lanes.path;
+  for (std::size_t i = 1; i < path.points.size(); ++i) {
+    const glm::dvec2 unit = (path.points[i] - path.points[i - 1]) / (path.until[i] - path.until[i - 1]);
+    lanes.apart_mm = std::min(lanes.apart_mm, sampleAlong({-unit.y, unit.x}, spacing));
+  }
+  lanes.count = std::floor(source.options.width_mm / lanes.apart_mm + 1e-6) + 1.0;
+  return lanes;
+}
+
+// A place of a section: the sum of the heights of its lanes [height_unit], of how many, and their samples.
+struct TakenPlace {
+  glm::dvec2 position{0.0};
+  double sum = 0.0;
+  int found = 0;
+  std::vector<Share>
+      shares;  // of the mean, each sample once; none where fewer than half of the lanes have a height
+};
+
+TakenPlace takenAt(const PlaceReader& reader, const Lanes& lanes, glm::dvec2 spacing, double along) {
+  TakenPlace taken;
+  const auto [place, tangent] = lanes.path.at(std::min(along, lanes.path.until.back()));
+  taken.position = place;
+  const glm::dvec2 across(-tangent.y, tangent.x);
+  for (int lane = 0; lane < static_cast<int>(lanes.count); ++lane) {
+    const double offset = (lane - 0.5 * (lanes.count - 1.0)) * lanes.apart_mm;
+    const double z = reader.heightAt((place + across * offset) / spacing, taken.shares);
+    if (std::isnan(z)) continue;
+    taken.sum += z;
+    ++taken.found;
+  }
+  if (2 * taken.found < static_cast<int>(lanes.count)) taken.shares.clear();
+  merge(taken.shares);
+  for (Share& share : taken.shares) share.weight /= taken.found;
+  return taken;
+}
+
 Status checkPoints(std::span<const glm::dvec2> points, const SectionOptions& options) {
   for (const glm::dvec2& p : points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y))
@@ -186,37 +233,57 @@ double Section::covarianceOf(std::span<const double> a, std::span<const double> 
   return sum;
 }
 
+Section::LineVariance Section::lineVariance(std::span<const double> weights) const {
+  LineVariance variance;
+  if (source.field.empty()) return variance;
+  const Grid& grid = source.field.grid();
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  const PlaceReader reader(source.field, source.options);
+  const Lanes side_by_side = lanesOf(source);
+  std::vector<double> rows(static_cast<std::size_t>(grid.height)),
+      columns(static_cast<std::size_t>(grid.width));
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (weights[i] == 0.0) continue;
+    for (const Share& part : takenAt(reader, side_by_side, spacing, along(i)).shares) {
+      rows[static_cast<std::size_t>(part.sample / grid.width)] += weights[i] * part.weight;
+      columns[static_cast<std::size_t>(part.sample % grid.width)] += weights[i] * part.weight;
+    }
+  }
+  for (const double weight : rows) variance.rows += weight * weight;
+  for (const double weight : columns) variance.columns += weight * weight;
+  return variance;
+}
+
 Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> points,
                              const SectionOptions& options, JobControl& job) try {
   if (auto status = checkPoints(points, options); !status) return tl::unexpected(status.error());
-  const Path path = pathOf(points);
+  Section section;
+  section.source = {field, {points.begin(), points.end()}, options};
+  const Lanes side_by_side = lanesOf(section.source);
+  const Path& path = side_by_side.path;
   if (path.points.size() < 2)
     return inputError("a section needs two different points", "section", "give two or more");
   const Grid& grid = field.grid();
   const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
   const double length = path.until.back();
   double wanted = length;
-  double lane_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < path.points.size(); ++i) {
     const glm::dvec2 unit = (path.points[i] - path.points[i - 1]) / (path.until[i] - path.until[i - 1]);
     wanted = std::min(wanted, sampleAlong(unit, spacing));
-    lane_mm = std::min(lane_mm, sampleAlong({-unit.y, unit.x}, spacing));
   }
   // Rounded up a little less than exactly: a line of whole samples has a place on each.
   const double steps = std::max(1.0, std::ceil(length / wanted - 1e-6));
-  const double lanes = std::floor(options.width_mm / lane_mm + 1e-6) + 1.0;
   if (!std::isfinite(length) || !(steps < static_cast<double>(Section::kMostPlaces)))
     return inputError(
         fmt::format("a section of {:.6g} mm has more than {} places", length, Section::kMostPlaces),
         "section", "give a shorter line");
-  if (!(lanes <= SectionOptions::kMostLanes))
+  if (!(side_by_side.count <= SectionOptions::kMostLanes))
     return inputError(fmt::format("a width of {:.6g} mm is more than {} samples", options.width_mm,
                                   SectionOptions::kMostLanes),
                       "section", "give a smaller width");
   const auto places = static_cast<std::size_t>(steps) + 1;
-  Section section;
   section.step_mm = length / steps;
-  section.lanes = static_cast<int>(lanes);
+  section.lanes = static_cast<int>(side_by_side.count);
   section.band = static_cast<int>(std::clamp<double>(
       std::ceil(std::numbers::sqrt2 * kReachOfPatch * std::max(spacing.x, spacing.y) / section.step_mm), 1.0,
       kMostBand));
@@ -232,32 +299,18 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
   job.begin("taking the section", places);
   for (std::size_t i = 0; i < places; ++i) {
     if (job.cancelled()) return cancelled();
-    const auto [place, tangent] = path.at(std::min(section.along(i), length));
-    const glm::dvec2 across(-tangent.y, tangent.x);
-    std::vector<Share> shares;
-    double sum = 0.0;
-    int found = 0;
-    for (int lane = 0; lane < section.lanes; ++lane) {
-      const double offset = (lane - 0.5 * (section.lanes - 1)) * lane_mm;
-      const double z = reader.heightAt((place + across * offset) / spacing, shares);
-      if (std::isnan(z)) continue;
-      sum += z;
-      ++found;
-    }
-    const bool counts = 2 * found >= section.lanes && found > 0;
-    section.position.push_back(place);
-    section.share.push_back(static_cast<double>(found) / section.lanes);
-    section.height.push_back(counts ? mm * sum / found : kNoHeight);
+    TakenPlace taken = takenAt(reader, side_by_side, spacing, section.along(i));
+    const bool counts = 2 * taken.found >= section.lanes && taken.found > 0;
+    section.position.push_back(taken.position);
+    section.share.push_back(static_cast<double>(taken.found) / section.lanes);
+    section.height.push_back(counts ? mm * taken.sum / taken.found : kNoHeight);
     any = any || counts;
     if (!any && !beneath && section.lanes > 1) {
       std::vector<Share> unused;
-      beneath = !std::isnan(reader.heightAt(place / spacing, unused));
+      beneath = !std::isnan(reader.heightAt(taken.position / spacing, unused));
     }
-    if (!counts) shares.clear();
-    merge(shares);
-    for (Share& share : shares) share.weight /= found;
     if (latest.size() == band) latest.pop_front();
-    latest.push_back(std::move(shares));
+    latest.push_back(std::move(taken.shares));
     for (std::size_t k = 0; k < latest.size(); ++k)
       section.covariance[(i - k) * band + k] = productOf(latest[latest.size() - 1 - k], latest.back());
     job.advance();

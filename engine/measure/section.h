@@ -31,6 +31,13 @@ struct SectionOptions {
   static constexpr int kMostLanes = 4096;
 };
 
+/// What a section was taken from: which rows and columns its places have in common is read there again.
+struct SectionSource {
+  Version field;
+  std::vector<glm::dvec2> points;
+  SectionOptions options;
+};
+
 /// The heights of a field along a polyline, at places `step_mm` apart.
 struct Section {
   double step_mm = 0.0;              ///< from one place to the next along the line
@@ -42,6 +49,7 @@ struct Section {
   /// sample: covariance[i * band + k]; 0 where either has no height. Places share samples with their neighbours.
   int band = 1;
   std::vector<double> covariance;
+  SectionSource source;  ///< of an empty field: places have no row or column in common
 
   static constexpr std::int64_t kMostPlaces = std::int64_t{1} << 20;
 
@@ -53,6 +61,12 @@ struct Section {
   [[nodiscard]] double variance(std::span<const double> weights) const noexcept;
   /// Covariance of two such sums.
   [[nodiscard]] double covarianceOf(std::span<const double> a, std::span<const double> b) const noexcept;
+  /// Variance of the same sum where whole rows of samples are off by noise of variance 1, and where whole columns are. Time:
+  /// lanes of the places that have a weight, and rows and columns of the field.
+  struct LineVariance {
+    double rows = 0.0, columns = 0.0;
+  };
+  [[nodiscard]] LineVariance lineVariance(std::span<const double> weights) const;
 };
 
 /// The section along the polyline through `points` (field coordinates [mm], at least two), signs applied. The places are

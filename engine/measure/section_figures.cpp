@@ -393,7 +393,7 @@ Stretch grooveIn(const Section& section, const Stretch& within) {
 }
 
 Result<CursorFigures> cursorFigures(const Section& section, double first_mm, double second_mm,
-                                    double noise_mm) {
+                                    const SectionNoise& noise) {
   std::vector<double> weights(section.size(), 0.0);
   std::array<glm::dvec2, 2> place{};
   std::array<double, 2> height{};
@@ -420,7 +420,13 @@ Result<CursorFigures> cursorFigures(const Section& section, double first_mm, dou
   figures.first_mm = height[0];
   figures.second_mm = height[1];
   figures.dx_mm = second_mm - first_mm;
-  figures.dz_mm = {height[1] - height[0], noise_mm * std::sqrt(std::max(0.0, section.variance(weights)))};
+  double variance = noise.sample_mm * noise.sample_mm * std::max(0.0, section.variance(weights));
+  if (noise.rows_mm > 0.0 || noise.columns_mm > 0.0) {
+    const Section::LineVariance lines = section.lineVariance(weights);
+    variance +=
+        noise.rows_mm * noise.rows_mm * lines.rows + noise.columns_mm * noise.columns_mm * lines.columns;
+  }
+  figures.dz_mm = {height[1] - height[0], std::sqrt(variance)};
   figures.slope_deg = figures.dx_mm == 0.0 ? kUnknown : inclinationDeg(figures.dz_mm.value / figures.dx_mm);
   figures.distance_mm = std::hypot(glm::length(place[1] - place[0]), figures.dz_mm.value);
   return figures;

@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/measure/section.h"
+#include "engine/measure/section_noise.h"
 
 namespace fettle::engine {
 
@@ -11,8 +12,9 @@ namespace fettle::engine {
 //
 // The errors are those of the fit, propagated from the samples through interpolation and averaging (Section::covariance).
 // Where the heights scatter about the fit by more than the noise explains, at three standard errors of that scatter,
-// the scatter counts instead, as it does where the noise is not known. Noise that neighbours share, as filters leave it,
-// is neither measured nor known: the error is too small then.
+// the scatter counts instead, as it does where the noise is not known. What whole rows or columns are off shows in this
+// scatter along a section that crosses them; between two cursors, where there is none, it counts by the rows and columns of both.
+// Noise that neighbours share otherwise, as filters leave it, is neither measured nor known: the error is too small then.
 
 /// Part of a section, from one length along it to another [mm].
 struct Stretch {
@@ -98,8 +100,9 @@ struct CursorFigures {
   double distance_mm = 0.0;                ///< from point to point in space, straight
   double first_mm = 0.0, second_mm = 0.0;  ///< heights
 };
-/// What lies between two lengths along the line; heights between places are linear. Errors (kInput): no height there.
+/// What lies between two lengths along the line; heights between places are linear. The error is that of the samples of both
+/// places, and of the rows and columns that are not in both alike. Errors (kInput): no height there.
 [[nodiscard]] Result<CursorFigures> cursorFigures(const Section& section, double first_mm, double second_mm,
-                                                  double noise_mm);
+                                                  const SectionNoise& noise);
 
 }  // namespace fettle::engine

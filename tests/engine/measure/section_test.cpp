@@ -230,7 +230,7 @@ TEST(SectionFigures, ArcIsTheCircle) {
 TEST(SectionFigures, CursorsReadWhatLiesBetween) {
   const Version field = sectionField(41, 31, 0.1, 0.1, [](double x, double y) { return 0.3 * x + 0.4 * y; });
   const Section section = taken(field, {{0.0, 0.0}, {4.0, 3.0}});
-  const auto cursors = cursorFigures(section, 1.0, 3.0, 0.01);
+  const auto cursors = cursorFigures(section, 1.0, 3.0, {0.01});
   ASSERT_TRUE(cursors) << cursors.error().line();
   const double slope = 0.3 * 0.8 + 0.4 * 0.6;
   EXPECT_NEAR(cursors->dx_mm, 2.0, 1e-12);
@@ -240,7 +240,7 @@ TEST(SectionFigures, CursorsReadWhatLiesBetween) {
   // Far apart two heights share no sample: between sqrt(2) / 2 and sqrt(2) times the noise.
   EXPECT_GT(cursors->dz_mm.error, 0.007);
   EXPECT_LT(cursors->dz_mm.error, 0.0142);
-  EXPECT_FALSE(cursorFigures(section, 1.0, 6.0, 0.0));
+  EXPECT_FALSE(cursorFigures(section, 1.0, 6.0, {0.0}));
 }
 
 // Spikes at 5e6 mm and heights far from 0 leave figures, not NaN.
