@@ -33,6 +33,19 @@ Report numberOf(double value) {
   return std::isnan(value) ? Report() : Report(value);
 }
 
+Report errorsOf(const glm::dvec3& v) {
+  return Report::array({numberOf(v.x), numberOf(v.y), numberOf(v.z)});
+}
+
+// "1.5 +- 0.2 mm"; without an error the value alone. `least`: the smallest error by whose digits the value is shown.
+std::string shownComponent(double value, const Report& error, double least, const ReadAs& as) {
+  const std::string unit = as.name.empty() ? std::string() : " " + as.name;
+  if (error.is_null()) return fmt::format("{:.6g}{}", value / as.size, unit);
+  const double by = error.get<double>();
+  return fmt::format("{} +- {:.2g}{}", shownTo(value / as.size, std::max(by, least) / as.size), by / as.size,
+                     unit);
+}
+
 void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
   // An angle is no more than 90 degrees off any other: such an error leaves all of them.
   constexpr double kMostDegrees = 90.0;
@@ -80,10 +93,10 @@ Report fitReport(const FittedRegion& fitted) {
                 {"left_out", fit.left_out},
                 {"middle_mm", vectorOf(fit.middle)},
                 {"point_mm", vectorOf(s.point)},
-                {"point_error_mm", vectorOf(e.point)}};
+                {"point_error_mm", errorsOf(e.point)}};
   if (s.kind != ShapeKind::kSphere) {
     report["direction"] = vectorOf(s.direction);
-    report["direction_error"] = vectorOf(e.direction);
+    report["direction_error"] = errorsOf(e.direction);
   }
   if (s.kind == ShapeKind::kPlane) {
     const auto tilt = [&](double along, double error) {
@@ -144,22 +157,16 @@ std::vector<FitLine> fitLines(const Report& fit) {
     lines.push_back({figure.title, shownEstimate(fit, figure.key, figure.unit, as)});
   }
   const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double error = fit["point_error_mm"][k].get<double>();
-    // Within a plane the point may lie anywhere, and has next to no error.
-    lines.push_back({fmt::format("{} {}", pointTitle(shape), kAxes[k]),
-                     fmt::format("{} +- {:.2g} {}",
-                                 shownTo(fit["point_mm"][k].get<double>() / place.size,
-                                         std::max(error, 1e-5) / place.size),
-                                 error / place.size, place.name)});
-  }
+  // Within a plane the point may lie anywhere, and has next to no error.
+  for (std::size_t k = 0; k < 3; ++k)
+    lines.push_back(
+        {fmt::format("{} {}", pointTitle(shape), kAxes[k]),
+         shownComponent(fit["point_mm"][k].get<double>(), fit["point_error_mm"][k], 1e-5, place)});
   if (fit.contains("direction"))
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double error = fit["direction_error"][k].get<double>();
+    for (std::size_t k = 0; k < 3; ++k)
       lines.push_back(
           {fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
-           fmt::format("{} +- {:.2g}", shownTo(fit["direction"][k].get<double>(), error), error)});
-    }
+           shownComponent(fit["direction"][k].get<double>(), fit["direction_error"][k], 0.0, {"", 1.0})});
   return lines;
 }
 

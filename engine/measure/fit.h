@@ -56,7 +56,7 @@ struct ShapeFit {
 /// Fits one kind of shape to the samples by Levenberg and Marquardt (Eigen's port of MINPACK) from start values by normals.
 ///
 /// Errors of the figures: those that noise in height of independent samples gives, of the size `noise_mm`, or of what is
-/// left where that is more by three standard errors of it; and more where sums over parts of the region scatter by more,
+/// left where that is more by three standard errors of it; NaN where the noise is not known and the samples are no more than the numbers; and more where sums over parts of the region scatter by more,
 /// as noise does that neighbours share. Not counted: noise or deviations of form as long as the region.
 ///
 /// What the samples do not determine is refused (kInput): fewer samples than numbers; a radius, an apex or a ring that does

@@ -155,7 +155,8 @@ Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, 
     if (std::isnan(variance) || scatter > variance * (1.0 + kFitSigmas * std::sqrt(2.0 / free)))
       variance = scatter;
   }
-  variance = std::fmax(variance, rounding * rounding / (fit.scale * fit.scale));
+  // As many samples as numbers say nothing of their noise: where it is not known, no error is.
+  if (!std::isnan(variance)) variance = std::max(variance, rounding * rounding / (fit.scale * fit.scale));
   // Sums over parts: what independent noise makes of them, and what they are.
   double parts = 0.0;
   Matrix seen = Matrix::Zero(n, n);
@@ -179,8 +180,11 @@ Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, 
 
 Status checkDetermined(const ShapeFit& fit, const FitModel& model) {
   const FitSurface& surface = fit.surface;
+  // Without a covariance the figures count as they are.
+  const bool known = !std::isnan(fit.covariance.front());
   const auto error = [&](int k) {
-    return std::sqrt(std::max(0.0, fit.covariance[static_cast<std::size_t>(k * ShapeFit::kMost + k)]));
+    return known ? std::sqrt(std::max(0.0, fit.covariance[static_cast<std::size_t>(k * ShapeFit::kMost + k)]))
+                 : 0.0;
   };
   // With exact samples the rounding of sums is left.
   const auto differs = [](double value, double by) {
@@ -205,19 +209,19 @@ Status checkDetermined(const ShapeFit& fit, const FitModel& model) {
   }
   const ShapeFit::Errors errors = fit.errors();
   if (kind == ShapeKind::kTorus) {
-    if (!(fit.shape.radius > kFitSigmas * errors.radius))
+    if (known && !(fit.shape.radius > kFitSigmas * errors.radius))
       return undetermined(kind, "a ring",
                           "fit a sphere: the ring's radius does not differ from 0 by three standard errors");
     if (!(fit.shape.radius > fit.shape.tube_radius))
       return undetermined(kind, "a ring that does not meet itself", "fit a sphere or a cylinder");
   }
   constexpr double kWorst = 10.0 * std::numbers::pi / 180.0;
-  if (kind != ShapeKind::kSphere && !(glm::length(errors.direction) < kWorst))
+  if (kind != ShapeKind::kSphere && known && !(glm::length(errors.direction) < kWorst))
     return undetermined(kind, "its direction",
                         "it is known to 10 degrees or worse: take a larger region or a simpler shape");
   const double all = glm::dot(fit.shape.point, glm::dvec3(1.0)) +
                      glm::dot(fit.shape.direction, glm::dvec3(1.0)) + fit.shape.radius +
-                     fit.shape.tube_radius + fit.rms_mm + glm::length(errors.point);
+                     fit.shape.tube_radius + fit.rms_mm + (known ? glm::length(errors.point) : 0.0);
   if (!std::isfinite(all)) return undetermined(kind, "the shape", "take a larger region or a simpler shape");
   return {};
 }

@@ -10,7 +10,7 @@
 namespace fettle::engine {
 
 /// Variances of N figures of a fitted shape, to first order in the covariance of its numbers. `figuresOf` gives the figures of
-/// a shape as std::array<double, N>.
+/// a shape as std::array<double, N>. NaN where the fit states no covariance.
 template <std::size_t N, class Figures>
 [[nodiscard]] std::array<double, N> figureVariances(const ShapeFit& fit, Figures&& figuresOf) {
   constexpr std::size_t kMost = ShapeFit::kMost;
@@ -32,7 +32,7 @@ template <std::size_t N, class Figures>
     for (std::size_t a = 0; a < kMost; ++a)
       for (std::size_t b = 0; b < kMost; ++b)
         sum += slopes[f][a] * slopes[f][b] * fit.covariance[a * kMost + b];
-    variances[f] = std::max(0.0, sum);
+    variances[f] = sum < 0.0 ? 0.0 : sum;  // NaN stays
   }
   return variances;
 }

@@ -396,6 +396,14 @@ TEST(Fit, RefusesByNameWhatTheSamplesDoNotDetermine) {
   ASSERT_TRUE(three) << three.error().line();
   EXPECT_NEAR(three->shape.direction.x, -std::sqrt(0.5), 1e-6);
   EXPECT_GT(three->errors().direction.x, 1e-3);
+  // Without it there is nothing that an error could be made of.
+  const auto unknown =
+      fitOf(fieldWith({2, 2, 1.0, 1.0}, [](double x, double y) { return x + y > 1.5 ? kFitHole : x; }),
+            ShapeKind::kPlane, {.noise_mm = kFitHole});
+  ASSERT_TRUE(unknown) << unknown.error().line();
+  EXPECT_NEAR(unknown->shape.direction.x, -std::sqrt(0.5), 1e-6);
+  EXPECT_TRUE(std::isnan(unknown->errors().direction.x));
+  EXPECT_TRUE(std::isnan(unknown->errors().point.z));
 }
 
 TEST(Fit, AutomaticTakesTheSimplestShapeThatHolds) {
