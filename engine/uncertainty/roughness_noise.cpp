@@ -30,6 +30,12 @@ NoiseGrowth growthOf(const RoughnessInfo& info) {
   return square ? NoiseGrowth::kSquare : NoiseGrowth::kPlain;
 }
 
+FigureRange rangeOf(const RoughnessInfo& info) {
+  if (info.unit == RoughnessInfo::Unit::kRatio) return {0.0, 1.0};
+  if (info.figure == &Roughness::rsk) return {};
+  return {.low = info.figure == &Roughness::rku ? 1.0 : 0.0};
+}
+
 const NoiseEffect& effectOf(double Roughness::*figure, const RoughnessNoise& noise) {
   const std::span<const RoughnessInfo> infos = roughnessInfos();
   return noise[static_cast<std::size_t>(std::ranges::find(infos, figure, &RoughnessInfo::figure) -
@@ -122,6 +128,7 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
     const bool ranks = growth[f] == NoiseGrowth::kShare || growth[f] == NoiseGrowth::kRank;
     if (result[f].error > most || (ranks && filters.kind == ProfileKind::kWaviness))
       result[f] = {kNone, kNone};
+    result[f] = withinRange(result[f], found.*infos[f].figure, rangeOf(infos[f]));
   }
   return result;
 }

@@ -10,7 +10,7 @@
 namespace fettle::engine {
 
 /// What noise does to the roughness of a section, a row for each of roughnessInfos(); NaN also where its error would be larger than what there
-/// is of heights and shares of the material ratio curve, and all of these of waviness.
+/// is of heights and shares of the material ratio curve, and all of these of waviness; all by withinRange().
 using RoughnessNoise = std::vector<NoiseEffect>;
 
 /// By trials (noise_trial.h) in which heights of the section get noise with the covariance that independent noise of standard deviation
