@@ -132,7 +132,11 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
   }
   bool opened = false;
   int chosen = -1;
-  (void)field("contact", [&] {
+  constexpr const char* kSays =
+      "How exactly the point is found that the tip touches. What is more exact takes longer in each tick; "
+      "the "
+      "list says how long on this scan.";
+  (void)field("contact", kSays, [&] {
     chosen = chooser("##contact", now, entries, "error", "per tick", opened);
     return false;
   });
@@ -172,7 +176,11 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
   }
   bool opened = false;
   int chosen = -1;
-  (void)field("detail", [&] {
+  constexpr const char* kSays =
+      "With how many vertices the surface is drawn while it moves: more are sharper and slower. At rest it "
+      "is "
+      "drawn within a pixel whatever is chosen.";
+  (void)field("detail", kSays, [&] {
     chosen = chooser("##detail", now, entries, "error", "per frame", opened);
     return false;
   });

@@ -152,23 +152,28 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
 
 void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* values,
                 const render::ValueRange& range, WindowPicture& picture) {
-  constexpr const char* kRules[] = {"usual", "a share", "all", "by hand"};
   int kind = static_cast<int>(rule.kind);
   // "by hand" is what dragging and typing leave behind.
-  const int count = rule.kind == RuleKind::kTyped ? 4 : 3;
-  if (field("range", [&] { return ImGui::Combo("##range", &kind, kRules, count); })) {
+  const bool by_hand = rule.kind == RuleKind::kTyped;
+  const char* const says =
+      quantity == Quantity::kDeviation
+          ? "usual: six times the median of what changed, or all but half a percent of it\na share: so many "
+            "of "
+            "the changed samples\nall: up to the largest change"
+          : "usual: all but single spikes\na share: the middle of the values\nall: from the lowest to the "
+            "highest";
+  if (field("range", says, [&] {
+        return by_hand ? chooseWord("##range", kind, {"usual", "a share", "all", "by hand"})
+                       : chooseWord("##range", kind, {"usual", "a share", "all"});
+      })) {
     rule.kind = static_cast<RuleKind>(kind);
     if (rule.kind == RuleKind::kAutomatic) picture.refreshRanges();
     picture.requestRedraw();
   }
-  explain(quantity == Quantity::kDeviation
-              ? "usual: six times the median of what changed, or all but half a percent "
-                "of it\na share: so many of the changed samples\nall: up to the largest change"
-              : "usual: all but single spikes\na share: the middle of the values\nall: "
-                "from the lowest to the highest");
   if (rule.kind == RuleKind::kShare) {
     double percent = 100.0 * rule.share;
-    if (field("share", [&] { return typeNumber("##share", percent, 1.0, 100.0, "%.4g %%"); })) {
+    if (field("share", "So much of all values lies within the colours; the rest has the colour of an end.",
+              [&] { return typeNumber("##share", percent, 1.0, 100.0, "%.4g %%"); })) {
       rule.share = 0.01 * percent;
       picture.requestRedraw();
     }
@@ -179,7 +184,9 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
                                                 quantity == Quantity::kDeviation ? " of the changes" : ""));
   // Colours do not change while a brush works, nor after: what was found when they were switched on stays.
   ImGui::BeginDisabled(rule.kind != RuleKind::kAutomatic);
-  if (ImGui::Button("Find the range again")) {
+  if (pressButton(
+          "Find the range again",
+          "Colours keep their range while you work; this takes it from the values as they are now.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }
@@ -191,11 +198,14 @@ void rangeEnds(const render::ValueRange& range, Quantity quantity, const render:
   render::ValueRange ends = range;
   bool changed = false;
   if (quantity == Quantity::kDeviation) {
-    changed = field("up to", [&] { return typeLength("##limit", ends.high, 1e-30, 1e30, unit); });
+    changed = field("up to", "The change at which the colours end, up and down.",
+                    [&] { return typeLength("##limit", ends.high, 1e-30, 1e30, unit); });
     ends.low = -ends.high;
   } else {
-    changed |= field("highest", [&] { return typeLength("##highest", ends.high, -1e30, 1e30, unit); });
-    changed |= field("lowest", [&] { return typeLength("##lowest", ends.low, -1e30, 1e30, unit); });
+    changed |= field("highest", "The value with the last colour; what lies above has it, too.",
+                     [&] { return typeLength("##highest", ends.high, -1e30, 1e30, unit); });
+    changed |= field("lowest", "The value with the first colour; what lies below has it, too.",
+                     [&] { return typeLength("##lowest", ends.low, -1e30, 1e30, unit); });
     // Past the other end: that one is moved along.
     if (!(ends.low < ends.high)) {
       const double width = range.high - range.low;
@@ -236,28 +246,35 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
   ruleFields(ColourRange::ruleOf(display, quantity), quantity, values, range, picture);
   rangeEnds(range, quantity, unit, colours, display, picture);
   if (change && field("as zero up to",
+                      "A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.",
                       [&] { return typeLength("##tolerance", colours.typed.tolerance, 0.0, 1e30, unit); }))
     picture.requestRedraw();
-  if (change) explain("A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.");
-  constexpr const char* kMaps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
   int map = static_cast<int>(display.map);
-  if (field("colours", [&] { return ImGui::Combo("##colours", &map, kMaps, std::size(kMaps)); })) {
+  if (field("colours",
+            "The colour map. Automatic: one for heights, and one with white in its middle for changes; "
+            "cividis is "
+            "seen alike by the colour-blind.",
+            [&] {
+              return chooseWord("##colours", map, {"automatic", "viridis", "cividis", "grey", "diverging"});
+            })) {
     display.map = static_cast<render::ColourMap>(map);
     picture.requestRedraw();
   }
   endFields();
-  if (ImGui::Checkbox("in steps", &display.colour_steps)) picture.requestRedraw();
+  if (tickBox("in steps", display.colour_steps,
+              "Each stretch of values has one colour, as on a map; else colours blend."))
+    picture.requestRedraw();
   sameLineIfFits("contour lines", ItemKind::kTick);
   actionTick("contour lines", display.contours, Action::kContours, context.act);
   ImGui::BeginDisabled(!display.contours);
   beginFields();
   double& every = change ? colours.typed.change_contours : colours.typed.height_contours;
   double shown = picture.figures().contour_step;
-  if (field("a line every", [&] { return typeLength("##every", shown, 0.0, 1e30, unit); })) {
+  if (field("a line every", "Height between two contour lines. 0: at the steps of the colour bar.",
+            [&] { return typeLength("##every", shown, 0.0, 1e30, unit); })) {
     every = shown;
     picture.requestRedraw();
   }
-  explain("0: at the steps of the colour bar");
   endFields();
   ImGui::EndDisabled();
 }

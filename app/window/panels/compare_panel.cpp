@@ -26,13 +26,13 @@ void meshFields(const PanelContext& context, NominalChoice& nominal) {
     ImGui::EndCombo();
     return true;
   });
-  (void)field("from a mesh", [&] {
-    constexpr const char* kDistances[] = {"height over it", "shortest distance"};
-    int distance = nominal.shortest ? 1 : 0;
-    const bool changed = ImGui::Combo("##mesh distance", &distance, kDistances, std::size(kDistances));
-    nominal.shortest = distance == 1;
-    return changed;
-  });
+  (void)field(
+      "from a mesh", "Along z, as a scan sees it, or the shortest way to the mesh: for steep walls.", [&] {
+        int distance = nominal.shortest ? 1 : 0;
+        const bool changed = chooseWord("##mesh distance", distance, {"height over it", "shortest distance"});
+        nominal.shortest = distance == 1;
+        return changed;
+      });
   (void)field("tolerance", "Counts what lies within it of a mesh on both sides, above and below.", [&] {
     return typeLength("##mesh tolerance", nominal.tolerance, 0.0, 1e12, context.units.change, "none");
   });
@@ -43,15 +43,15 @@ void meshFields(const PanelContext& context, NominalChoice& nominal) {
 void comparePanel(const PanelContext& context, CompareTool& compare, WindowPicture& picture) {
   ImGui::BeginDisabled(compare.busy());
   beginFields();
-  (void)field("it is moved", [&] { return chooseMoves("##compare moves", compare.options.moves, "not"); });
-  (void)field("by", [&] {
-    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+  (void)field("it is moved", "How the other scan may move until it lies best on this one.",
+              [&] { return chooseMoves("##compare moves", compare.options.moves, "not"); });
+  (void)field("by", "Which samples of this scan say where the other one comes to lie.", [&] {
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
                                       engine::Region::kUnmarked};
     int of = 0;
     for (int i = 0; i < 3; ++i)
       if (compare.options.region == kOf[i]) of = i;
-    const bool changed = ImGui::Combo("##compare by", &of, kSamples, std::size(kSamples));
+    const bool changed = chooseRegion("##compare by", of);
     if (changed) compare.options.region = kOf[of];
     return changed;
   });
@@ -63,12 +63,13 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   sameLineIfFits("Again");
   actionButton("Again##compare", Action::kCompareAgain, context.act);
   sameLineIfFits("Remove");
-  if (ImGui::Button("Remove##compare")) {
+  if (pressButton("Remove##compare", "Forgets the other scan and its colours.")) {
     compare.clear();
     picture.refreshRanges();
     picture.requestRedraw();
   }
-  if (ImGui::Checkbox("colours show the deviation from it", &compare.shown)) {
+  if (tickBox("colours show the deviation from it", compare.shown,
+              "Red where this scan is higher than the other, blue where it is lower.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

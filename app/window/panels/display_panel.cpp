@@ -14,17 +14,20 @@ namespace {
 // A share of 0 to 1; 0 reads "off".
 void shareSlider(const char* label, const char* id, double& share, const char* tip) {
   auto value = static_cast<float>(share);
-  if (field(label, [&] {
+  if (field(label, tip, [&] {
         return ImGui::SliderFloat(id, &value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : "off",
                                   ImGuiSliderFlags_AlwaysClamp);
       }))
     share = static_cast<double>(value);
-  explain(tip);
 }
 
 void materialFields(render::FormShading& form) {
   const render::MaterialRow& chosen = render::rowOf(form.material);
-  if (field("material", [&] { return ImGui::BeginCombo("##material", std::string(chosen.word).c_str()); })) {
+  if (field(
+          "material",
+          "What the surface looks like to be made of. A material is lit from beside you, however the view is "
+          "turned, and shows form better than colours do.",
+          [&] { return ImGui::BeginCombo("##material", std::string(chosen.word).c_str()); })) {
     for (const render::MaterialRow& row : render::materials()) {
       const bool is = row.material == form.material;
       if (ImGui::Selectable(fmt::format("{}: {}", row.word, row.shows).c_str(), is))
@@ -33,9 +36,6 @@ void materialFields(render::FormShading& form) {
     }
     ImGui::EndCombo();
   }
-  explain(
-      "What the surface looks like to be made of. A material is lit from beside you, however the view is "
-      "turned, and shows form better than colours do.");
   ImGui::BeginDisabled(form.material == render::Material::kNone);
   shareSlider(
       "colours on it", "##material_colours", form.value_colours,
@@ -44,20 +44,17 @@ void materialFields(render::FormShading& form) {
 }
 
 void stylusTicks(StylusLook& look, bool reduced_motion) {
-  const auto tick = [](const char* label, bool& on, const char* tip) {
-    ImGui::Checkbox(label, &on);
-    explain(tip);
-  };
-  tick("stylus as a pen", look.pen, "A pen whose point is where the tip is. Without it the tip is a disc.");
+  tickBox("stylus as a pen", look.pen,
+          "A pen whose point is where the tip is. Without it the tip is a disc.");
   sameLineIfFits("its shadow", ItemKind::kTick);
   ImGui::BeginDisabled(!look.pen);
-  tick("its shadow", look.shadow,
-       "On the surface: it meets the pen's point where that touches, and moves away as the pen rises.");
+  tickBox("its shadow", look.shadow,
+          "On the surface: it meets the pen's point where that touches, and moves away as the pen rises.");
   ImGui::EndDisabled();
-  tick("force arrow", look.force, "The force that the hand feels; the longest arrow is the force limit.");
+  tickBox("force arrow", look.force, "The force that the hand feels; the longest arrow is the force limit.");
   sameLineIfFits("trail", ItemKind::kTick);
   ImGui::BeginDisabled(reduced_motion);
-  tick("trail", look.trail, "Where the tip was during the last second.");
+  tickBox("trail", look.trail, "Where the tip was during the last second.");
   ImGui::EndDisabled();
 }
 
@@ -68,30 +65,29 @@ std::string scaleText(double scale) {
 // Of text and panels.
 void uiScaleField(double& scale) {
   static constexpr double kScales[] = {0.0, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
-  if (field("text size", [&] { return ImGui::BeginCombo("##ui scale", scaleText(scale).c_str()); })) {
+  if (field("text size", "Of all texts, panels and marks of the window; kept for the next start.",
+            [&] { return ImGui::BeginCombo("##ui scale", scaleText(scale).c_str()); })) {
     for (const double each : kScales)
       if (ImGui::Selectable(scaleText(each).c_str(), each == scale)) scale = each;
     ImGui::EndCombo();
   }
-  explain("Of all texts, panels and marks of the window; kept for the next start.");
 }
 
 void penFields(PenUse& pen) {
-  (void)field("pen", [&] { return ImGui::Checkbox("presses as the hand does", &pen.presses); });
-  explain(
+  constexpr const char* kSays =
       "A tablet's pen presses as deep as the hand presses it, up to the depth of the brush. Off: always to "
       "that "
-      "depth. Its other end has the opposite tool.");
+      "depth. Its other end has the opposite tool.";
+  (void)field("pen", kSays, [&] { return tickBox("presses as the hand does", pen.presses, {}); });
   ImGui::BeginDisabled(!pen.presses);
   auto firmness = static_cast<float>(pen.firmness);
-  if (field("", [&] {
+  if (field("", "Above 1 the hand has to press more for the same depth, below 1 less.", [&] {
         return ImGui::SliderFloat("##firmness", &firmness, static_cast<float>(PenUse::kSoftest),
                                   static_cast<float>(PenUse::kFirmest), "firmness %.2f",
                                   ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
       }))
     pen.firmness = std::round(100.0 * static_cast<double>(firmness)) / 100.0;
   ImGui::EndDisabled();
-  explain("Above 1 the hand has to press more for the same depth, below 1 less.");
 }
 
 }  // namespace
@@ -104,72 +100,76 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   actionTick("light panels", settings.panels_theme == render::Theme::kLight, Action::kPanelsTheme,
              context.act);
   actionTick("axes", display.axes, Action::kAxes, context.act);
-  ImGui::Checkbox("reduced motion", &display.reduced_motion);
-  explain("Nothing moves by itself: the view is at another place at once, and the stylus has no trail.");
+  tickBox("reduced motion", display.reduced_motion,
+          "Nothing moves by itself: the view is at another place at once, and the stylus has no trail.");
   ImGui::BeginDisabled(display.reduced_motion);
-  ImGui::Checkbox("move to views", &display.flights);
-  ImGui::EndDisabled();
-  explain(
+  tickBox(
+      "move to views", display.flights,
       "The picture moves to another view, so that the eye can follow. Without it the other view is there at "
       "once.");
-  ImGui::Checkbox("half resolution while it moves", &display.half_in_motion);
-  explain("While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
-  ImGui::Checkbox("smooth edges at rest", &display.smooth_at_rest);
-  explain(
+  ImGui::EndDisabled();
+  tickBox("half resolution while it moves", display.half_in_motion,
+          "While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
+  tickBox(
+      "smooth edges at rest", display.smooth_at_rest,
       "While nothing changes, the surface is drawn with four rays per pixel, band by band, so that no frame "
       "takes long.");
-  ImGui::Checkbox("light at the size of a pixel", &display.form.filtered_normals);
-  explain(
+  tickBox(
+      "light at the size of a pixel", display.form.filtered_normals,
       "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and not "
       "on the noise of single samples.");
   stylusTicks(display.stylus, display.reduced_motion);
-  ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
-  explain(
-      "With unsaved work. Without the question it is stored as well, and offered when the scan is opened "
-      "again.");
+  tickBox("ask before quitting", settings.ask_before_quitting,
+          "With unsaved work. Without the question it is stored as well, and offered when the scan is opened "
+          "again.");
   beginFields();
   uiScaleField(settings.ui_scale);
   penFields(settings.pen);
   detailChooser(context, display, picture, view, costs);
-  const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
   int mode = static_cast<int>(display.stereo);
-  if (field("eyes", [&] { return ImGui::Combo("##eyes", &mode, eyes, 3); }))
+  if (field("eyes",
+            "A picture for each eye: in two halves of the window, or in one for glasses of two colours.",
+            [&] {
+              return chooseWord("##eyes", mode, {"one eye", "two, side by side", "two, red-cyan glasses"});
+            }))
     display.stereo = static_cast<render::StereoMode>(mode);
-  explain("A picture for each eye: in two halves of the window, or in one for glasses of two colours.");
   constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
-  (void)field("marks", [&] {
+  (void)field("marks", "How strongly marked samples are tinted; 0 leaves the colours of the values.", [&] {
     return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, "opacity %.2f", kClamp);
   });
-  explain("How strongly marked samples are tinted; 0 leaves the colours of the values.");
-  (void)field("light from", [&] {
-    return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, "%.0f deg", kClamp);
-  });
-  explain(
+  (void)field(
+      "light from",
       "Where the light comes from, counted from the picture's right over its top. A material has light of "
-      "its own.");
-  (void)field("light above", [&] {
-    return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F, "%.0f deg", kClamp);
-  });
-  explain("How high the light stands: low light shows faint slopes. A material has light of its own.");
+      "its own.",
+      [&] {
+        return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, "%.0f deg", kClamp);
+      });
+  (void)field("light above",
+              "How high the light stands: low light shows faint slopes. A material has light of its own.",
+              [&] {
+                return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F,
+                                          "%.0f deg", kClamp);
+              });
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
   shareSlider("hollows", "##cavity", display.form.cavity,
               "How much darker hollows and how much brighter ridges are at most.");
   materialFields(display.form);
   ImGui::BeginDisabled(display.stereo == render::StereoMode::kOff);
-  (void)field("depth", [&] {
-    return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
-                              kClamp);
-  });
+  (void)field("depth",
+              "Between the eyes, as a share of their distance from the field: more depth, harder to fuse.",
+              [&] {
+                return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F,
+                                          "eyes %.3f apart", kClamp);
+              });
   ImGui::EndDisabled();
-  explain("Between the eyes, as a share of their distance from the field: more depth, harder to fuse.");
-  (void)field("heights", [&] {
-    return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
-                      view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");
-  });
-  explain(
-      "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "
-      "readable.");
+  (void)field("heights",
+              "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "
+              "readable.",
+              [&] {
+                return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
+                                  view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");
+              });
   endFields();
 }
 

@@ -13,15 +13,17 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   using engine::EdgeResponse;
   beginFields();
   auto sigma = static_cast<float>(edges.sigma);
-  if (field("scale", [&] {
-        return ImGui::SliderFloat("##scale", &sigma, static_cast<float>(EdgeResponse::kSmallestSigma),
-                                  static_cast<float>(EdgeResponse::kLargestSigma), "%.2f samples",
-                                  ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
-      }))
+  if (field("scale",
+            "Over how many samples an edge may rise: larger scales see through noise and lose fine edges.",
+            [&] {
+              return ImGui::SliderFloat("##scale", &sigma, static_cast<float>(EdgeResponse::kSmallestSigma),
+                                        static_cast<float>(EdgeResponse::kLargestSigma), "%.2f samples",
+                                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+            }))
     edges.sigma = static_cast<double>(sigma);
   const bool scale_done = ImGui::IsItemDeactivatedAfterEdit();
   auto sensitivity = static_cast<float>(edges.choice.sensitivity);
-  if (field("sensitivity", [&] {
+  if (field("sensitivity", "How faint an edge may be that is still suggested: 1 suggests most.", [&] {
         return ImGui::SliderFloat("##sensitivity", &sensitivity, 0.0F, 1.0F, "%.2f",
                                   ImGuiSliderFlags_AlwaysClamp);
       })) {
@@ -29,10 +31,11 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
     edges.redraw(context.client);
   }
   auto thickness = static_cast<float>(edges.choice.thickness);
-  if (field("thickness", [&] {
-        return ImGui::SliderFloat("##thickness", &thickness, 0.0F, 16.0F, "%.1f samples",
-                                  ImGuiSliderFlags_AlwaysClamp);
-      })) {
+  if (field("thickness", "How wide the marks along an edge become; within them heights stay as they are.",
+            [&] {
+              return ImGui::SliderFloat("##thickness", &thickness, 0.0F, 16.0F, "%.1f samples",
+                                        ImGuiSliderFlags_AlwaysClamp);
+            })) {
     edges.choice.thickness = static_cast<double>(thickness);
     edges.redraw(context.client);
   }

@@ -21,9 +21,8 @@ void featureFields(FeatureTool::Options& options) {
   beginFields();
   (void)field("what", "Hills rise to a peak, dales fall to a pit: heights and volumes of these are depths.",
               [&] {
-                constexpr const char* kKinds[] = {"hills", "dales"};
                 int kind = options.what.dales ? 1 : 0;
-                const bool changed = ImGui::Combo("##feature kind", &kind, kKinds, std::size(kKinds));
+                const bool changed = chooseWord("##feature kind", kind, {"hills", "dales"});
                 options.what.dales = kind == 1;
                 return changed;
               });
@@ -35,18 +34,17 @@ void featureFields(FeatureTool::Options& options) {
         if (changed) options.what.prune = std::clamp(static_cast<double>(percent), 0.0, 100.0);
         return changed;
       });
-  (void)field("of", [&] {
-    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+  (void)field("of", "Which samples count; the others are as holes.", [&] {
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
                                       engine::Region::kUnmarked};
     int of = static_cast<int>(std::ranges::find(kOf, options.what.region) - std::begin(kOf));
-    const bool changed = ImGui::Combo("##features of", &of, kSamples, std::size(kSamples));
+    const bool changed = chooseRegion("##features of", of);
     if (changed) options.what.region = kOf[of];
     return changed;
   });
   (void)field("without", "The form that is taken out first, in the figures alone.", [&] {
-    constexpr const char* kForms[] = {"height", "plane", "degree 2", "degree 3", "degree 4", "degree 5"};
-    return ImGui::Combo("##feature form", &options.degree, kForms, std::size(kForms));
+    return chooseWord("##feature form", options.degree,
+                      {"height", "plane", "degree 2", "degree 3", "degree 4", "degree 5"});
   });
   endFields();
 }
@@ -126,18 +124,18 @@ void featurePanel(const PanelContext& context, FeatureTool& features, WindowPict
   actionButton("Find##features", Action::kFindFeatures, context.act);
   ImGui::BeginDisabled(features.found() == nullptr);
   sameLineIfFits("Copy");
-  if (ImGui::Button("Copy##features")) ImGui::SetClipboardText(featureCsv(*features.found()).c_str());
-  explain("The table as text, a row for each, with units in its first row.");
+  if (pressButton("Copy##features", "The table as text, a row for each, with units in its first row."))
+    ImGui::SetClipboardText(featureCsv(*features.found()).c_str());
   sameLineIfFits("Export ...");
   actionButton("Export ...##features", Action::kExportFeatures, context.act);
   sameLineIfFits("Remove");
-  if (ImGui::Button("Remove##features")) {
+  if (pressButton("Remove##features", "Forgets the features and their colours.")) {
     features.clear();
     picture.refreshRanges();
     picture.requestRedraw();
   }
-  explain("Forgets the features and their colours.");
-  if (ImGui::Checkbox("colours show heights above saddles", &features.shown)) {
+  if (tickBox("colours show heights above saddles", features.shown,
+              "Each feature has the colour of its height over its saddle; the rest has none.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

@@ -132,21 +132,23 @@ void placesList(Question& question, Files& files, float scale) {
 
 void folderLine(Question& question, Parts& parts) {
   Files& files = parts.files;
-  if (ImGui::Button("Up")) {
+  if (pressButton("Up", "To the folder that this one is in.")) {
     question.path = pathIn(fs::path(files.browser.folder()).parent_path().string(), question);
     files.browser.goUp();
   }
   ImGui::SameLine();
-  if (ImGui::Button(files.places.has(files.browser.folder()) ? "No bookmark" : "Bookmark"))
+  if (pressButton(files.places.has(files.browser.folder()) ? "No bookmark" : "Bookmark",
+                  "Keeps this folder in the list at the left, or takes it out."))
     files.toggleBookmark(parts.recent.paths());
   ImGui::SameLine();
   FolderView view = files.browser.view();
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
   bool changed = ImGui::InputTextWithHint("##names", "names with", &view.typed);
+  explain("Only names that contain this are listed.");
   ImGui::SameLine();
-  changed = ImGui::Checkbox("all files", &view.all_files) || changed;
+  changed = tickBox("all files", view.all_files, "Files that Fettle cannot read are listed, too.") || changed;
   ImGui::SameLine();
-  changed = ImGui::Checkbox("hidden", &view.hidden) || changed;
+  changed = tickBox("hidden", view.hidden, "Files and folders whose name begins with a dot, too.") || changed;
   if (changed) files.browser.setView(std::move(view));
   ImGui::SameLine();
   ImGui::TextDisabled("%s",
@@ -253,7 +255,11 @@ void formatChooser(Question& question) {
     for (const std::string_view each : format.extensions)
       if (format.writes && each == extension) now = format.description;
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 16.0F);
-  if (!ImGui::BeginCombo("format", now.c_str(), ImGuiComboFlags_HeightLargest)) return;
+  const bool open = ImGui::BeginCombo("format", now.c_str(), ImGuiComboFlags_HeightLargest);
+  if (!open) {
+    explain("The format that is written: choosing one changes the ending of the name.");
+    return;
+  }
   for (const engine::FormatInfo& format : engine::formats()) {
     if (!format.writes) continue;
     const std::string label = fmt::format("{} ({})", format.description, format.extensions.front());
@@ -270,7 +276,11 @@ void resultFormatChooser(Question& question, const ResultFile& file) {
     return fmt::format("{} ({})", format.text, format.ending);
   };
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 24.0F);
-  if (!ImGui::BeginCombo("format", now != nullptr ? label(*now).c_str() : "by the ending")) return;
+  const bool open = ImGui::BeginCombo("format", now != nullptr ? label(*now).c_str() : "by the ending");
+  if (!open) {
+    explain("The format that is written: choosing one changes the ending of the name.");
+    return;
+  }
   for (const ResultFormat& format : file.formats)
     if (ImGui::Selectable(label(format).c_str(), &format == now))
       question.path = fs::path(question.path).replace_extension(format.ending).string();
@@ -280,11 +290,11 @@ void resultFormatChooser(Question& question, const ResultFile& file) {
 void sectionChoices(SectionTool& sections) {
   SectionTool::Exporting& exporting = sections.exporting;
   ImGui::BeginDisabled(!sections.chosen());
-  ImGui::Checkbox("the chosen section alone", &exporting.chosen_alone);
+  tickBox("the chosen section alone", exporting.chosen_alone, "Without it all sections are written.");
   ImGui::EndDisabled();
   ImGui::SameLine();
-  ImGui::Checkbox("profiles of the scan beside them", &exporting.with_scan);
-  explain("Those of the scan that the work began with, where it differs from the field.");
+  tickBox("profiles of the scan beside them", exporting.with_scan,
+          "Those of the scan that the work began with, where it differs from the field.");
 }
 
 void resultHelp(Question& question, const ResultFile& file, Parts& parts) {
@@ -307,7 +317,8 @@ void writingHelp(Question& question, bool& embeds) {
   ImGui::PopTextWrapPos();
   if (question.kind != Kind::kSaveAs) return;
   ImGui::BeginDisabled(!session);
-  ImGui::Checkbox("store the scan in the session", &embeds);
+  tickBox("store the scan in the session", embeds,
+          "The session then opens without the file of the scan, and is larger by it.");
   ImGui::EndDisabled();
 }
 
@@ -364,7 +375,9 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
     writingHelp(question, parts.saving.embeds);
   confirmed = dialogButton(reads(question) ? "Open" : "Write", questions, Key::kEnter) || confirmed || twice;
   ImGui::SameLine();
-  const bool as = question.kind == Kind::kOpen && ImGui::Button("Read as ...");
+  const bool as =
+      question.kind == Kind::kOpen &&
+      pressButton("Read as ...", "Says unit, spacing, scale and holes of the file before it is opened.");
   if (question.kind == Kind::kOpen) ImGui::SameLine();
   const bool left = dialogButton("Cancel", questions, Key::kEscape);
   remark(question, files.browser, result);

@@ -44,7 +44,7 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     spec.window |= 1;
   // As a length across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
-  if (window && field("", [&] {
+  if (window && field("", "The same as a length; the nearest odd number of samples is taken.", [&] {
         return typeLength("##window_mm", window_mm, grid.spacingXMm(),
                           engine::FilterSpec::kMaxWindow * grid.spacingXMm(),
                           ofMillimetres(units.length, grid.lateral_unit.mm));
@@ -54,14 +54,18 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
                    engine::FilterSpec::kMaxWindow);
   // Where samples lie closer along one axis, the same number of them is another length there.
   if (window && grid.spacingXMm() != grid.spacingYMm()) {
-    fieldName("");
+    fieldName("", {});
     const render::ShownUnit length = ofMillimetres(units.length, grid.lateral_unit.mm);
     ImGui::TextDisabled("x %s along columns", lengthText(spec.window * grid.spacingYMm(), length).c_str());
   }
   if (engine::filterOf(spec.kind).has_element) {
-    fieldName("element");
-    if (ImGui::BeginCombo("##element",
-                          engine::kElementWords[static_cast<std::size_t>(spec.element)].data())) {
+    constexpr const char* kSays =
+        "What is moved over the surface: a ball rolls over it, a disk and a square stay level.";
+    fieldName("element", kSays);
+    if (!ImGui::BeginCombo("##element",
+                           engine::kElementWords[static_cast<std::size_t>(spec.element)].data())) {
+      explain(kSays);
+    } else {
       for (std::size_t i = 0; i < engine::kElementWords.size(); ++i)
         if (const auto each = static_cast<engine::Element>(i);
             ImGui::Selectable(engine::kElementWords[i].data(), each == spec.element))
@@ -70,11 +74,12 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     }
   }
   if (const engine::Filter& filter = engine::filterOf(spec.kind); filter.nesting.exists())
-    (void)field(filter.nesting_word.data(), [&] {
-      const double least = filter.least_nesting * std::max(grid.spacingXMm(), grid.spacingYMm());
-      return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
-                        ofMillimetres(units.length, grid.lateral_unit.mm));
-    });
+    (void)field(filter.nesting_word.data(),
+                "Where the filter separates: what is narrower than this goes, what is wider stays.", [&] {
+                  const double least = filter.least_nesting * std::max(grid.spacingXMm(), grid.spacingYMm());
+                  return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
+                                    ofMillimetres(units.length, grid.lateral_unit.mm));
+                });
   (void)field("passes", "How often the filter runs, each time over what the last one left.",
               [&] { return typeCount("##passes", spec.passes, 1, engine::FilterSpec::kMaxPasses, 1); });
 }
@@ -138,6 +143,7 @@ void previewList(bool anything_marked, FilterPreview& filters) {
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
     if (ImGui::SmallButton(fmt::format("x##{}", i).c_str())) dropped = i;
+    explain("Drops this preview.");
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
     // Broken here, or a narrow panel would break a number at its point.
@@ -180,7 +186,9 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);
   ImGui::BeginDisabled(filters.variants().size() != 1);
-  ImGui::Checkbox("split line", &display.split);
+  tickBox(
+      "split line", display.split,
+      "Scan and preview in one picture, with a line between them that can be dragged; else side by side.");
   ImGui::EndDisabled();
   beginPlace("##previews", kPreviewLines);
   previewSoFar(filters);

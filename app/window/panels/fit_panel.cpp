@@ -29,24 +29,22 @@ void fitFields(FitTool::Options& options) {
                 ImGui::EndCombo();
                 return true;
               });
-  (void)field("to", [&] {
-    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+  (void)field("to", "Which samples the shape is fitted to.", [&] {
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
                                       engine::Region::kUnmarked};
     int of = static_cast<int>(std::ranges::find(kOf, options.region) - std::begin(kOf));
-    const bool changed = ImGui::Combo("##fitted to", &of, kSamples, std::size(kSamples));
+    const bool changed = chooseRegion("##fitted to", of);
     if (changed) options.region = kOf[of];
     return changed;
   });
   endFields();
-  ImGui::Checkbox("between edge lines, each by itself", &options.between_lines);
-  explain("What edge lines enclose is a region of its own, two samples from them. Without lines all is one.");
-  ImGui::Checkbox("without samples far from it##fit", &options.robust);
-  explain("Half of the samples must be near to the shape.");
-  ImGui::Checkbox("distances along z##fit", &options.vertical);
-  explain(
-      "In which a scanner has its noise; else the shortest to the shape, as the standards of coordinate "
-      "metrology have it.");
+  tickBox("between edge lines, each by itself", options.between_lines,
+          "What edge lines enclose is a region of its own, two samples from them. Without lines all is one.");
+  tickBox("without samples far from it##fit", options.robust,
+          "Half of the samples must be near to the shape.");
+  tickBox("distances along z##fit", options.vertical,
+          "In which a scanner has its noise; else the shortest to the shape, as the standards of coordinate "
+          "metrology have it.");
 }
 
 void fitTable(const std::vector<FitLine>& lines, const char* id) {
@@ -82,8 +80,11 @@ void pairFields(FitTool& fit) {
     return changed;
   };
   beginFields();
-  bool changed = field("between", [&] { return choose("##first fit", first, second); });
-  changed = field("and", [&] { return choose("##second fit", second, first); }) || changed;
+  bool changed = field("between", "The first of two fits whose angle and distance stand below.",
+                       [&] { return choose("##first fit", first, second); });
+  changed =
+      field("and", "The second of these fits.", [&] { return choose("##second fit", second, first); }) ||
+      changed;
   endFields();
   if (changed) fit.setPair(first, second);
   fitTable(relationLines(fit.fits()->report["between"]), "relation");
@@ -131,18 +132,18 @@ void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture)
   actionButton("Fit##shapes", Action::kFitShapes, context.act);
   ImGui::BeginDisabled(fit.fits() == nullptr);
   sameLineIfFits("Copy");
-  if (ImGui::Button("Copy##fits")) ImGui::SetClipboardText(copiedText(*fit.fits()).c_str());
-  explain("The figures as text in columns, for a table or a message.");
+  if (pressButton("Copy##fits", "The figures as text in columns, for a table or a message."))
+    ImGui::SetClipboardText(copiedText(*fit.fits()).c_str());
   sameLineIfFits("Export ...");
   actionButton("Export ...##fits", Action::kExportFits, context.act);
   sameLineIfFits("Remove");
-  if (ImGui::Button("Remove##fits")) {
+  if (pressButton("Remove##fits", "Forgets the fits and their colours.")) {
     fit.clear();
     picture.refreshRanges();
     picture.requestRedraw();
   }
-  explain("Forgets the fits and their colours.");
-  if (ImGui::Checkbox("colours show the distances from it", &fit.shown)) {
+  if (tickBox("colours show the distances from it", fit.shown,
+              "Red where the surface lies above the shape, blue where it lies below.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

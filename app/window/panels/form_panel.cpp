@@ -24,22 +24,23 @@ void formKindField(const PanelContext& context, FormTool& form, PlanePicking& po
   engine::FormChoice& options = form.options;
   const bool by_points = options.through.has_value();
   const std::string now = by_points ? kByPoints : shortTitle(engine::infoOf(options.kind));
-  (void)field("form", [&] {
-    if (!ImGui::BeginCombo("##form", now.c_str())) return false;
-    for (const engine::FormInfo& info : engine::formInfos()) {
-      if (ImGui::Selectable(shortTitle(info).c_str(), !by_points && info.kind == options.kind)) {
-        options.kind = info.kind;
-        options.through.reset();
-        points.stop();
-      }
-      if (info.kind != engine::FormKind::kPlane) continue;
-      if (ImGui::Selectable(kByPoints, by_points) && !by_points)
-        choosePlaneByPoints(options, context.client.field().grid());
-      explain(tipOf(Action::kPlanePoints));
-    }
-    ImGui::EndCombo();
-    return true;
-  });
+  (void)field("form", "The shape of the part that is taken out, so that colours show what deviates from it.",
+              [&] {
+                if (!ImGui::BeginCombo("##form", now.c_str())) return false;
+                for (const engine::FormInfo& info : engine::formInfos()) {
+                  if (ImGui::Selectable(shortTitle(info).c_str(), !by_points && info.kind == options.kind)) {
+                    options.kind = info.kind;
+                    options.through.reset();
+                    points.stop();
+                  }
+                  if (info.kind != engine::FormKind::kPlane) continue;
+                  if (ImGui::Selectable(kByPoints, by_points) && !by_points)
+                    choosePlaneByPoints(options, context.client.field().grid());
+                  explain(tipOf(Action::kPlanePoints));
+                }
+                ImGui::EndCombo();
+                return true;
+              });
 }
 
 // The points of the plane as numbers, and the button to set them on the surface.
@@ -53,7 +54,7 @@ void pointFields(const PanelContext& context, FormTool& form, const PlanePicking
     for (const auto& [axis, value] :
          {std::pair('x', &through.at_mm[i].x), std::pair('y', &through.at_mm[i].y)}) {
       const std::string name = fmt::format("{} of point {}", axis, i + 1), id = "##plane " + name;
-      (void)field(name.c_str(),
+      (void)field(name.c_str(), "Where this point lies on the scan.",
                   [&, value = value] { return typeLength(id.c_str(), *value, -kFar, kFar, length); });
     }
   (void)field("around each", "Heights of the samples this near to a point are averaged.", [&] {
@@ -67,13 +68,13 @@ void pointFields(const PanelContext& context, FormTool& form, const PlanePicking
 }
 
 void regionField(engine::FormChoice& options) {
-  constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
   constexpr engine::Region kRegions[] = {engine::Region::kAll, engine::Region::kMarked,
                                          engine::Region::kUnmarked};
   int chosen = 0;
   for (int i = 0; i < 3; ++i)
     if (options.region == kRegions[i]) chosen = i;
-  if (field("fitted to", [&] { return ImGui::Combo("##region", &chosen, kSamples, std::size(kSamples)); }))
+  if (field("fitted to", "Which samples the form is fitted to; it is taken out of all of them.",
+            [&] { return chooseRegion("##region", chosen); }))
     options.region = kRegions[chosen];
 }
 
@@ -106,13 +107,15 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
   regionField(form.options);
   endFields();
   ImGui::BeginDisabled(form.options.through.has_value());
-  ImGui::Checkbox("without steps and spikes", &form.options.robust);
+  tickBox("without steps and spikes", form.options.robust,
+          "Samples far from the form do not pull it: for parts with steps, holes and spikes.");
   ImGui::EndDisabled();
   if (form.options.through) pointFields(context, form, points);
   if (!points.next()) form.followOptions(context.client);
   const bool previewed = form.previewed().has_value();
   ImGui::BeginDisabled(form.busy());
-  if (ImGui::Button("Fit")) form.measure(context.client);
+  if (pressButton("Fit", "Fits the form and says how much is left without it; nothing changes."))
+    form.measure(context.client);
   // As wide with either word, so that the buttons beside it stay where they are.
   const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
   sameLineIfFits("Drop preview");

@@ -136,8 +136,13 @@ void loopFigures(LoopClient& client, const std::vector<float>& forces) {
 
 std::optional<double> rateField(double now_hz) {
   std::optional<double> chosen;
-  fieldName("rate");
-  if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return chosen;
+  constexpr const char* kSays =
+      "How often a second the force is computed: more feels harder surfaces, if the machine keeps up.";
+  fieldName("rate", kSays);
+  if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) {
+    explain(kSays);
+    return chosen;
+  }
   for (int khz = 1; khz <= 10; ++khz)
     if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) chosen = hz;
   ImGui::EndCombo();
@@ -153,13 +158,13 @@ void soundControls(LoopClient& client, Loudness& loudness) {
   const Loudness before = loudness;
   int percent = static_cast<int>(std::lround(100.0F * loudness.volume));
   beginFields();
-  fieldName("volume");
+  constexpr const char* kSays = "How loud the surface is; kept for the next start.";
+  fieldName("volume", kSays);
   if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
     loudness.volume = 0.01F * static_cast<float>(percent);
-  explain("How loud the surface is; kept for the next start.");
+  explain(kSays);
   endFields();
-  ImGui::Checkbox("mute", &loudness.muted);
-  explain("Silent without changing the scene or the volume.");
+  tickBox("mute", loudness.muted, "Silent without changing the scene or the volume.");
   if (loudness != before) client.setLoudness(loudness);
 }
 

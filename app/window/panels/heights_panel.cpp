@@ -14,9 +14,8 @@ namespace {
 // A limit in millimetres that may be infinite: ticked where it counts.
 void extentField(engine::FillOptions& fill, const render::ShownUnit& length, double first_mm) {
   bool limited = std::isfinite(fill.most_extent_mm);
-  if (ImGui::Checkbox("only holes up to", &limited))
+  if (tickBox("only holes up to", limited, "Holes whose longest side is longer stay holes."))
     fill.most_extent_mm = limited ? first_mm : std::numeric_limits<double>::infinity();
-  explain("Holes whose longest side is longer stay holes.");
   restOfLine();
   if (limited)
     (void)typeLength("##most extent", fill.most_extent_mm, 1e-12, 1e12, length);
@@ -47,10 +46,8 @@ void linesFields(engine::LineOptions& lines) {
   for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
   beginFields();
-  (void)field("by", [&] {
-    const bool open = ImGui::BeginCombo("##lines by", kRows[chosen].name);
-    explain(kRows[chosen].says);
-    if (!open) return false;
+  (void)field("by", kRows[chosen].says, [&] {
+    if (!ImGui::BeginCombo("##lines by", kRows[chosen].name)) return false;
     for (const Row& row : kRows) {
       if (ImGui::Selectable(row.name, &row == &kRows[chosen])) {
         lines.method = row.method;
@@ -61,10 +58,9 @@ void linesFields(engine::LineOptions& lines) {
     ImGui::EndCombo();
     return true;
   });
-  (void)field("lines are", [&] {
+  (void)field("lines are", "Which way the scanner moved: along the rows, or along the columns.", [&] {
     int axis = lines.axis == engine::ScanAxis::kX ? 0 : 1;
-    constexpr const char* kAxes[] = {"rows", "columns"};
-    const bool changed = ImGui::Combo("##scan axis", &axis, kAxes, std::size(kAxes));
+    const bool changed = chooseWord("##scan axis", axis, {"rows", "columns"});
     if (changed) lines.axis = axis == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
     return changed;
   });
@@ -74,20 +70,18 @@ void linesFields(engine::LineOptions& lines) {
       "too\" all lines end at the same height.";
   (void)field("slow form", kForm, [&] {
     int goes = lines.form_degree ? 0 : 1;
-    constexpr const char* kWhat[] = {"stays", "goes, too"};
-    const bool changed = ImGui::Combo("##lines form", &goes, kWhat, std::size(kWhat));
+    const bool changed = chooseWord("##lines form", goes, {"stays", "goes, too"});
     if (changed)
       lines.form_degree = goes == 0 ? std::optional(engine::LineOptions::kUsualFormDegree) : std::nullopt;
     return changed;
   });
-  (void)field("found in", [&] {
-    constexpr const char* kSamples[] = {"all samples", "marked samples", "samples not marked"};
+  (void)field("found in", "Which samples say how high a line lies; all of the line is moved.", [&] {
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
                                       engine::Region::kUnmarked};
     int of = 0;
     for (int i = 0; i < 3; ++i)
       if (lines.region == kOf[i]) of = i;
-    const bool changed = ImGui::Combo("##lines of", &of, kSamples, std::size(kSamples));
+    const bool changed = chooseRegion("##lines of", of);
     if (changed) lines.region = kOf[of];
     return changed;
   });
@@ -130,13 +124,17 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
   int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
-  constexpr const char* kMethods[] = {"least curvature", "membrane"};
   beginFields();
-  if (field("holes by", [&] { return ImGui::Combo("##fill", &method, kMethods, std::size(kMethods)); }))
+  if (field("holes by",
+            "Least curvature goes on as the rim bends; a membrane is stretched over it, flatter and faster.",
+            [&] {
+              return chooseWord("##fill", method, {"least curvature", "membrane"});
+            }))
     heights.fill.method = method == 0 ? engine::FillMethod::kCurvature : engine::FillMethod::kMembrane;
   endFields();
   extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
-  ImGui::Checkbox("at the border too", &heights.fill.at_border);
+  tickBox("at the border too", heights.fill.at_border,
+          "Holes that reach the edge of the field have no rim there: what fills them is less sure.");
   heightButtons(context, heights, heights.fill, kFillButtons);
   ImGui::Separator();
   linesFields(heights.lines);

@@ -7,9 +7,9 @@ namespace fettle::app {
 
 void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std::int64_t>& pointed) {
   const engine::History& history = context.client.history();
-  if (ImGui::Button("Undo")) context.act(Action::kUndo);
+  actionButton("Undo", Action::kUndo, context.act);
   ImGui::SameLine();
-  if (ImGui::Button("Redo")) context.act(Action::kRedo);
+  actionButton("Redo", Action::kRedo, context.act);
   const std::string held = fmt::format("{} step{}, {}", history.last(), history.last() == 1 ? "" : "s",
                                        bytesText(static_cast<double>(history.bytes())));
   sameLineIfFits(held.c_str());

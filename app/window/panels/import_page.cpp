@@ -27,13 +27,11 @@ void explainOption(std::string_view option) {
 }
 
 void nameOf(std::string_view option) {
-  fieldName(std::string(readingField(option).name).c_str());
-  explainOption(option);
+  fieldName(std::string(readingField(option).name).c_str(), readingField(option).tip);
 }
 
 void typed(std::string_view option, const char* name, const std::string& hint, std::string& value) {
-  fieldName(name);
-  explainOption(option);
+  fieldName(name, readingField(option).tip);
   ImGui::SetNextItemWidth(-1.0F);
   (void)ImGui::InputTextWithHint((std::string("##") + name).c_str(), hint.c_str(), &value);
   explainOption(option);

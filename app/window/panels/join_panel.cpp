@@ -20,12 +20,11 @@ void listOfScans(JoinTool& join) {
   for (std::size_t k = 0; k < join.scans().size(); ++k) {
     ImGui::PushID(static_cast<int>(k));
     const std::string& path = join.scans()[k].path;
-    if (ImGui::Button("Remove##joined")) {
+    if (pressButton("Remove##joined", "It is not joined.")) {
       join.remove(k);
       ImGui::PopID();
       return;
     }
-    explain("It is not joined.");
     ImGui::SameLine();
     ImGui::TextUnformatted(std::filesystem::path(path).filename().string().c_str());
     if (ImGui::IsItemHovered()) valueTip(path);
@@ -41,16 +40,15 @@ bool joinPanel(const PanelContext& context, JoinTool& join) {
   listOfScans(join);
   actionButton("Add a scan", Action::kJoin, context.act);
   beginFields();
-  (void)field("they are moved", [&] {
+  (void)field("they are moved", "How each scan may move until they fit where they overlap.", [&] {
     std::optional<engine::AlignMoves> moves = options.moves;
     const bool changed = chooseMoves("##join moves", moves);
     options.moves = *moves;
     return changed;
   });
   (void)field("where several are", "The height where several scans have one.", [&] {
-    constexpr const char* kBlends[] = {"fade into each other", "the mean", "the first"};
     int blend = static_cast<int>(options.blend);
-    const bool changed = ImGui::Combo("##join blend", &blend, kBlends, std::size(kBlends));
+    const bool changed = chooseWord("##join blend", blend, {"fade into each other", "the mean", "the first"});
     if (changed) options.blend = static_cast<engine::Blend>(blend);
     return changed;
   });
@@ -65,7 +63,7 @@ bool joinPanel(const PanelContext& context, JoinTool& join) {
   ImGui::EndDisabled();
   endFields();
   ImGui::BeginDisabled(join.scans().empty());
-  const bool asked = ImGui::Button("Join them");
+  const bool asked = pressButton("Join them", "Makes one scan of all of them, in a session of its own.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
   beginPlace("##join outcome", kOutcomeOfJoin);

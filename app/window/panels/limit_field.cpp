@@ -6,7 +6,9 @@ namespace fettle::app {
 
 bool limitField(const PanelContext& context, std::optional<double>& limit, Action switches) {
   constexpr const char* kFrom = "of the scan";
-  return field("keep within", [&] {
+  constexpr const char* kSays =
+      "No height moves farther than this from the scan as it was opened, however many steps lie between.";
+  return field("keep within", kSays, [&] {
     actionTick("##limited", limit.has_value(), switches, context.act);
     restOfLine();
     if (!limit) {

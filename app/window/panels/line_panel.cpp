@@ -72,8 +72,7 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
       "stroke: more finds it after a careless stroke, less keeps to the stroke where edges lie close "
       "together.";
   beginFields();
-  fieldName("hand off by");
-  explain(kHand);
+  fieldName("hand off by", kHand);
   auto hand = static_cast<float>(lines.options.hand_deviation);
   if (ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
                          static_cast<float>(engine::LocateOptions::kMostHand), "%.2f samples",

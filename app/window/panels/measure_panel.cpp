@@ -15,19 +15,23 @@ namespace {
 
 void measureFields(MeasureTool::Options& options) {
   using Where = MeasureTool::Where;
-  constexpr const char* kWhere[] = {"all samples", "what is visible", "marked samples", "samples not marked"};
-  constexpr const char* kForms[] = {"mean height",  "plane",        "polynomial 2",
-                                    "polynomial 3", "polynomial 4", "polynomial 5"};
   beginFields();
   int where = static_cast<int>(options.where);
-  if (field("of", [&] { return ImGui::Combo("##measured", &where, kWhere, std::size(kWhere)); }))
+  if (field("of", "Which samples the parameters are of.", [&] {
+        return chooseWord("##measured", where,
+                          {"all samples", "what is visible", "marked samples", "samples not marked"});
+      }))
     options.where = static_cast<Where>(where);
-  (void)field("about a",
-              [&] { return ImGui::Combo("##measured form", &options.degree, kForms, std::size(kForms)); });
+  (void)field("about a", "Heights are measured from this form, which is fitted to the samples first.", [&] {
+    return chooseWord(
+        "##measured form", options.degree,
+        {"mean height", "plane", "polynomial 2", "polynomial 3", "polynomial 4", "polynomial 5"});
+  });
   endFields();
-  ImGui::Checkbox("its form without steps and spikes", &options.robust);
-  ImGui::Checkbox("without noise, with errors", &options.noise);
-  explain("Below each figure a paler one: without the noise of the scan, +- its standard error.");
+  tickBox("its form without steps and spikes", options.robust,
+          "Samples far from the form do not pull it; they count in the figures all the same.");
+  tickBox("without noise, with errors", options.noise,
+          "Below each figure a paler one: without the noise of the scan, +- its standard error.");
 }
 
 void cell(const std::string& text) {
@@ -165,11 +169,12 @@ CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& u
 void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
   using Curve = MeasureTool::Curve;
   constexpr int kLines = 14;  // with four curves
-  constexpr const char* kCurves[] = {"material ratio (Abbott)", "autocorrelation", "power spectrum"};
   int curve = static_cast<int>(measure.curve);
   beginFields();
-  if (field("curve", "Over each other of the scan, wide and pale, and of the field.",
-            [&] { return ImGui::Combo("##surface curve", &curve, kCurves, std::size(kCurves)); }))
+  if (field("curve", "Over each other of the scan, wide and pale, and of the field.", [&] {
+        return chooseWord("##surface curve", curve,
+                          {"material ratio (Abbott)", "autocorrelation", "power spectrum"});
+      }))
     measure.curve = static_cast<Curve>(curve);
   endFields();
   beginPlace("##surface curves", kLines);
@@ -195,7 +200,7 @@ void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
 void measurePanel(const PanelContext& context, MeasureTool& measure, const WindowPicture& picture) {
   measureFields(measure.options);
   ImGui::BeginDisabled(measure.busy());
-  if (ImGui::Button("Measure now"))
+  if (pressButton("Measure now", "Surface texture of the field as it is now, and of the scan beside it."))
     measure.measure(context.client, picture.seenRect(context.client.field().grid()));
   ImGui::EndDisabled();
   caption(measure);

@@ -48,10 +48,11 @@ render::ValueRange seenHeights(const PanelContext& context, const WindowPicture&
 }
 
 void heightFields(RemoveOptions& remove, const render::ValueRange& seen, const render::ShownUnit& unit) {
-  constexpr std::array<const char*, 5> kNames = {"any height", "below", "above", "between", "outside"};
   int chosen = static_cast<int>(removedHeights(remove));
-  if (field("heights", "Samples lower, higher, between two heights or outside them.",
-            [&] { return ImGui::Combo("##removed heights", &chosen, kNames.data(), kNames.size()); }))
+  if (field("heights", "Samples lower, higher, between two heights or outside them.", [&] {
+        return chooseWord("##removed heights", chosen,
+                          {"any height", "below", "above", "between", "outside"});
+      }))
     setHeights(remove, static_cast<RemovedHeights>(chosen), seen);
   const RemovedHeights heights = removedHeights(remove);
   const double width = remove.high - remove.low;
@@ -59,19 +60,18 @@ void heightFields(RemoveOptions& remove, const render::ValueRange& seen, const r
   const bool below = heights == RemovedHeights::kBelow, above = heights == RemovedHeights::kAbove;
   // Past the other end: that one is moved along.
   if ((both || below) &&
-      field(below ? "lower than" : "lowest",
+      field(below ? "lower than" : "lowest", "The lower limit, as a height of the field.",
             [&] { return typeLength("##remove low", remove.low, -1e30, 1e30, unit); }) &&
       both && remove.low > remove.high)
     remove.high = remove.low + width;
   if ((both || above) &&
-      field(above ? "higher than" : "highest",
+      field(above ? "higher than" : "highest", "The upper limit, as a height of the field.",
             [&] { return typeLength("##remove high", remove.high, -1e30, 1e30, unit); }) &&
       both && remove.low > remove.high)
     remove.low = remove.high - width;
 }
 
 void whichSamples(RemoveOptions& remove) {
-  constexpr std::array<const char*, 3> kNames = {"samples not marked", "marked samples", "all, marked too"};
   constexpr std::array<engine::Region, 3> kOf = {engine::Region::kUnmarked, engine::Region::kMarked,
                                                  engine::Region::kAll};
   (void)field("of",
@@ -81,7 +81,8 @@ void whichSamples(RemoveOptions& remove) {
                 int of = 0;
                 for (std::size_t i = 0; i < kOf.size(); ++i)
                   if (remove.region == kOf[i]) of = static_cast<int>(i);
-                const bool changed = ImGui::Combo("##removed of", &of, kNames.data(), kNames.size());
+                const bool changed = chooseWord("##removed of", of,
+                                                {"samples not marked", "marked samples", "all, marked too"});
                 if (changed) remove.region = kOf[static_cast<std::size_t>(of)];
                 return changed;
               });
@@ -115,12 +116,13 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   heightFields(remove, seen, context.units.height);
   endFields();
   if (const RemovedHeights kind = removedHeights(remove); kind != RemovedHeights::kAny) {
-    if (ImGui::Button("Limits of the colours")) {
+    if (pressButton(
+            "Limits of the colours",
+            "The ends of the colours as limits: in the panel Colours they are dragged on the histogram.")) {
       remove.low = -kNoHeight;
       remove.high = kNoHeight;
       setHeights(remove, kind, seen);
     }
-    explain("The ends of the colours as limits: in the panel Colours they are dragged on the histogram.");
   }
   heights.remove = turned ? engine::upsideDown(remove) : remove;
   count.want(heights.remove);

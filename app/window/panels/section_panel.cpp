@@ -158,17 +158,19 @@ void figureLines(const SectionTool& tool, const render::ShownUnit& length, const
 // What is measured between the cursors.
 void figureChoice(KeptSection& section, const render::ShownUnit& length) {
   ImGui::TextUnformatted("between the cursors:");
-  ImGui::Checkbox("line##section", &section.line);
-  for (const auto& [name, id, wanted] : {std::tuple("step", "step##section", &section.step),
-                                         {"groove", "groove##section", &section.groove},
-                                         {"arc", "arc##section", &section.arc},
-                                         {"angle", "angle##section", &section.angle}}) {
-    sameLineIfFits(name, ItemKind::kTick);
-    ImGui::Checkbox(id, wanted);
-  }
-  explain("From the line between the cursors to the one of a second stretch, with violet ends in the plot.");
-  ImGui::Checkbox("roughness##section", &section.roughness);
-  explain("Ra, Rq, Rz and others between the cursors, of waves shorter than the cut-off beside it.");
+  tickBox("line##section", section.line,
+          "Slope of the straight line through the heights, and what is left of them.");
+  sameLineIfFits("step", ItemKind::kTick);
+  tickBox("step##section", section.step, "Height of a step between two levels.");
+  sameLineIfFits("groove", ItemKind::kTick);
+  tickBox("groove##section", section.groove, "Depth and width of a groove, or height and width of a ridge.");
+  sameLineIfFits("arc", ItemKind::kTick);
+  tickBox("arc##section", section.arc, "Radius and middle of the circle through the heights.");
+  sameLineIfFits("angle", ItemKind::kTick);
+  tickBox("angle##section", section.angle,
+          "From the line between the cursors to the one of a second stretch, with violet ends in the plot.");
+  tickBox("roughness##section", section.roughness,
+          "Ra, Rq, Rz and others between the cursors, of waves shorter than the cut-off beside it.");
   restOfLine();
   if (section.roughness)
     (void)typeLength("##section cutoff", section.cutoff_mm, 1e-9, 1e9, length);
@@ -189,7 +191,7 @@ void sectionChoice(const PanelContext& context, SectionTool& tool) {
   sameLineIfFits("New");
   actionButton("New##section", Action::kSectionNew, context.act);
   sameLineIfFits("Remove");
-  if (ImGui::Button("Remove##section")) tool.remove();
+  if (pressButton("Remove##section", "Drops the section that is shown.")) tool.remove();
   ImGui::EndDisabled();
   ImGui::BeginDisabled(count == 0);
   sameLineIfFits("Export ...");
@@ -208,7 +210,7 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted("a line over the surface: point at its ends and press Q and Shift+Q");
     ImGui::PopTextWrapPos();
-    if (ImGui::Button("Along the middle row")) {
+    if (pressButton("Along the middle row", "From the left to the right end of the field, to begin with.")) {
       const double y = 0.5 * (grid.height - 1) * grid.spacingYMm();
       tool.set({.from = {0.0, y}, .to = {(grid.width - 1) * grid.spacingXMm(), y}});
     }
@@ -221,9 +223,12 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
                                         {"from y", "##section from y", &section.from.y},
                                         {"to x", "##section to x", &section.to.x},
                                         {"to y", "##section to y", &section.to.y}})
-    (void)field(name, [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
-  (void)field("mean across",
-              [&] { return typeLength("##section width", section.width_mm, 0.0, kFar, length); });
+    (void)field(name, "The ends of the section in the scan's own coordinates.",
+                [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
+  (void)field(
+      "mean across",
+      "Heights within this width across the line are averaged: a wide one has less noise. 0: the line alone.",
+      [&] { return typeLength("##section width", section.width_mm, 0.0, kFar, length); });
   endFields();
   figureChoice(section, length);
   tool.set(section);

@@ -52,7 +52,8 @@ void startPage(Parts& parts, const Act& act, PanelRequests& requests) {
   ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");
   actionButton("Open a scan", Action::kOpen, act);
   ImGui::SameLine();
-  if (ImGui::Button("A sample part")) requests.sample = true;
+  if (pressButton("A sample part", "A simulated scan with noise and edges, to try everything on."))
+    requests.sample = true;
   const std::vector<std::string>& recent = parts.recent.paths();
   const int cards = std::min(kMostCards, static_cast<int>(recent.size()));
   for (int i = 0; i < cards; ++i) {

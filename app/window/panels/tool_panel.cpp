@@ -66,14 +66,16 @@ void falloffField(const PanelContext& context) {
   const haptic::FalloffRow& now = haptic::rowOf(scene.brush_falloff);
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 curve(3.0F * line, line);
-  fieldName("falloff");
+  const std::string says =
+      fmt::format("How smoothing falls from the middle of the brush to its rim: {}.", now.hint);
+  fieldName("falloff", says);
   const bool opened = ImGui::BeginCombo("##falloff", std::string(now.word).c_str());
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   if (!opened) {
     const float arrow = ImGui::GetFrameHeight();
     drawFalloff(scene.brush_falloff,
                 ImVec2(high.x - arrow - curve.x - 6.0F, low.y + 0.5F * (high.y - low.y - curve.y)), curve);
-    explain(fmt::format("How smoothing falls from the middle of the brush to its rim: {}.", now.hint));
+    explain(says);
     return;
   }
   for (const haptic::FalloffRow& row : haptic::kFalloffRows) {
@@ -92,13 +94,14 @@ void falloffField(const PanelContext& context) {
 void spacingField(const PanelContext& context) {
   haptic::Scene scene = context.client.scene();
   auto spacing = static_cast<float>(scene.brush_spacing);
-  const bool changed = field("spacing", [&] {
+  constexpr const char* kSays =
+      "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
+      "moved by "
+      "so many radii of the brush.";
+  const bool changed = field("spacing", kSays, [&] {
     return ImGui::SliderFloat("##spacing", &spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
                               spacing > 0.0F ? "%.2f radii" : "all the time", ImGuiSliderFlags_AlwaysClamp);
   });
-  explain(
-      "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
-      "moved by so many radii of the brush.");
   if (!changed) return;
   scene.brush_spacing = std::round(100.0 * static_cast<double>(spacing)) / 100.0;
   applyScene(context.client, scene, context.notices);
@@ -126,13 +129,13 @@ void brushFields(const PanelContext& context) {
   const double samples = brushRadius(client);
   beginFields();
   auto radius = static_cast<float>(samples);
-  if (field("radius", [&] {
+  if (field("radius", "How far the brush reaches around the tip; [ and ] change it, too.", [&] {
         return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
                                   "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
       }))
     setBrushRadius(client, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
-  if (field("", [&] {
+  if (field("", "The same radius as a length.", [&] {
         return typeLength("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell,
                           ofMillimetres(context.units.length, grid.lateral_unit.mm));
       }))
@@ -144,12 +147,13 @@ void brushFields(const PanelContext& context) {
   ImGui::EndDisabled();
   if (client.mouse() != nullptr) {
     auto depth = static_cast<float>(client.mouse()->pressMm() / cell);
-    if (field("depth", [&] {
-          return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
-                                    ImGuiSliderFlags_AlwaysClamp);
-        }))
+    if (field("depth",
+              "How far below the surface the mouse presses the tip; the wheel changes it while it presses.",
+              [&] {
+                return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
+                                          ImGuiSliderFlags_AlwaysClamp);
+              }))
       setPressDepth(client, static_cast<double>(depth) * cell);
-    explain("How far below the surface the mouse presses the tip; the wheel changes it while it presses.");
   }
   haptic::Scene scene = client.scene();
   if (limitField(context, scene.max_change, Action::kKeepWithin)) applyScene(client, scene, context.notices);

@@ -16,18 +16,21 @@ bool transformPanel(const PanelContext& context, TransformTool& transform) {
   TransformTool::Options& options = transform.options;
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
-  ImGui::Checkbox("crop to what is visible", &options.crop);
-  ImGui::Checkbox("left and right change places", &options.turning.mirror_x);
-  ImGui::Checkbox("top and bottom change places", &options.turning.mirror_y);
+  tickBox("crop to what is visible", options.crop, "Samples outside the picture are left out.");
+  tickBox("left and right change places", options.turning.mirror_x, "The field is mirrored along its rows.");
+  tickBox("top and bottom change places", options.turning.mirror_y,
+          "The field is mirrored along its columns.");
   beginFields();
-  (void)field("turned by", [&] {
-    constexpr const char* kQuarters[] = {"0 degrees", "90 degrees", "180 degrees", "270 degrees"};
-    return ImGui::Combo("##quarters", &options.turning.quarters, kQuarters, std::size(kQuarters));
+  (void)field("turned by", "Counter-clockwise as seen from above; no height changes.", [&] {
+    return chooseWord("##quarters", options.turning.quarters,
+                      {"0 degrees", "90 degrees", "180 degrees", "270 degrees"});
   });
-  (void)field("and by",
+  (void)field("and by", "A further angle, counter-clockwise; heights between samples are resampled.",
               [&] { return typeNumber("##angle", options.angle_deg, -180.0, 180.0, "%.6g degrees"); });
   endFields();
-  if (ImGui::Checkbox("other spacing", &options.resample) && !(options.spacing_mm > 0.0))
+  if (tickBox("other spacing", options.resample,
+              "Distance of the samples of the new field, along rows and columns.") &&
+      !(options.spacing_mm > 0.0))
     options.spacing_mm = std::fmax(grid.spacingXMm(), grid.spacingYMm());
   restOfLine();
   if (options.resample)
@@ -37,15 +40,17 @@ bool transformPanel(const PanelContext& context, TransformTool& transform) {
   beginFields();
   ImGui::BeginDisabled(!options.resample && options.angle_deg == 0.0);
   (void)field("resampling", "How a height between samples is found.", [&] {
-    constexpr const char* kMethods[] = {"means of areas", "linear", "cubic"};
     int method = static_cast<int>(options.method);
-    const bool changed = ImGui::Combo("##resampling", &method, kMethods, std::size(kMethods));
+    const bool changed = chooseWord("##resampling", method, {"means of areas", "linear", "cubic"});
     if (changed) options.method = static_cast<engine::Resampling>(method);
     return changed;
   });
   ImGui::EndDisabled();
   endFields();
-  const bool asked = ImGui::Button("Make a session of it") && !options.none();
+  const bool asked =
+      pressButton("Make a session of it",
+                  "Writes the transformed field as a session beside the scan, and opens it.") &&
+      !options.none();
   ImGui::EndDisabled();
   beginPlace("##transform outcome", kOutcomeOfTransform);
   if (!transform.busy())

@@ -145,6 +145,40 @@ void actionButton(const char* name, Action action, const Act& act, float width) 
   tip(action);
 }
 
+bool pressButton(const char* name, std::string_view says) {
+  const bool pressed = ImGui::Button(name);
+  explain(says);
+  return pressed;
+}
+
+bool tickBox(const char* name, bool& on, std::string_view says) {
+  const bool changed = ImGui::Checkbox(name, &on);
+  explain(says);
+  return changed;
+}
+
+bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words) {
+  const char* const now = *(words.begin() + std::clamp(chosen, 0, static_cast<int>(words.size()) - 1));
+  if (!ImGui::BeginCombo(id, now)) return false;
+  bool changed = false;
+  int i = 0;
+  for (const char* word : words) {
+    const bool is = i == chosen;
+    if (ImGui::Selectable(word, is) && !is) {
+      chosen = i;
+      changed = true;
+    }
+    if (is) ImGui::SetItemDefaultFocus();
+    ++i;
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool chooseRegion(const char* id, int& chosen) {
+  return chooseWord(id, chosen, {"all samples", "marked samples", "samples not marked"});
+}
+
 void previewButton(PreviewWord word, const char* id, Action action, const Act& act) {
   constexpr const char* kWords[] = {"Preview", "Drop preview", "Show it"};
   float wide = 0.0F;

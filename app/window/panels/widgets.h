@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -60,6 +61,14 @@ void writeWrapped(const std::string& text);
 void actionButton(const char* name, Action action, const Act& act, float width = 0.0F);
 void actionTick(const char* name, bool ticked, Action action, const Act& act);
 
+/// A button, a tick box and a list of words, each with its tip; true when it was pressed or changed.
+bool pressButton(const char* name, std::string_view says);
+bool tickBox(const char* name, bool& on, std::string_view says);
+/// `chosen`: the place of a word in the list, from 0. The tip is that of the field() that it is in.
+bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words);
+/// chooseWord() of the samples that count: 0: all, 1: marked, 2: not marked.
+bool chooseRegion(const char* id, int& chosen);
+
 /// The button of a preview, as wide with each of its words, so that what is beside it stays where it is: "Preview", "Drop
 /// preview" while one is shown, and in the colour of what is to be pressed "Show it" where the fields say something else than
 /// what is shown. `id`: which of several in a panel.
@@ -75,12 +84,8 @@ void sameLineIfFits(const char* text, ItemKind what = ItemKind::kButton);
 /// rest of the line to `edit` and returns its result. A name too long for its column has a line of its own.
 void beginFields();
 void endFields();
-/// `says`: the tip of the name and of the field.
-void fieldName(const char* name, std::string_view says = {});
-bool field(const char* name, const auto& edit) {
-  fieldName(name);
-  return edit();
-}
+/// `says`: the tip of the name and of the field. There is no field without one.
+void fieldName(const char* name, std::string_view says);
 bool field(const char* name, std::string_view says, const auto& edit) {
   fieldName(name, says);
   const bool changed = edit();
