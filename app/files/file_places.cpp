@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/texts/texts.h"
 #include "app/work/recent_files.h"
 
 namespace fettle::app {
@@ -64,7 +65,7 @@ std::vector<FilePlace> FilePlaces::places(const std::vector<std::string>& recent
     if (!known && fs::is_directory(place.folder, error)) all.push_back(std::move(place));
   };
   for (const std::string& folder : own_) add({nameOf(folder), folder, true});
-  if (const std::string home = environment("HOME"); !home.empty()) add({"Home", home});
+  if (const std::string home = environment("HOME"); !home.empty()) add({tr("Home"), home});
   for (FilePlace& place : desktopBookmarks()) add(std::move(place));
   for (const std::string& path : recent) {
     const std::string folder = fs::path(path).parent_path().string();

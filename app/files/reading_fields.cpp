@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/texts/texts.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 
@@ -13,33 +14,39 @@ namespace fettle::app {
 namespace {
 
 constexpr std::array kFields{
+    ReadingField{"--spacing", textOf("spacing"), true,
+                 textOf("How far two samples lie apart, in the unit below: along a row, and from row to row. "
+                        "Empty: as the "
+                        "file says, else 1.")},
     ReadingField{
-        "--spacing", "spacing", true,
-        "How far two samples lie apart, in the unit below: along a row, and from row to row. Empty: as the "
-        "file says, else 1."},
+        "--unit", textOf("unit"), true,
+        textOf(
+            "The unit of spacing and heights, where the file does not say it. Counts of a depth camera are "
+            "often mm.")},
     ReadingField{
-        "--unit", "unit", true,
-        "The unit of spacing and heights, where the file does not say it. Counts of a depth camera are "
-        "often mm."},
+        "--z-scale", textOf("z scale"), true,
+        textOf(
+            "How high one step of the stored numbers is: 0.001 where micrometres are stored and the unit is "
+            "mm. Empty: as the file says, else 1.")},
     ReadingField{
-        "--z-scale", "z scale", true,
-        "How high one step of the stored numbers is: 0.001 where micrometres are stored and the unit is "
-        "mm. Empty: as the file says, else 1."},
-    ReadingField{"--no-data", "no data", true,
-                 "The stored number that means \"nothing was measured here\": often 0, -9999 or 65535. These "
-                 "samples become holes."},
+        "--no-data", textOf("no data"), true,
+        textOf("The stored number that means \"nothing was measured here\": often 0, -9999 or 65535. These "
+               "samples become holes.")},
     ReadingField{
-        "--cell-size", "cell size", false,
-        "The points are gathered in square cells of this size, in the unit of the file. Empty: as large "
-        "as the points lie apart."},
+        "--cell-size", textOf("cell size"), false,
+        textOf(
+            "The points are gathered in square cells of this size, in the unit of the file. Empty: as large "
+            "as the points lie apart.")},
     ReadingField{
-        "--cell-rule", "cell height", false,
-        "The height of a cell with several points: the median leaves out strays, the highest is what a "
-        "laser from above sees first."},
-    ReadingField{"--depth-camera", "depth camera", false,
-                 "The numbers are distances from a camera: its focal length fx in pixels. fy is the same, "
-                 "and its axis cx, cy "
-                 "goes through the middle of the picture, unless they are given."},
+        "--cell-rule", textOf("cell height"), false,
+        textOf(
+            "The height of a cell with several points: the median leaves out strays, the highest is what a "
+            "laser from above sees first.")},
+    ReadingField{
+        "--depth-camera", textOf("depth camera"), false,
+        textOf("The numbers are distances from a camera: its focal length fx in pixels. fy is the same, "
+               "and its axis cx, cy "
+               "goes through the middle of the picture, unless they are given.")},
 };
 
 // Formats whose points lie as they like, and pictures whose counts may be distances: FormatInfo::name.
@@ -73,7 +80,7 @@ const ReadingField& readingField(std::string_view option) {
 std::string inFieldWords(std::string_view warning) {
   std::string text(warning);
   for (const ReadingField& field : kFields) {
-    const std::string option(field.option), name = fmt::format("\"{}\"", field.name);
+    const std::string option(field.option), name = fmt::format("\"{}\"", tr(field.name));
     for (const char* verb : {"give it with ", "give them with ", "give "})
       replaceAll(text, verb + option + " ", "set " + name + " to ");
     // "to" only before a value: none follows "and", "or", "if".
@@ -106,7 +113,7 @@ bool anyGuess(const std::vector<std::string>& warnings) {
 std::string readingText(const ScanOptions& reading) {
   std::vector<std::string> said;
   const auto say = [&](std::string_view option, const std::string& value) {
-    said.push_back(fmt::format("{} {}", readingField(option).name, value));
+    said.push_back(fmt::format("{} {}", tr(readingField(option).name), value));
   };
   if (!reading.spacing.empty()) say("--spacing", pairText(reading.spacing));
   if (!reading.unit.empty()) say("--unit", reading.unit);
@@ -139,13 +146,14 @@ ReadingSources readingSources(const ScanOptions& reading, const std::vector<std:
                               const FieldsThatApply& apply) {
   std::vector<std::string_view> stated;
   const auto add = [&](std::string_view option, bool said) {
-    if (!said && !isAssumed(warnings, option)) stated.push_back(readingField(option).name);
+    if (!said && !isAssumed(warnings, option)) stated.push_back(tr(readingField(option).name));
   };
   if (apply.spacing) add("--spacing", !reading.spacing.empty() || !reading.depth_camera.empty());
   add("--unit", !reading.unit.empty());
   ReadingSources sources;
-  if (!stated.empty()) sources.file = fmt::format("from the file: {}", fmt::join(stated, ", "));
-  if (const std::string said = readingText(reading); !said.empty()) sources.person = "as you say: " + said;
+  if (!stated.empty()) sources.file = trFormat("from the file: {}", fmt::join(stated, ", "));
+  if (const std::string said = readingText(reading); !said.empty())
+    sources.person = trFormat("as you say: {}", said);
   return sources;
 }
 

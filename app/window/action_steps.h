@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/overlay/line_overlay.h"
+#include "app/texts/texts.h"
 #include "app/window/parts.h"
 #include "app/window/result_files.h"
 #include "app/window/scene_edits.h"
@@ -63,8 +64,8 @@ inline void openScan(Parts& p) {
 inline void readAs(Parts& p) {
   if (isSessionPath(p.document.path()))
     p.feedback.message(
-        "the steps of a session were made on its scan as it was read",
-        "open the scan itself to read it in another way; `fettle recipe` takes filters and forms along");
+        tr("the steps of a session were made on its scan as it was read"),
+        tr("open the scan itself to read it in another way; `fettle recipe` takes filters and forms along"));
   else
     p.feedback.questions.ask(
         {.kind = Question::Kind::kImport, .path = p.document.path(), .reading = p.reading});
@@ -240,10 +241,10 @@ void thickness(Parts& p) {
 }
 
 inline void invertMarks(Parts& p) {
-  p.marking.edit.ask("Invert marks", engine::invertMarks);
+  p.marking.edit.ask(textOf("Invert marks"), engine::invertMarks);
 }
 inline void clearMarks(Parts& p) {
-  p.marking.edit.ask("Clear marks", engine::clearMarks);
+  p.marking.edit.ask(textOf("Clear marks"), engine::clearMarks);
 }
 inline bool drawsLines(const Parts& p) {
   return p.settings.draw_lines;
@@ -268,7 +269,7 @@ inline void joinLine(Parts& p) {
   p.marking.lines.joinChosen(clientOf(p), p.marking.edit);
 }
 inline void clearLines(Parts& p) {
-  p.marking.edit.ask("Remove all edge lines",
+  p.marking.edit.ask(textOf("Remove all edge lines"),
                      [](const engine::Version& base, engine::JobControl&) -> engine::Result<engine::Version> {
                        return removeLines(base, std::nullopt);
                      });
@@ -283,7 +284,7 @@ inline void nextPlace(Parts& p) {
   if (places.found() == nullptr)
     places.search(clientOf(p));
   else if (!places.next())
-    p.feedback.notices.push_back({"no place is left", "Shift+Z hides them; Z then looks for others"});
+    p.feedback.notices.push_back({tr("no place is left"), tr("Shift+Z hides them; Z then looks for others")});
   p.picture.requestRedraw();
 }
 inline void hidePlaces(Parts& p) {
@@ -458,7 +459,7 @@ void computeHeights(Parts& p) {
 inline void removeMarked(Parts& p) {
   if (clientOf(p).newest().reader().root().marked_children == 0)
     p.feedback.notices.push_back(
-        {"nothing is marked that could be removed", "mark with a box (B) or the brush (M) first"});
+        {tr("nothing is marked that could be removed"), tr("mark with a box (B) or the brush (M) first")});
   else
     p.heights.removeMarked();
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/window/bookmarks.h"
 #include "app/window/view_text.h"
 #include "app/work/recent_files.h"
@@ -89,9 +90,9 @@ std::string ActiveDocument::rescue() {
   loop_->finish();
   const engine::Version field = loop_->upright();
   const engine::Status closed = close(SessionKeeper::Afterwards::kKeep);
-  if (closed && !session.empty()) return fmt::format("everything is stored in {}; ", session);
+  if (closed && !session.empty()) return trFormat("everything is stored in {}; ", session);
   if (closed)
-    return had_unsaved ? fmt::format("unsaved work is stored, and offered when {} is opened again; ", path_)
+    return had_unsaved ? trFormat("unsaved work is stored, and offered when {} is opened again; ", path_)
                        : "";
 
   // The session cannot be written: save at least the field, next to the scan or in a writable folder.
@@ -104,9 +105,9 @@ std::string ActiveDocument::rescue() {
     for (int n = 2; fs::exists(path, error); ++n) path = fmt::format("{}_{}.fettle", stem, n);
     engine::JobControl job;
     if (engine::exportField(field, path, {}, job))
-      return fmt::format("{}; the field with its marks is stored in {}; ", why, path);
+      return trFormat("{}; the field with its marks is stored in {}; ", why, path);
   }
-  return fmt::format("{}; unsaved work is lost; ", why);
+  return trFormat("{}; unsaved work is lost; ", why);
 }
 
 std::string ActiveDocument::fileName() const {
@@ -136,9 +137,9 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
   const auto error = keeper_->error();
   if (error && !keeping_fails_)
     feedback.message(
-        fmt::format("The work cannot be stored: {}", error->line()),
-        "Nothing is lost while the program runs, and it tries again automatically. Save somewhere "
-        "else: Ctrl+Shift+S.");
+        trFormat("The work cannot be stored: {}", error->line()),
+        tr("Nothing is lost while the program runs, and it tries again automatically. Save somewhere "
+           "else: Ctrl+Shift+S."));
   keeping_fails_ = error.has_value();
   const auto now = std::chrono::steady_clock::now();
   if (now - noted_ < kNoteEvery) return;
@@ -176,14 +177,15 @@ bool ActiveDocument::unsaved() const {
 
 std::string ActiveDocument::keptText(const std::string& exported) const {
   if (const auto error = keeper_->error())
-    return fmt::format("not stored: {}; the work is in memory, save it elsewhere", error->what);
+    return trFormat("not stored: {}; the work is in memory, save it elsewhere", error->what);
   const bool waiting = keeper_->waiting() > 0 && std::chrono::steady_clock::now() - kept_ > kSayWaiting;
   const std::string session = keeper_->path();
   if (keeper_->named())
-    return fmt::format("{} {}", waiting ? "writing" : "kept in", fs::path(session).filename().string());
+    return waiting ? trFormat("writing {}", fs::path(session).filename().string())
+                   : trFormat("kept in {}", fs::path(session).filename().string());
   if (!unsaved()) return {};
-  if (!exported.empty()) return fmt::format("exported to {}", fs::path(exported).filename().string());
-  return session.empty() || waiting ? "not saved" : "not saved; kept for the next start";
+  if (!exported.empty()) return trFormat("exported to {}", fs::path(exported).filename().string());
+  return session.empty() || waiting ? tr("not saved") : tr("not saved; kept for the next start");
 }
 
 }  // namespace fettle::app

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/texts/texts.h"
 #include "app/window/actions.h"
 #include "app/window/scene_edits.h"
 #include "app/work/tips.h"
@@ -42,12 +43,12 @@ void followButtons(Parts& parts) {
   for (std::uint64_t i = 0; i < chosen.tools; ++i) {
     carryOut(actionOf(static_cast<haptic::Tool>((static_cast<int>(client.tool()) + 1) % haptic::kTools)),
              parts);
-    parts.feedback.status = "tool: " + std::string(haptic::rowOf(client.tool()).title);
+    parts.feedback.status = trFormat("tool: {}", tr(haptic::rowOf(client.tool()).title));
   }
   for (std::uint64_t i = 0; i < chosen.tips; ++i) {
     const ChosenTip next = nextTip(client.scene(), client.field().grid());
     applyScene(client, next.scene, parts.feedback.notices);
-    if (client.scene() == next.scene) parts.feedback.status = "tip: " + next.name;
+    if (client.scene() == next.scene) parts.feedback.status = trFormat("tip: {}", next.name);
     parts.picture.requestRedraw();
   }
 }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
+
 namespace fettle::app {
 namespace {
 
@@ -102,13 +104,13 @@ render::Shown shownOf(Parts& parts, const std::vector<PreviewPicture>& previews)
 
 void addTitles(const Parts& parts, const std::vector<PreviewPicture>& previews, render::FrameInput& input) {
   if (const CoarseForm* coarse = meansShown(parts))
-    input.titles.push_back(fmt::format("without the form: {}", coarseFormState(*coarse)));
+    input.titles.push_back(trFormat("without the form: {}", coarseFormState(*coarse)));
   if (previews.empty()) return;
-  input.titles.emplace_back("unchanged");
+  input.titles.emplace_back(tr("unchanged"));
   for (const PreviewPicture& preview : previews) input.titles.push_back(preview.title);
   // One plot has room for only one title.
   if (input.arrangement == render::Arrangement::kSplit)
-    input.titles = {fmt::format("left: unchanged, right: {}", input.titles[1]), ""};
+    input.titles = {trFormat("left: unchanged, right: {}", input.titles[1]), ""};
 }
 
 }  // namespace

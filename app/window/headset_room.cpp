@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/terminal.h"
+#include "app/texts/texts.h"
 #include "app/work/device_loop.h"
 #include "engine/base/stopwatch.h"
 
@@ -10,7 +11,7 @@ namespace fettle::app {
 namespace {
 
 constexpr std::int64_t kAgain_ns = 25'000'000;  // between two frames of the window in the room
-constexpr const char* kStands = "the headset makes no frames";
+constexpr const char* kStands = textOf("the headset makes no frames");
 
 }  // namespace
 
@@ -61,9 +62,9 @@ void HeadsetRoom::follow(Parts& parts, const DrawOptions& options, std::uint64_t
   // The window goes on without it, and nothing that was done is lost. The last of its input ends what hands held there.
   takeInput(parts.window);
   parts.feedback.notices.push_back(
-      state.error
-          ? Notice{state.error->what, "the window continues; start fettle view --xr again for the headset"}
-          : Notice{"the headset's session was ended", "the window continues"});
+      state.error ? Notice{state.error->what,
+                           tr("the window continues; start fettle view --xr again for the headset")}
+                  : Notice{tr("the headset's session was ended"), tr("the window continues")});
   headset_.reset();
   parts.picture.requestRedraw();
 }
@@ -89,7 +90,7 @@ void HeadsetRoom::noteStanding(Feedback& feedback) {
   if (std::exchange(said_standing_, figures_.stands) == figures_.stands) return;
   if (figures_.stands)
     feedback.notices.push_back(
-        {kStands, "the window continues; if it stays so, restart the headset's runtime"});
+        {kStands, tr("the window continues; if it stays so, restart the headset's runtime")});
   else
     std::erase_if(feedback.notices, [](const Notice& notice) { return notice.what == kStands; });
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/window/actions.h"
 
 namespace fettle::app {
@@ -10,41 +11,41 @@ using render::Key;
 using render::Modifiers;
 
 constexpr std::pair<Key, const char*> kKeyNames[] = {
-    {Key::kSpace, "Space"},
-    {Key::kEscape, "Esc"},
-    {Key::kEnter, "Enter"},
-    {Key::kTab, "Tab"},
-    {Key::kBackspace, "Backspace"},
-    {Key::kDelete, "Delete"},
-    {Key::kInsert, "Insert"},
-    {Key::kLeft, "Left"},
-    {Key::kRight, "Right"},
-    {Key::kUp, "Up"},
-    {Key::kDown, "Down"},
-    {Key::kHome, "Home"},
-    {Key::kEnd, "End"},
-    {Key::kPageUp, "Page up"},
-    {Key::kPageDown, "Page down"},
-    {Key::kKeypadPeriod, "keypad ."},
-    {Key::kKeypadPlus, "keypad +"},
-    {Key::kKeypadMinus, "keypad -"},
-    {Key::kKeypadEnter, "keypad Enter"},
-    {Key::kPause, "Pause"},
+    {Key::kSpace, textOf("Space")},
+    {Key::kEscape, textOf("Esc")},
+    {Key::kEnter, textOf("Enter")},
+    {Key::kTab, textOf("Tab")},
+    {Key::kBackspace, textOf("Backspace")},
+    {Key::kDelete, textOf("Delete")},
+    {Key::kInsert, textOf("Insert")},
+    {Key::kLeft, textOf("Left")},
+    {Key::kRight, textOf("Right")},
+    {Key::kUp, textOf("Up")},
+    {Key::kDown, textOf("Down")},
+    {Key::kHome, textOf("Home")},
+    {Key::kEnd, textOf("End")},
+    {Key::kPageUp, textOf("Page up")},
+    {Key::kPageDown, textOf("Page down")},
+    {Key::kKeypadPeriod, textOf("keypad .")},
+    {Key::kKeypadPlus, textOf("keypad +")},
+    {Key::kKeypadMinus, textOf("keypad -")},
+    {Key::kKeypadEnter, textOf("keypad Enter")},
+    {Key::kPause, textOf("Pause")},
 };
 
 std::string keyText(Key key, Modifiers modifiers) {
   std::string text;
-  if (modifiers.control) text += "Ctrl+";
-  if (modifiers.shift) text += "Shift+";
-  if (modifiers.alt) text += "Alt+";
+  if (modifiers.control) text += tr("Ctrl+");
+  if (modifiers.shift) text += tr("Shift+");
+  if (modifiers.alt) text += tr("Alt+");
   const int code = static_cast<int>(key);
   if (code > 32 && code < 127) return text + static_cast<char>(code);
   if (key >= keypadKey(0) && key <= keypadKey(9))
-    return text + fmt::format("keypad {}", code - static_cast<int>(keypadKey(0)));
+    return text + trFormat("keypad {}", code - static_cast<int>(keypadKey(0)));
   if (key >= functionKey(1) && key <= functionKey(12))
     return text + fmt::format("F{}", code - static_cast<int>(functionKey(1)) + 1);
   for (const auto& [named, name] : kKeyNames)
-    if (named == key) return text + name;
+    if (named == key) return text + tr(name);
   return text;
 }
 

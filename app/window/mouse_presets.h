@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "app/texts/texts.h"
 #include "render/window/window.h"
 
 namespace fettle::app {
@@ -27,10 +28,10 @@ struct MousePreset {
 };
 /// In the order of the enumeration.
 inline constexpr std::array<MousePreset, 4> kMousePresets{{
-    {Habits::kBlender, "blender", "Blender: middle turns, Shift+middle moves, Ctrl+middle zooms"},
-    {Habits::kCloudCompare, "cloudcompare", "CloudCompare: left turns, right moves, middle zooms"},
-    {Habits::kMeshLab, "meshlab", "MeshLab: left turns, middle moves, Shift+left zooms"},
-    {Habits::kMeshLib, "meshlib", "MeshLib: middle turns, right moves"},
+    {Habits::kBlender, "blender", textOf("Blender: middle turns, Shift+middle moves, Ctrl+middle zooms")},
+    {Habits::kCloudCompare, "cloudcompare", textOf("CloudCompare: left turns, right moves, middle zooms")},
+    {Habits::kMeshLab, "meshlab", textOf("MeshLab: left turns, middle moves, Shift+left zooms")},
+    {Habits::kMeshLib, "meshlib", textOf("MeshLib: middle turns, right moves")},
 }};
 
 /// The effect of a drag on the view.

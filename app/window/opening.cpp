@@ -8,6 +8,7 @@
 
 #include "app/files/reading_fields.h"
 #include "app/files/thumbnail_shelf.h"
+#include "app/texts/texts.h"
 #include "engine/formats/formats.h"
 
 namespace fettle::app {
@@ -85,12 +86,12 @@ bool Opening::takeCoarse(bool open) {
 
 std::string Opening::coarseText() const {
   if (coarse_->overview)
-    return fmt::format(
+    return trFormat(
         "coarse picture, the file's own overview, 1 in {} x {}: touch and tools wait for all "
         "of {} x {} samples",
         coarse_->step_columns, coarse_->step_rows, coarse_->width, coarse_->height);
-  return fmt::format("coarse picture, 1 sample in {} x {}: touch and tools wait for all of {} x {}",
-                     coarse_->step_columns, coarse_->step_rows, coarse_->width, coarse_->height);
+  return trFormat("coarse picture, 1 sample in {} x {}: touch and tools wait for all of {} x {}",
+                  coarse_->step_columns, coarse_->step_rows, coarse_->width, coarse_->height);
 }
 
 bool Opening::dropCoarse() {

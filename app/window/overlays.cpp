@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/overlay/line_overlay.h"
+#include "app/texts/texts.h"
 #include "app/window/navigation.h"
 #include "app/window/scene_edits.h"
 
@@ -21,11 +22,19 @@ constexpr double kLeastSeen = 96.0;  // [samples]; of less the surroundings show
 constexpr double kPlacePiece_px = 3.0;
 // Narrow: the hand has to see the edge below.
 constexpr float kOtherPlace_px = 2.5F, kPresentPlace_px = 4.0F, kPlaceEnd_px = 9.0F;
-constexpr render::LineMeaning kOpenPlace{{0.75F, 0.08F, 0.75F}, "place for a line"},
-    kPresentPlace{{1.0F, 0.2F, 0.9F}, "the present place"}, kDonePlace{{0.08F, 0.6F, 0.15F}, "place done"},
-    kSkippedPlace{{0.3F, 0.3F, 0.3F}, "place skipped"}, kSectionMeaning{{0.02F, 0.02F, 0.02F}, "section"},
-    kPointMeaning{{1.0F, 0.9F, 0.2F}, "point of the plane"};
+constexpr render::LineMeaning kOpenPlace{{0.75F, 0.08F, 0.75F}, textOf("place for a line")},
+    kPresentPlace{{1.0F, 0.2F, 0.9F}, textOf("the present place")},
+    kDonePlace{{0.08F, 0.6F, 0.15F}, textOf("place done")},
+    kSkippedPlace{{0.3F, 0.3F, 0.3F}, textOf("place skipped")},
+    kSectionMeaning{{0.02F, 0.02F, 0.02F}, textOf("section")},
+    kPointMeaning{{1.0F, 0.9F, 0.2F}, textOf("point of the plane")};
 constexpr glm::vec3 kPointRim{0.02F, 0.02F, 0.02F};
+
+// Its name in the language of the window.
+render::LineMeaning inWords(render::LineMeaning meaning) {
+  meaning.name = tr(meaning.name);
+  return meaning;
+}
 
 const render::LineMeaning& meaningOfPlace(State state, bool present) {
   return state == State::kDone      ? kDonePlace
@@ -93,7 +102,7 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
   for (std::size_t k = 0; k < places.found()->places.size(); ++k)
-    addMeaning(meaningOfPlace(places.state(k), places.present() == k), overlays.meanings);
+    addMeaning(inWords(meaningOfPlace(places.state(k), places.present() == k)), overlays.meanings);
 }
 
 void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
@@ -145,7 +154,7 @@ void appendPoints(const engine::Version& field, std::span<const glm::dvec2> poin
     piece.width_px = kPoint_px;
     overlays.lines.push_back(piece);
   }
-  if (!points_mm.empty()) addMeaning(kPointMeaning, overlays.meanings);
+  if (!points_mm.empty()) addMeaning(inWords(kPointMeaning), overlays.meanings);
 }
 
 void SectionOverlay::append(const engine::Version& field, const SectionTool& section, double mm_per_pixel,
@@ -161,7 +170,7 @@ void SectionOverlay::append(const engine::Version& field, const SectionTool& sec
       addSection(reader, spacing, section.sections()[i], section.chosen() == i);
   }
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
-  if (!pieces_.empty()) addMeaning(kSectionMeaning, overlays.meanings);
+  if (!pieces_.empty()) addMeaning(inWords(kSectionMeaning), overlays.meanings);
 }
 
 void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dvec2& spacing,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "app/texts/texts.h"
 #include "app/window/axes_gizmo.h"
 
 namespace fettle::app {
@@ -102,7 +103,7 @@ void Parts::setFullScreen(bool on) {
   if (on) {
     leavePanels();
     window.enterFullScreen();
-    feedback.status = "F11 or Tab: back to the panels";
+    feedback.status = tr("F11 or Tab: back to the panels");
   } else {
     window.leaveFullScreen();
   }

@@ -7,6 +7,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>  // a popup by its number, at any level
 
+#include "app/texts/texts.h"
+
 namespace fettle::app {
 namespace {
 
@@ -26,31 +28,37 @@ struct KindInfo {
 };
 
 constexpr std::array kKinds{
-    KindInfo{Kind::kOpen, "open", "Open a scan", "", true, false, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kImport, "import", "Read a scan as", "", true, false, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kCompare, "compare", "Compare with a scan", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kJoin, "join", "Join with a scan", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kSaveAs, "save as", "Save as", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kExport, "export", "Export", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kOpenScene, "open scene", "Open a scene", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kSaveScene, "save scene", "Save the scene", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kUnsavedScene, "unsaved scene", "Unsaved scene", "N", true, true,
+    KindInfo{Kind::kOpen, "open", textOf("Open a scan"), "", true, false, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kImport, "import", textOf("Read a scan as"), "", true, false, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kCompare, "compare", textOf("Compare with a scan"), "", true, true,
+             ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kJoin, "join", textOf("Join with a scan"), "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kSaveAs, "save as", textOf("Save as"), "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kExport, "export", textOf("Export"), "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kOpenScene, "open scene", textOf("Open a scene"), "", true, true,
+             ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kSaveScene, "save scene", textOf("Save the scene"), "", true, true,
+             ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kUnsavedScene, "unsaved scene", textOf("Unsaved scene"), "N", true, true,
              ImGuiWindowFlags_AlwaysAutoResize, Key::kDelete},
-    KindInfo{Kind::kExportSections, "export sections", "Export sections", "", true, true,
+    KindInfo{Kind::kExportSections, "export sections", textOf("Export sections"), "", true, true,
              ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kExportReport, "export report", "Export a report", "", true, true,
+    KindInfo{Kind::kExportReport, "export report", textOf("Export a report"), "", true, true,
              ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kExportFits, "export fits", "Export fits", "", true, true, ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kExportFeatures, "export features", "Export features", "", true, true,
+    KindInfo{Kind::kExportFits, "export fits", textOf("Export fits"), "", true, true,
              ImGuiWindowFlags_NoResize},
-    KindInfo{Kind::kUnsaved, "unsaved", "Unsaved changes", "N", true, true, ImGuiWindowFlags_AlwaysAutoResize,
-             Key::kDelete},
-    KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},
-    KindInfo{Kind::kRecover, "recover", "Unsaved work", "S", true, false, ImGuiWindowFlags_AlwaysAutoResize},
-    KindInfo{Kind::kDevice, "device", "Set up the device", "RMT123CU+-", true, true,
+    KindInfo{Kind::kExportFeatures, "export features", textOf("Export features"), "", true, true,
+             ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kUnsaved, "unsaved", textOf("Unsaved changes"), "N", true, true,
+             ImGuiWindowFlags_AlwaysAutoResize, Key::kDelete},
+    KindInfo{Kind::kReplace, "replace", textOf("Replace?"), "R", false, true,
              ImGuiWindowFlags_AlwaysAutoResize},
-    KindInfo{Kind::kShortcuts, "shortcuts", "Shortcuts", "", false, false, ImGuiWindowFlags_None},
-    KindInfo{Kind::kMessage, "message", "Fettle", "", true, false, ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kRecover, "recover", textOf("Unsaved work"), "S", true, false,
+             ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kDevice, "device", textOf("Set up the device"), "RMT123CU+-", true, true,
+             ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kShortcuts, "shortcuts", textOf("Shortcuts"), "", false, false, ImGuiWindowFlags_None},
+    KindInfo{Kind::kMessage, "message", textOf("Fettle"), "", true, false, ImGuiWindowFlags_AlwaysAutoResize},
 };
 
 const KindInfo& infoOf(Kind kind) {
@@ -130,7 +138,7 @@ Question* Questions::next() {
     shown_ = std::move(waiting_.front());
     waiting_.pop_front();
     frames_ = 0;
-    const char* const title = infoOf(shown_->kind).title;
+    const char* const title = labelOf(infoOf(shown_->kind).title);
     id_ = ImGui::GetID(title);
     ImGui::OpenPopup(title);
   }
@@ -142,7 +150,7 @@ bool Questions::begin() {
   const KindInfo& info = infoOf(shown_->kind);
   const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-  if (!ImGui::BeginPopupModal(info.title, nullptr, info.flags)) {
+  if (!ImGui::BeginPopupModal(labelOf(info.title), nullptr, info.flags)) {
     key_ = Key::kNone;  // there is no room for it on the screen, and input must not wait for that
     return false;
   }
@@ -184,7 +192,8 @@ void Feedback::take(Notice notice) {
 
 void Feedback::dropOfField() {
   questions.dropOfField();
-  std::erase_if(notices, [](const Notice& notice) { return !notice.what.starts_with(kDeviceLost); });
+  std::erase_if(notices,
+                [](const Notice& notice) { return notice.what.find(tr(kDeviceLost)) == std::string::npos; });
 }
 
 }  // namespace fettle::app

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/files/scan_thumbnail.h"
+#include "app/texts/texts.h"
 #include "app/work/loop_client.h"
 #include "app/work/scan_reading.h"
 #include "render/window/window.h"
@@ -127,8 +128,8 @@ class Questions {
   render::Key key_ = render::Key::kNone;
 };
 
-/// How notices of the graphics device begin.
-inline constexpr const char* kDeviceLost = "the graphics device was lost";
+/// What notices of the graphics device contain.
+inline constexpr const char* kDeviceLost = textOf("the graphics device was lost");
 
 /// Messages and dialogs for the user: the notices over the panels, the line of the status bar, the dialogs.
 /// The parts of the window report here. Threading: main.

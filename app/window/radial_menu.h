@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "app/texts/texts.h"
 #include "app/window/actions.h"
 #include "render/plan/camera.h"
 #include "render/window/window.h"
@@ -25,14 +26,14 @@ class RadialMenu {
     Action action;
   };
   /// Clockwise from the top.
-  static constexpr std::array<Item, 8> kItems{{{"Smooth", actionOf(haptic::Tool::kSmooth)},
-                                               {"Mark", actionOf(haptic::Tool::kMark)},
-                                               {"Unmark", actionOf(haptic::Tool::kUnmark)},
-                                               {"Lasso", Action::kLasso},
-                                               {"View", Action::kNavigate},
-                                               {"Ball tip", Action::kBallTip},
-                                               {"Point tip", Action::kPointTip},
-                                               {"Feel", actionOf(haptic::Tool::kFeel)}}};
+  static constexpr std::array<Item, 8> kItems{{{textOf("Smooth"), actionOf(haptic::Tool::kSmooth)},
+                                               {textOf("Mark"), actionOf(haptic::Tool::kMark)},
+                                               {textOf("Unmark"), actionOf(haptic::Tool::kUnmark)},
+                                               {textOf("Lasso"), Action::kLasso},
+                                               {textOf("View"), Action::kNavigate},
+                                               {textOf("Ball tip"), Action::kBallTip},
+                                               {textOf("Point tip"), Action::kPointTip},
+                                               {textOf("Feel"), actionOf(haptic::Tool::kFeel)}}};
   static constexpr render::Key kKey = render::Key::kSpace;
   /// At scale 1 [pixels]: within which nothing is chosen; of the names.
   static constexpr double kMiddle_px = 24.0, kNames_px = 92.0;

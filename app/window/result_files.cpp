@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/section_export.h"
 #include "app/work/session_guard.h"
 #include "engine/io/files/input_file.h"
@@ -23,7 +24,8 @@ Work sectionsWork(Parts& parts) {
   if (one) what.sections = {*tool.section()};
   std::erase_if(what.sections, [](const KeptSection& section) { return !(section.lengthMm() > 0.0); });
   if (what.sections.empty())
-    return engine::inputError("there is no section yet", "", "point at its ends and press Q and Shift+Q");
+    return engine::inputError(tr("there is no section yet"), "",
+                              tr("point at its ends and press Q and Shift+Q"));
   if (tool.exporting.with_scan && engine::measureChange(client.original(), what.field).tiles > 0)
     what.before = client.original();
   return [what = std::move(what)](const std::string& path, engine::JobControl& job) {
@@ -36,10 +38,10 @@ Work reportWork(Parts& parts) {
   const SessionKeeper& keeper = *parts.document.keeper();
   if (const auto error = keeper.error()) return tl::unexpected(*error);
   if (parts.document.client()->strokeIsUnderWay())
-    return engine::inputError("a stroke is under way", "", "let the stylus go first");
+    return engine::inputError(tr("a stroke is under way"), "", tr("let the stylus go first"));
   const bool session = !keeper.path().empty();
   if (!session && parts.document.client()->history().last() > 0)
-    return engine::inputError("the first step is still being stored", "", "ask for the report again");
+    return engine::inputError(tr("the first step is still being stored"), "", tr("ask for the report again"));
   parts.document.storeNotes(parts.view);
   ReportRequest request{session ? keeper.path() : parts.document.path(),
                         session ? ScanOptions() : parts.reading,
@@ -51,7 +53,7 @@ Work reportWork(Parts& parts) {
 
 Work fitsWork(Parts& parts) {
   if (parts.fit.fits() == nullptr)
-    return engine::inputError("nothing is fitted yet", "", "open the panel Fit");
+    return engine::inputError(tr("nothing is fitted yet"), "", tr("open the panel Fit"));
   return [fits = *parts.fit.fits(), field = parts.fit.field()](const std::string& path, engine::JobControl&) {
     return writeFits(fits, field, path);
   };
@@ -59,41 +61,42 @@ Work fitsWork(Parts& parts) {
 
 Work featuresWork(Parts& parts) {
   if (parts.features.found() == nullptr)
-    return engine::inputError("no features were found yet", "", "open the panel Features");
+    return engine::inputError(tr("no features were found yet"), "", tr("open the panel Features"));
   return [report = *parts.features.found()](const std::string& path, engine::JobControl&) {
     return writeFeatures(report, path);
   };
 }
 
 constexpr ResultFormat kSectionFormats[] = {
-    {".csv", "a table of lengths, positions and heights, mm", OutputKind::kText},
-    {".svg", "heights over lengths, drawn", OutputKind::kPlot},
-    {".png", "the same as a picture", OutputKind::kPlot},
-    {".dxf", "polylines, length and height in mm", OutputKind::kDrawing}};
+    {".csv", textOf("a table of lengths, positions and heights, mm"), OutputKind::kText},
+    {".svg", textOf("heights over lengths, drawn"), OutputKind::kPlot},
+    {".png", textOf("the same as a picture"), OutputKind::kPlot},
+    {".dxf", textOf("polylines, length and height in mm"), OutputKind::kDrawing}};
 
-constexpr ResultFormat kReportFormats[] = {{".html", "one page for a browser", OutputKind::kPage},
-                                           {".pdf", "A4 pages", OutputKind::kPage}};
+constexpr ResultFormat kReportFormats[] = {{".html", textOf("one page for a browser"), OutputKind::kPage},
+                                           {".pdf", textOf("A4 pages"), OutputKind::kPage}};
 
 constexpr ResultFormat kFitFormats[] = {
-    {".csv", "a row for each figure, with its standard error", OutputKind::kText},
-    {".json", "the report of fettle fit", OutputKind::kText},
-    {".step", "the shapes for a CAD program, AP 214", OutputKind::kText},
-    {".stp", "the same", OutputKind::kText}};
+    {".csv", textOf("a row for each figure, with its standard error"), OutputKind::kText},
+    {".json", textOf("the report of fettle fit"), OutputKind::kText},
+    {".step", textOf("the shapes for a CAD program, AP 214"), OutputKind::kText},
+    {".stp", textOf("the same"), OutputKind::kText}};
 
 constexpr ResultFormat kFeatureFormats[] = {
-    {".csv", "a row for each, in the scan's units", OutputKind::kText}};
+    {".csv", textOf("a row for each, in the scan's units"), OutputKind::kText}};
 
 constexpr ResultFile kResultFiles[] = {
-    {Kind::kExportSections, "sections", "_sections.csv",
-     "the sections kept with the work, as fettle section --kept writes them", kSectionFormats,
+    {Kind::kExportSections, textOf("sections"), "_sections.csv",
+     textOf("the sections kept with the work, as fettle section --kept writes them"), kSectionFormats,
      ResultWriting::Reads::kNothing, sectionsWork},
-    {Kind::kExportReport, "report", "_report.html",
-     "pictures, figures, sections and steps, as fettle report writes them", kReportFormats,
+    {Kind::kExportReport, textOf("report"), "_report.html",
+     textOf("pictures, figures, sections and steps, as fettle report writes them"), kReportFormats,
      ResultWriting::Reads::kSession, reportWork},
-    {Kind::kExportFits, "fits", "_fits.csv", "the fits of the panel Fit, as fettle fit writes them",
-     kFitFormats, ResultWriting::Reads::kNothing, fitsWork},
-    {Kind::kExportFeatures, "features", "_features.csv",
-     "the table of the panel Features, as fettle features --csv writes it", kFeatureFormats,
+    {Kind::kExportFits, textOf("fits"), "_fits.csv",
+     textOf("the fits of the panel Fit, as fettle fit writes them"), kFitFormats,
+     ResultWriting::Reads::kNothing, fitsWork},
+    {Kind::kExportFeatures, textOf("features"), "_features.csv",
+     textOf("the table of the panel Features, as fettle features --csv writes it"), kFeatureFormats,
      ResultWriting::Reads::kNothing, featuresWork},
 };
 
@@ -143,8 +146,8 @@ void confirmResult(Question question, Parts& parts) {
 void writeResult(Kind kind, const std::string& path, Parts& parts) {
   const ResultFile& file = *resultFileOf(kind);
   if (parts.results.busy()) {
-    parts.feedback.message(fmt::format("writing {} is under way", parts.results.what()),
-                           "wait for its end, or cancel it");
+    parts.feedback.message(trFormat("writing {} is under way", tr(parts.results.what())),
+                           tr("wait for its end, or cancel it"));
     return;
   }
   Work work = file.work(parts);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/session_guard.h"
 
 namespace fettle::app {
@@ -42,7 +43,7 @@ std::optional<std::string> ResultWriting::poll(bool stored, Feedback& feedback) 
   auto done = writing_.take();
   if (!done) return std::nullopt;
   if (*done) {
-    feedback.status = fmt::format("written: {}", **done);
+    feedback.status = trFormat("written: {}", **done);
     feedback.take({.what = feedback.status, .remedy = "", .passes = true});
     return std::move(**done);
   }

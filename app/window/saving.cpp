@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/outputs.h"
 #include "app/work/session_guard.h"
 #include "engine/formats/formats.h"
@@ -113,8 +114,8 @@ void Saving::askToWrite(Question from, Typed typed, ActiveDocument& document, Fe
   const Keeping keeping = keepingOf(from.kind);
   std::error_code none;
   if (keeping == Keeping::kCopy && fs::equivalent(from.path, keeper.path(), none)) {
-    feedback.message(fmt::format("{} is the open session: everything is stored there immediately", from.path),
-                     "name another file for a copy");
+    feedback.message(trFormat("{} is the open session: everything is stored there immediately", from.path),
+                     tr("name another file for a copy"));
     return;
   }
   ReplacedFiles files = replacedFiles(outputsOf(from.path, keeping, document), keeper.scanPath());
@@ -197,12 +198,12 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
   if (!ended) return std::nullopt;
   Afterwards afterwards = std::exchange(afterwards_, {});
   if (*ended) {
-    feedback.status = fmt::format("written: {}", target_);
+    feedback.status = trFormat("written: {}", target_);
     noteFolderOf(target_);
     return Saved{std::move(afterwards), moved};
   }
   if (ended->error().kind != engine::ErrorKind::kCancelled)
-    feedback.message(ended->error().line(), "the work is stored here; save it elsewhere");
+    feedback.message(ended->error().line(), tr("the work is stored here; save it elsewhere"));
   return std::nullopt;
 }
 
@@ -218,8 +219,8 @@ void Saving::noteFolderOf(const std::string& path) {
 std::string Saving::exportText(const ActiveDocument& document) const {
   if (!exported_ || !document.isOpen()) return {};
   const bool same = document.client()->upright() == exported_->field;
-  return fmt::format("It was exported to {} at {}, {}.", exported_->path, exported_->at,
-                     same ? "as it is now" : "and changed since");
+  return same ? trFormat("It was exported to {} at {}, as it is now.", exported_->path, exported_->at)
+              : trFormat("It was exported to {} at {}, and changed since.", exported_->path, exported_->at);
 }
 
 std::string Saving::exportedTo(const ActiveDocument& document) const {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/live/placement.h"
+#include "app/texts/texts.h"
 
 namespace fettle::app {
 
@@ -27,14 +28,23 @@ std::string shown(const haptic::SceneNumber& number, double value) {
 
 }  // namespace
 
+// As haptic::rangeText(), in the language of the window.
+std::string rangeInWords(const haptic::SceneNumber& number) {
+  const std::string high = fmt::format("{}{}{}", number.high, number.unit.empty() ? "" : " ", number.unit);
+  if (number.kind == haptic::NumberKind::kWhole)
+    return trFormat("a whole number from {} to {}", number.low, high);
+  return number.low_end == haptic::LowEnd::kExcluded ? trFormat("above {}, at most {}", number.low, high)
+                                                     : trFormat("{} to {}", number.low, high);
+}
+
 std::string numberProblem(const LoopClient& client, const haptic::SceneNumber& number, double typed) {
   const auto nearest = haptic::nearestInRange(number, typed);
-  if (!nearest) return fmt::format("must be {}", haptic::rangeText(number));
+  if (!nearest) return trFormat("must be {}", rangeInWords(number));
   // As setNumber(): of a value that is much too large the device's limit is what matters.
   if (const auto problem = client.stabilityProblem(with(client.scene(), number, typed)))
     return fmt::format("{}: {}", problem->what, problem->remedy);
   if (*nearest != typed)
-    return fmt::format("must be {}: {} is taken", haptic::rangeText(number), shown(number, *nearest));
+    return trFormat("must be {}: {} is taken", rangeInWords(number), shown(number, *nearest));
   const haptic::Scene scene = with(client.scene(), number, typed);
   if (auto problem = haptic::sceneProblem(scene)) return *std::move(problem);
   if (client.device().profile().gives_force) return {};
@@ -46,8 +56,8 @@ void setNumber(LoopClient& client, const haptic::SceneNumber& number, double typ
                std::vector<Notice>& notices) {
   const auto nearest = haptic::nearestInRange(number, typed);
   if (!nearest) {
-    notices.push_back({fmt::format("{}: must be {}", number.name, haptic::rangeText(number)),
-                       fmt::format("{} stays", shown(number, number.of(client.scene())))});
+    notices.push_back({trFormat("{}: must be {}", tr(number.name), rangeInWords(number)),
+                       trFormat("{} stays", shown(number, number.of(client.scene())))});
     return;
   }
   if (client.stabilityProblem(with(client.scene(), number, typed))) {
@@ -56,8 +66,8 @@ void setNumber(LoopClient& client, const haptic::SceneNumber& number, double typ
   }
   applyScene(client, with(client.scene(), number, *nearest), notices);
   if (*nearest != typed)
-    notices.push_back({fmt::format("{}: {} is taken, it must be {}", number.name, shown(number, *nearest),
-                                   haptic::rangeText(number)),
+    notices.push_back({trFormat("{}: {} is taken, it must be {}", tr(number.name), shown(number, *nearest),
+                                rangeInWords(number)),
                        "", "", 1, false, true});
   noteWithoutForce(client, notices);
 }

@@ -12,6 +12,8 @@ namespace fettle::app {
 /// Changes of the scene and of the brush by panels, keys and mouse. An invalid change, or one that the device
 /// cannot hold, is refused with a notice. Threading: main.
 void applyScene(LoopClient& client, const haptic::Scene& scene, std::vector<Notice>& notices);
+/// "0 to 2 N", "above 0, at most 1000 N/mm".
+[[nodiscard]] std::string rangeInWords(const haptic::SceneNumber& number);
 /// What is wrong with a number of the scene while it is typed, as a sentence: out of its range, at odds with another number, more
 /// than the device holds, or, of a device without force, more than any known one holds. Empty: nothing.
 [[nodiscard]] std::string numberProblem(const LoopClient& client, const haptic::SceneNumber& number,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/scene_text_file.h"
 #include "app/work/session_guard.h"
 
@@ -44,7 +45,7 @@ bool SceneFiles::open(const std::string& path, LoopClient& client, Feedback& fee
     return false;
   }
   begin(client, path);
-  feedback.status = fmt::format("the scene is {}", nameIn(path));
+  feedback.status = trFormat("the scene is {}", nameIn(path));
   return true;
 }
 
@@ -52,7 +53,7 @@ bool SceneFiles::askToSave(Question from, const LoopClient& client, Feedback& fe
   if (std::filesystem::path(from.path).extension() != kExtension) from.path += kExtension;
   ReplacedFiles files = replacedFiles({from.path}, {});
   if (files.texts.empty()) return save(from.path, client, feedback);
-  files.texts.push_back("Comments in it are not kept.");
+  files.texts.push_back(tr("Comments in it are not kept."));
   feedback.questions.ask({.kind = Question::Kind::kReplace,
                           .path = std::move(from.path),
                           .afterwards = std::move(from.afterwards),
@@ -64,16 +65,17 @@ bool SceneFiles::askToSave(Question from, const LoopClient& client, Feedback& fe
 
 bool SceneFiles::save(const std::string& path, const LoopClient& client, Feedback& feedback) {
   if (const engine::Status written = writeScene(path, client.scene()); !written) {
-    feedback.message(written.error().line(), "the scene stays as it is here; save it elsewhere");
+    feedback.message(written.error().line(), tr("the scene stays as it is here; save it elsewhere"));
     return false;
   }
   begin(client, path);
-  feedback.status = fmt::format("written: {}", path);
+  feedback.status = trFormat("written: {}", path);
   return true;
 }
 
 std::string SceneFiles::title(const LoopClient& client) const {
-  return (path_.empty() ? "no file" : nameIn(path_)) + (changed(client) ? ", changed" : "");
+  const std::string name = path_.empty() ? tr("no file") : nameIn(path_);
+  return changed(client) ? trFormat("{}, changed", name) : name;
 }
 
 bool SceneFiles::changed(const LoopClient& client) const {

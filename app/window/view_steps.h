@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/window/action_steps.h"
 #include "app/window/navigation.h"
 
@@ -124,14 +125,14 @@ template <std::size_t number>
 void setBookmark(Parts& p) {
   p.bookmarks.set(number, p.viewToCome());
   p.document.keepViews(p.bookmarks.text());
-  p.feedback.status = fmt::format("view {} is set: F{} comes back to it", number + 1, number + 2);
+  p.feedback.status = trFormat("view {} is set: F{} comes back to it", number + 1, number + 2);
 }
 template <std::size_t number>
 void recallBookmark(Parts& p) {
   if (const auto& view = p.bookmarks.at(number))
     p.flyTo(*view);
   else
-    p.feedback.status = fmt::format("no view is set there: Shift+F{} sets this one", number + 2);
+    p.feedback.status = trFormat("no view is set there: Shift+F{} sets this one", number + 2);
 }
 template <std::size_t number>
 bool hasBookmark(const Parts& p) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "app/texts/texts.h"
+
 namespace fettle::app {
 namespace {
 
@@ -10,8 +12,9 @@ constexpr int kRepeats = 3;
 constexpr std::int64_t kTruthVertices = std::int64_t{1} << 21;
 
 constexpr trials::DetailChoice kDetail[] = {
-    {"16 k vertices", 1.0, 16384},   {"32 k vertices", 1.0, 32768},   {"64 k vertices", 1.0, 65536},
-    {"128 k vertices", 1.0, 131072}, {"256 k vertices", 1.0, 262144},
+    {textOf("16 k vertices"), 1.0, 16384},   {textOf("32 k vertices"), 1.0, 32768},
+    {textOf("64 k vertices"), 1.0, 65536},   {textOf("128 k vertices"), 1.0, 131072},
+    {textOf("256 k vertices"), 1.0, 262144},
 };
 
 template <class Figures>

@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "app/texts/texts.h"
+
 namespace fettle::app {
 namespace {
 
@@ -83,7 +85,7 @@ bool DeviceCheck::reachIsUsable() const noexcept {
 }
 
 const char* name(PushedWay way) noexcept {
-  constexpr std::array kNames{"right", "away", "up"};
+  constexpr std::array kNames{textOf("right"), textOf("away"), textOf("up")};
   return kNames[static_cast<std::size_t>(way)];
 }
 

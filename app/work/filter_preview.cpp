@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "engine/filter/noise_range.h"
 
 namespace fettle::app {
@@ -282,8 +283,8 @@ bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
       ++applied_;
       variants_.clear();
       if (!(*done)->rest.empty())
-        notices.push_back({fmt::format("{} tiles under the brush are not filtered", (*done)->rest.size()),
-                           "apply again when the stroke has ended"});
+        notices.push_back({trFormat("{} tiles under the brush are not filtered", (*done)->rest.size()),
+                           textOf("apply again when the stroke has ended")});
     } else if (done->error().kind != engine::ErrorKind::kCancelled) {
       notices.push_back({done->error().what, done->error().remedy});
     }

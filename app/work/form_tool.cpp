@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/texts/texts.h"
 #include "engine/measure/form_surface.h"
 
 namespace fettle::app {
@@ -131,7 +132,7 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   if (work.fit) fit_ = work.fit;
   if (work.preview) preview_ = std::move(work.preview);
   if (work.fit && !work.fit->open.empty())
-    notices.push_back({work.fit->open, "of the planes that come nearest to them it is the flattest"});
+    notices.push_back({work.fit->open, textOf("of the planes that come nearest to them it is the flattest")});
   if (!work.change || client.changeForm(*work.change)) return true;
   // The field was filtered meanwhile: once more, near what is known.
   working_.replace([field = client.newest(),

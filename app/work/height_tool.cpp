@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/read_units.h"
 #include "engine/remove/remove_step.h"
 
@@ -42,8 +43,8 @@ struct MakerName {
 };
 
 std::string removedText(const engine::RemoveCounts& counts) {
-  std::string text = fmt::format("{} of {} samples removed", counts.removed, counts.heights);
-  if (counts.spared > 0) text += fmt::format("; {} stay since they are marked", counts.spared);
+  std::string text = trFormat("{} of {} samples removed", counts.removed, counts.heights);
+  if (counts.spared > 0) text += trFormat("; {} stay since they are marked", counts.spared);
   return text;
 }
 
@@ -53,31 +54,31 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   if (std::holds_alternative<engine::RemoveOptions>(maker)) return removedText(heights.removed);
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
-    std::string text = fmt::format("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
+    std::string text = trFormat("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
     if (!(heights.rows_form_rms > 0.0)) return text;
     const ReadAs form = readOnScreenAs(heights.rows_form_rms, grid.height_unit.mm, grid.height_unit.name);
-    return text + fmt::format("; form across them of {:.3g} {} (rms) stays",
-                              heights.rows_form_rms / form.size, form.name);
+    return text + trFormat("; form across them of {:.3g} {} (rms) stays", heights.rows_form_rms / form.size,
+                           form.name);
   }
   const engine::Filled& filled = heights.filled;
   std::string text =
-      fmt::format("{} of {} holes filled, {} samples", filled.filled_holes, filled.holes, filled.filled);
+      trFormat("{} of {} holes filled, {} samples", filled.filled_holes, filled.holes, filled.filled);
   const auto stay = [&](std::int64_t count, const char* why) {
     if (count > 0) text += fmt::format("; {} {}", count, why);
   };
-  stay(filled.larger, "are larger");
-  stay(filled.at_border, "reach the border");
-  stay(filled.too_many, "have too many samples");
-  stay(filled.no_rim, "have no height next to them");
+  stay(filled.larger, tr("are larger"));
+  stay(filled.at_border, tr("reach the border"));
+  stay(filled.too_many, tr("have too many samples"));
+  stay(filled.no_rim, tr("have no height next to them"));
   const engine::BeyondBefore beyond = engine::beyondBefore(before, heights.field);
   const ReadAs as = readOnScreenAs(beyond.below + beyond.above, before.grid().height_unit.mm,
                                    before.grid().height_unit.name);
   if (beyond.below > 0.0)
-    text += fmt::format("; down to {:.3g} {} below all else: a membrane stays between the heights of the rim",
-                        beyond.below / as.size, as.name);
+    text += trFormat("; down to {:.3g} {} below all else: a membrane stays between the heights of the rim",
+                     beyond.below / as.size, as.name);
   if (beyond.above > 0.0)
-    text += fmt::format("; up to {:.3g} {} above all else: a membrane stays between the heights of the rim",
-                        beyond.above / as.size, as.name);
+    text += trFormat("; up to {:.3g} {} above all else: a membrane stays between the heights of the rim",
+                     beyond.above / as.size, as.name);
   return text;
 }
 
@@ -337,7 +338,7 @@ void HeightTool::start(LoopClient& client) {
 
 std::string HeightTool::soFar() const {
   if (!early_) return {};
-  return moved() ? "to come in view" : earlyState(early_->picture);
+  return moved() ? tr("to come in view") : earlyState(early_->picture);
 }
 
 std::optional<PreviewPicture> HeightTool::picture() const {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/texts/texts.h"
 #include "app/work/line_edits.h"
 
 namespace fettle::app {
@@ -50,8 +51,8 @@ LineFigures figuresOf(const EdgeLine& line, const engine::Grid& grid) {
 std::string middleOf(const MarkStroke& stroke) {
   const engine::Grid& grid = stroke.after.grid();
   const glm::dvec2 at = stroke.points[stroke.points.size() / 2];
-  return fmt::format("at x {:.6g}, y {:.6g}", grid.origin_x + at.x * grid.spacing_x,
-                     grid.origin_y + at.y * grid.spacing_y);
+  return trFormat("at x {:.6g}, y {:.6g}", grid.origin_x + at.x * grid.spacing_x,
+                  grid.origin_y + at.y * grid.spacing_y);
 }
 
 }  // namespace
@@ -66,10 +67,10 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
                  return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },
-               {fmt::format("no edge was found along the stroke {}", middleOf(*stroke)), "it stays a mark",
-                "strokes lie along no edge: they stay marks"});
+               {trFormat("no edge was found along the stroke {}", middleOf(*stroke)),
+                textOf("it stays a mark"), textOf("strokes lie along no edge: they stay marks")});
     else if (client.newest().lines() || edit.busy())
-      edit.ask("Erase edge line",
+      edit.ask(textOf("Erase edge line"),
                [stroke, radius](const engine::Version& base,
                                 engine::JobControl&) -> engine::Result<engine::Version> {
                  return eraseLines(base, stroke->points, radius + 1.0);
@@ -106,14 +107,15 @@ std::optional<std::int64_t> LineTool::lineAt(const LoopClient& client, glm::dvec
 }
 
 void LineTool::drag(MarkEdit& edit, std::int64_t id, glm::dvec2 from, glm::dvec2 to) const {
-  edit.ask("Drag edge line", [=, options = options](const engine::Version& base, engine::JobControl& job) {
-    return dragLine(base, id, from, to, options, job);
-  });
+  edit.ask(textOf("Drag edge line"),
+           [=, options = options](const engine::Version& base, engine::JobControl& job) {
+             return dragLine(base, id, from, to, options, job);
+           });
 }
 
 void LineTool::removeChosen(const LoopClient& client, MarkEdit& edit) const {
   if (const auto id = chosen(client))
-    edit.ask("Remove edge line",
+    edit.ask(textOf("Remove edge line"),
              [id](const engine::Version& base, engine::JobControl&) -> engine::Result<engine::Version> {
                return removeLines(base, id);
              });
@@ -121,7 +123,7 @@ void LineTool::removeChosen(const LoopClient& client, MarkEdit& edit) const {
 
 void LineTool::joinChosen(const LoopClient& client, MarkEdit& edit) const {
   if (const auto id = chosen(client))
-    edit.ask("Join edge lines",
+    edit.ask(textOf("Join edge lines"),
              [id = *id, options = options](const engine::Version& base, engine::JobControl& job) {
                return joinLine(base, id, options, job);
              });

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "engine/field/difference.h"
 #include "engine/measure/form_kind.h"
 #include "engine/session/form_codec.h"
@@ -56,7 +57,7 @@ engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History hi
   if (auto status = client->startLoop(options.rate_hz); !status) return tl::unexpected(status.error());
   for (const std::string& missing : client->realTime().missing)
     client->notices_.push_back(
-        {.what = "the system did not grant the loop everything", .remedy = missing, .once = true});
+        {.what = textOf("the system did not grant the loop everything"), .remedy = missing, .once = true});
   return client;
 }
 
@@ -106,7 +107,7 @@ engine::Status LoopClient::setRate(double rate_hz) {
   engine::Status status = startLoop(rate_hz);
   if (!status) static_cast<void>(startLoop(before_hz));
   loop_.setDisarmed(disarmed);
-  if (status) noteDisarmed(fmt::format("the loop runs at {:g} Hz now", rate_hz));
+  if (status) noteDisarmed(trFormat("the loop runs at {:g} Hz now, without force", rate_hz));
   return status;
 }
 
@@ -123,7 +124,7 @@ engine::Status LoopClient::setDeviceSetup(const DeviceSetup& setup) {
     static_cast<void>(startLoop(same_hz));
   }
   loop_.setDisarmed(disarmed);
-  if (status) noteDisarmed("the device is used as you said");
+  if (status) noteDisarmed(tr("the device is used as you said, without force"));
   return status;
 }
 
@@ -140,7 +141,7 @@ engine::Status LoopClient::setDevice(const std::string& words) {
   }
   // What armed itself does so again; whoever holds another device has not disarmed it.
   loop_.setDisarmed(!status && disarmed);
-  if (status) noteDisarmed(fmt::format("the device is the {} now", device().profile().name));
+  if (status) noteDisarmed(trFormat("the device is the {} now, without force", device().profile().name));
   return status;
 }
 
@@ -154,7 +155,7 @@ void LoopClient::endForAnother() {
 
 void LoopClient::noteDisarmed(const std::string& what) {
   if (device().profile().gives_force && !loop_.armsItself())
-    notices_.push_back({what + ", without force", "press A to arm again"});
+    notices_.push_back({what, textOf("press A to arm again")});
 }
 
 void LoopClient::finish() {
@@ -219,8 +220,8 @@ void LoopClient::takeTicks() {
   const bool lost = steps_.journal().takeTicks(loop_.loop(), path_);
   if (none && !path_.empty()) path_base_ = history().current();
   if (lost)
-    notices_.push_back({"the window did not respond for too long to record every tick",
-                        "the work is kept; the journal cannot replay beyond this point"});
+    notices_.push_back({textOf("the window did not respond for too long to record every tick"),
+                        textOf("the work is kept; the journal cannot replay beyond this point")});
 }
 
 void LoopClient::take(haptic::LoopEvent&& event) {

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "app/texts/texts.h"
 #include "engine/field/difference.h"
 #include "engine/inspect/noise.h"
 
@@ -87,7 +88,7 @@ bool PlaceTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
       found_ = std::move(**done);
       states_.assign(found_->places.size(), State::kOpen);
       lookAtLines(client.newest().lines());
-      if (!next()) notices.push_back({"a line by hand would gain next to nothing on this scan", ""});
+      if (!next()) notices.push_back({textOf("a line by hand would gain next to nothing on this scan"), ""});
     } else if (done->error().kind != engine::ErrorKind::kCancelled) {
       notices.push_back({done->error().what, done->error().remedy});
     }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "app/texts/texts.h"
 #include "app/work/filter_preview.h"
 #include "engine/filter/catalogue.h"
 
@@ -43,10 +44,10 @@ struct Merit {
   double (*of)(const FilterCandidate&);
 };
 constexpr Merit kMerits[] = {
-    {"the least error", [](const FilterCandidate& c) { return c.error(); }},
-    {"the least error on flats", [](const FilterCandidate& c) { return c.error_flat; }},
-    {"the least error near edges", [](const FilterCandidate& c) { return c.error_edge; }},
-    {"the least computing of those that help", [](const FilterCandidate& c) { return c.cost; }},
+    {textOf("the least error"), [](const FilterCandidate& c) { return c.error(); }},
+    {textOf("the least error on flats"), [](const FilterCandidate& c) { return c.error_flat; }},
+    {textOf("the least error near edges"), [](const FilterCandidate& c) { return c.error_edge; }},
+    {textOf("the least computing of those that help"), [](const FilterCandidate& c) { return c.cost; }},
 };
 
 }  // namespace
@@ -64,8 +65,8 @@ std::string leftText(const FilterCandidate& c, const render::ShownUnit& unit) {
   const auto part = [&](double error, const char* where) {
     return std::isnan(error) ? std::string() : fmt::format("{} {}", errorText(error, unit), where);
   };
-  const std::string flat = part(c.error_flat, "on flats"), edge = part(c.error_edge, "near edges");
-  return flat.empty() || edge.empty() ? flat + edge : flat + " and " + edge;
+  const std::string flat = part(c.error_flat, tr("on flats")), edge = part(c.error_edge, tr("near edges"));
+  return flat.empty() || edge.empty() ? flat + edge : trFormat("{} and {}", flat, edge);
 }
 
 std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& asked,
@@ -79,37 +80,37 @@ std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& a
     if (flattest == nullptr || c.error_flat < flattest->error_flat) flattest = &c;
   }
   const std::string tolerance = errorText(asked.tolerance, unit);
-  std::string why = fmt::format("The noise is {}. ", errorText(found.sigma, unit));
+  std::string why = trFormat("The noise is {}. ", errorText(found.sigma, unit));
   if (isUnchanged(pick) && found.met())
-    return why + fmt::format("The unchanged scan stays within {}: no filter is needed.", tolerance);
+    return why + trFormat("The unchanged scan stays within {}: no filter is needed.", tolerance);
   if (found.met()) {
-    why += fmt::format(
+    why += trFormat(
         "{} leaves {}, in about {}; of all tested filters that stay within {}, none needs less computing.",
         method(pick), leftText(pick, unit), filterTimeText(pick.seconds), tolerance);
   } else {
-    why += fmt::format("No tested filter stays within {}{}. ", tolerance,
-                       asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "");
-    why += isUnchanged(pick) ? fmt::format("Nothing helps: none leaves less than the unchanged scan, {}.",
-                                           leftText(pick, unit))
-                             : fmt::format("Nearest is {} with {}, in about {}.", method(pick),
-                                           leftText(pick, unit), filterTimeText(pick.seconds));
+    why += trFormat("No tested filter stays within {}{}. ", tolerance,
+                    asked.budget_s ? trFormat(" in {:g} s", *asked.budget_s) : "");
+    why += isUnchanged(pick) ? trFormat("Nothing helps: none leaves less than the unchanged scan, {}.",
+                                        leftText(pick, unit))
+                             : trFormat("Nearest is {} with {}, in about {}.", method(pick),
+                                        leftText(pick, unit), filterTimeText(pick.seconds));
     const FilterCandidate* slow = cheapestWithin(found, asked.tolerance);
     if (slow != nullptr)
-      why += fmt::format(" {} does, in about {}: allow that time.", method(*slow),
-                         filterTimeText(slow->seconds));
+      why +=
+          trFormat(" {} does, in about {}: allow that time.", method(*slow), filterTimeText(slow->seconds));
     else if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
-      why += fmt::format(
+      why += trFormat(
           " Only flats: {} leaves {}; edges that need a smaller error must be smoothed with the stylus or "
           "scanned again.",
           method(*flattest), leftText(*flattest, unit));
     else
-      why += " A scan with less noise is needed, or the mean of several.";
+      why += tr(" A scan with less noise is needed, or the mean of several.");
   }
   if (marked != nullptr && !pick.around_edges)
-    why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
-                       leftText(*marked, unit), method(*marked));
+    why += trFormat(" Marking edges first leaves {} ({}): marked samples keep their noise.",
+                    leftText(*marked, unit), method(*marked));
   if (found.outlier_share > 1e-4)
-    why += fmt::format(
+    why += trFormat(
         " {:.2g} % of the samples are single outliers: the filter {} removes these and nothing else.",
         100.0 * found.outlier_share, engine::name(engine::FilterKind::kOutliers));
   return why;
@@ -121,8 +122,8 @@ std::vector<ListedFilter> listedFilters(const FilterSuggestion& found, const Sug
   std::vector<ListedFilter> listed;
   if (!isUnchanged(found.picked())) {
     const std::string tolerance = errorText(asked.tolerance, unit);
-    listed.push_back({found.pick, found.met() ? "the least computing of all within " + tolerance
-                                              : "nearest to " + tolerance});
+    listed.push_back({found.pick, found.met() ? trFormat("the least computing of all within {}", tolerance)
+                                              : trFormat("nearest to {}", tolerance)});
   }
   const double unchanged = all.front().error();
   for (const Merit& merit : kMerits) {
@@ -137,9 +138,9 @@ std::vector<ListedFilter> listedFilters(const FilterSuggestion& found, const Sug
     const auto candidate = static_cast<std::size_t>(best - all.data());
     const auto known = std::ranges::find(listed, candidate, &ListedFilter::candidate);
     if (known != listed.end())
-      known->why += std::string(", ") + merit.why;
+      known->why += std::string(", ") + tr(merit.why);
     else
-      listed.push_back({candidate, merit.why});
+      listed.push_back({candidate, tr(merit.why)});
   }
   const auto others = listed.begin() + (isUnchanged(found.picked()) ? 0 : 1);
   std::stable_sort(others, listed.end(), [&](const ListedFilter& a, const ListedFilter& b) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -42,9 +43,9 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
   const float middle = corner.x + 0.5F * width;
   list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height), colourOf(PanelColour::kMuted));
   if (hovered && pointed >= 0 && pointed < kClasses && histogram.reach > 0.0)
-    valueTip(fmt::format("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
-                         lengthText(histogram.lowEnd(pointed + 1), unit, 3),
-                         histogram.counts[static_cast<std::size_t>(pointed)]));
+    valueTip(trFormat("{} to {}: {} samples", lengthText(histogram.lowEnd(pointed), unit, 3),
+                      lengthText(histogram.lowEnd(pointed + 1), unit, 3),
+                      histogram.counts[static_cast<std::size_t>(pointed)]));
   // The axis: its ends and zero.
   if (!(histogram.reach > 0.0)) {
     ImGui::TextDisabled("%s", when_empty);
@@ -83,7 +84,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
                                                        static_cast<double>(live->samples)
                                                  : 100.0;
   figure("unchanged", live ? fmt::format("{:.4g} %", share) : kYet);
-  drawHistogram(histogram, unit, live ? "nothing has changed" : "measuring ...");
+  drawHistogram(histogram, unit, live ? tr("nothing has changed") : tr("measuring ..."));
 }
 
 }  // namespace fettle::app

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
 #include "haptic/contact/sphere_tip.h"
@@ -23,25 +24,27 @@ struct Entry {
 int chooser(const char* id, const std::string& now, const std::vector<Entry>& entries, const char* off_title,
             const char* cost_title, bool& opened) {
   int chosen = -1;
-  opened = ImGui::BeginCombo(id, now.c_str(), ImGuiComboFlags_HeightLargest);
+  opened =
+      ImGui::BeginCombo(id, std::string(tr(std::string_view(now))).c_str(), ImGuiComboFlags_HeightLargest);
   if (!opened) return chosen;
   std::string widest;
   for (const Entry& entry : entries)
-    if (widest.size() < std::string_view(entry.name).size()) widest = entry.name;
+    if (const std::string_view name = tr(entry.name); widest.size() < name.size()) widest = name;
   if (ImGui::BeginTable("##choices", 3, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
     // As wide as the figures will need once they are measured.
     const auto column = [](const char* title, const std::string& text) {
-      ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed,
+      ImGui::TableSetupColumn(tr(title), ImGuiTableColumnFlags_WidthFixed,
                               ImGui::CalcTextSize(text.c_str()).x + ImGui::GetFontSize());
     };
-    column("choice", widest);
-    column(off_title, "12.5 px, 0.025 codes");
+    column(textOf("choice"), widest);
+    column(off_title, trFormat("{:.2g} px, {:.2g} codes", 12.5, 0.025));
     column(cost_title, "33.4 us");
     ImGui::TableHeadersRow();
     for (std::size_t i = 0; i < entries.size(); ++i) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      if (ImGui::Selectable(entries[i].name, now == entries[i].name, ImGuiSelectableFlags_SpanAllColumns))
+      if (ImGui::Selectable(labelOf(entries[i].name), now == entries[i].name,
+                            ImGuiSelectableFlags_SpanAllColumns))
         chosen = static_cast<int>(i);
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(entries[i].off.c_str());
@@ -57,9 +60,9 @@ int chooser(const char* id, const std::string& now, const std::vector<Entry>& en
 // Below a chooser: the figures of the choice, or the progress of measuring.
 bool measuringLine(const auto& run, const char* cancel_id) {
   if (!run.busy()) return false;
-  workBar(run.progress(), -ImGui::GetFontSize() * 5.0F, "measuring on this scan");
+  workBar(run.progress(), -ImGui::GetFontSize() * 5.0F, textOf("measuring on this scan"));
   ImGui::SameLine();
-  return ImGui::Button(cancel_id);
+  return ImGui::Button(labelOf(cancel_id));
 }
 
 void wrapped(const std::string& text) {
@@ -69,7 +72,7 @@ void wrapped(const std::string& text) {
 }
 
 std::string duration(double ns) {
-  return ns < 999.5 ? fmt::format("{:.0f} ns", ns) : fmt::format("{:.3g} us", 1e-3 * ns);
+  return ns < 999.5 ? trFormat("{:.0f} ns", ns) : trFormat("{:.3g} us", 1e-3 * ns);
 }
 
 // Lengths that may be only rounding, beside a spacing of `cell_mm`.
@@ -91,14 +94,14 @@ bool sameChoice(const haptic::Scene& scene, const trials::ContactChoice& choice,
 std::string described(const haptic::Scene& scene, const render::ShownUnit& of_mm) {
   if (scene.tip == haptic::TipShape::kSphere)
     return scene.search_rounds > haptic::kSphereSteps
-               ? fmt::format("ball, radius {}", lengthText(scene.tip_radius_mm, of_mm, 3))
-               : fmt::format("ball, radius {}, {} steps", lengthText(scene.tip_radius_mm, of_mm, 3),
-                             scene.search_rounds - 1);
+               ? trFormat("ball, radius {}", lengthText(scene.tip_radius_mm, of_mm, 3))
+               : trFormat("ball, radius {}, {} steps", lengthText(scene.tip_radius_mm, of_mm, 3),
+                          scene.search_rounds - 1);
   if (scene.level == haptic::ContactLevel::kCertified)
-    return fmt::format("certified, {} cells", scene.certified_radius_cells);
+    return trFormat("certified, {} cells", scene.certified_radius_cells);
   if (scene.level == haptic::ContactLevel::kDescent)
-    return fmt::format("descent, {} steps per tick", scene.search_rounds - 1);
-  return std::string(haptic::levelName(scene.level));
+    return trFormat("descent, {} steps per tick", scene.search_rounds - 1);
+  return std::string(tr(haptic::levelName(scene.level)));
 }
 
 }  // namespace
@@ -125,19 +128,19 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
     entry.off = size(m.mean_mm);
     entry.cost = duration(m.ns);
     if (chosen)
-      what = fmt::format(
+      what = trFormat(
           "error of the contact point {} on average, {} at worst, {:.2g} % of them not the nearest; {} per "
           "tick",
           size(m.mean_mm), size(m.worst_mm), 100.0 * m.wrong, duration(m.ns));
   }
   bool opened = false;
   int chosen = -1;
-  constexpr const char* kSays =
+  constexpr const char* kSays = textOf(
       "How exactly the point is found that the tip touches. What is more exact takes longer in each tick; "
       "the "
-      "list says how long on this scan.";
+      "list says how long on this scan.");
   (void)field("contact", kSays, [&] {
-    chosen = chooser("##contact", now, entries, "error", "per tick", opened);
+    chosen = chooser("##contact", now, entries, textOf("error"), textOf("per tick"), opened);
     return false;
   });
   if (opened && measured.empty() && !costs.contactRun().busy()) costs.measureContact(client.field());
@@ -150,7 +153,7 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
     else
       applyScene(client, scene, context.notices);
   }
-  if (measuringLine(costs.contactRun(), "Cancel##contact")) costs.cancelContact();
+  if (measuringLine(costs.contactRun(), textOf("Cancel##contact"))) costs.cancelContact();
   if (!what.empty()) wrapped(what);
 }
 
@@ -159,29 +162,29 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
   const std::span<const trials::DetailChoice> choices = detailChoices();
   const std::vector<trials::DetailFigures>& measured = costs.detail();
   std::vector<Entry> entries;
-  std::string now = fmt::format("{} vertices", display.vertices), what;
+  std::string now = trFormat("{} vertices", display.vertices), what;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     Entry& entry = entries.emplace_back(Entry{choices[i].name, "", ""});
     const bool chosen = display.vertices == choices[i].vertices;
     if (chosen) now = choices[i].name;
     if (measured.empty()) continue;
     const trials::DetailFigures& m = measured[i];
-    entry.off = fmt::format("{:.2g} px, {:.2g} codes", m.bound_px, m.mean_codes);
-    entry.cost = fmt::format("{:.3g} ms", m.ms);
+    entry.off = trFormat("{:.2g} px, {:.2g} codes", m.bound_px, m.mean_codes);
+    entry.cost = trFormat("{:.3g} ms", m.ms);
     if (chosen)
-      what = fmt::format(
+      what = trFormat(
           "surface within {:.2g} px, colour error {:.2g} of 255 on average, {:.2g} % of pixels by more than "
           "16; {:.3g} ms per whole frame. When nothing moves it is drawn within 1 px",
           m.bound_px, m.mean_codes, 100.0 * m.far_off, m.ms);
   }
   bool opened = false;
   int chosen = -1;
-  constexpr const char* kSays =
+  constexpr const char* kSays = textOf(
       "With how many vertices the surface is drawn while it moves: more are sharper and slower. At rest it "
       "is "
-      "drawn within a pixel whatever is chosen.";
+      "drawn within a pixel whatever is chosen.");
   (void)field("detail", kSays, [&] {
-    chosen = chooser("##detail", now, entries, "error", "per frame", opened);
+    chosen = chooser("##detail", now, entries, textOf("error"), textOf("per frame"), opened);
     return false;
   });
   if (opened && measured.empty() && !costs.detailRun().busy() && view.width > 0)
@@ -190,8 +193,8 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
     display.vertices = choices[static_cast<std::size_t>(chosen)].vertices;
     picture.requestRedraw();
   }
-  if (measuringLine(costs.detailRun(), "Cancel##detail")) costs.cancelDetail();
-  wrapped(what.empty() ? fmt::format("surface within {:.2g} px now", picture.figures().bound_px) : what);
+  if (measuringLine(costs.detailRun(), textOf("Cancel##detail"))) costs.cancelDetail();
+  wrapped(what.empty() ? trFormat("surface within {:.2g} px now", picture.figures().bound_px) : what);
 }
 
 }  // namespace fettle::app

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -145,8 +146,8 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
                                          chart.corner.y + 0.5 * chart.size.y};
   if (ImGui::IsItemHovered() && !colours.drag) {
     const double value = chart.valueAt(x);
-    valueTip(fmt::format("{}: {:.3g} % lie below, drag the ends of the colours", lengthText(value, unit),
-                         100.0 * values.within(-HUGE_VAL, value)));
+    valueTip(trFormat("{}: {:.3g} % lie below, drag the ends of the colours", lengthText(value, unit),
+                      100.0 * values.within(-HUGE_VAL, value)));
   }
 }
 
@@ -157,11 +158,12 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
   const bool by_hand = rule.kind == RuleKind::kTyped;
   const char* const says =
       quantity == Quantity::kDeviation
-          ? "usual: six times the median of what changed, or all but half a percent of it\na share: so many "
-            "of "
-            "the changed samples\nall: up to the largest change"
-          : "usual: all but single spikes\na share: the middle of the values\nall: from the lowest to the "
-            "highest";
+          ? tr("usual: six times the median of what changed, or all but half a percent of it\na share: so "
+               "many "
+               "of "
+               "the changed samples\nall: up to the largest change")
+          : tr("usual: all but single spikes\na share: the middle of the values\nall: from the lowest to the "
+               "highest");
   if (field("range", says, [&] {
         return by_hand ? chooseWord("##range", kind, {"usual", "a share", "all", "by hand"})
                        : chooseWord("##range", kind, {"usual", "a share", "all"});
@@ -179,9 +181,10 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
     }
   }
   const bool counted = values != nullptr && !values->empty();
-  figure("in the range", !counted ? std::string("...")
-                                  : fmt::format("{:.4g} %{}", 100.0 * values->within(range.low, range.high),
-                                                quantity == Quantity::kDeviation ? " of the changes" : ""));
+  figure("in the range", !counted
+                             ? std::string("...")
+                             : fmt::format("{:.4g} %{}", 100.0 * values->within(range.low, range.high),
+                                           quantity == Quantity::kDeviation ? tr(" of the changes") : ""));
   // Colours do not change while a brush works, nor after: what was found when they were switched on stays.
   ImGui::BeginDisabled(rule.kind != RuleKind::kAutomatic);
   if (pressButton(
@@ -238,7 +241,7 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
     histogram(*values, quantity, range, unit, colours, display, picture);
   } else {
     const ImVec2 from = ImGui::GetCursorPos();
-    ImGui::TextDisabled("counting ...");
+    ImGui::TextDisabled("%s", tr("counting ..."));
     ImGui::SetCursorPos(from);
     ImGui::Dummy(histogramSize());
   }

@@ -17,10 +17,10 @@ constexpr int kComparedLines = 15, kUncomparedLines = 3;
 // What counts where a nominal mesh is compared.
 void meshFields(const PanelContext& context, NominalChoice& nominal) {
   (void)field("mesh in", "The unit of the numbers of an .stl; only one that Fettle wrote says it.", [&] {
-    constexpr const char* kAsStated = "as it says, else mm";
-    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.empty() ? kAsStated : nominal.unit.c_str()))
+    constexpr const char* kAsStated = textOf("as it says, else mm");
+    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.empty() ? tr(kAsStated) : nominal.unit.c_str()))
       return false;
-    if (ImGui::Selectable(kAsStated, nominal.unit.empty())) nominal.unit.clear();
+    if (ImGui::Selectable(labelOf(kAsStated), nominal.unit.empty())) nominal.unit.clear();
     for (const std::string& unit : engine::lengthUnitNames())
       if (ImGui::Selectable(unit.c_str(), unit == nominal.unit)) nominal.unit = unit;
     ImGui::EndCombo();
@@ -34,7 +34,7 @@ void meshFields(const PanelContext& context, NominalChoice& nominal) {
         return changed;
       });
   (void)field("tolerance", "Counts what lies within it of a mesh on both sides, above and below.", [&] {
-    return typeLength("##mesh tolerance", nominal.tolerance, 0.0, 1e12, context.units.change, "none");
+    return typeLength("##mesh tolerance", nominal.tolerance, 0.0, 1e12, context.units.change, textOf("none"));
   });
 }
 
@@ -44,7 +44,7 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   ImGui::BeginDisabled(compare.busy());
   beginFields();
   (void)field("it is moved", "How the other scan may move until it lies best on this one.",
-              [&] { return chooseMoves("##compare moves", compare.options.moves, "not"); });
+              [&] { return chooseMoves("##compare moves", compare.options.moves, textOf("not")); });
   (void)field("by", "Which samples of this scan say where the other one comes to lie.", [&] {
     constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
                                       engine::Region::kUnmarked};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/widgets.h"
 
 namespace fettle::app {
@@ -140,7 +141,7 @@ void curvePlot(const char* id, const CurvePlot& plot) {
   if (!any) return;
   if (ImGui::IsItemHovered()) curveTip(plot, frame);
   const auto shown = [&](const CurveSpan& span) {
-    return fmt::format("{:.4g} to {:.4g}", valueAt(plot.scale, span.low), valueAt(plot.scale, span.high));
+    return trFormat("{:.4g} to {:.4g}", valueAt(plot.scale, span.low), valueAt(plot.scale, span.high));
   };
   writeIn(render::PanelColour::kMuted, fmt::format("{} {}", plot.x_name, shown(frame.x)));
   writeIn(render::PanelColour::kMuted, fmt::format("{} {}", plot.y_name, shown(frame.y)));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/work/device_check.h"
@@ -24,7 +25,7 @@ constexpr double kShownReach_mm = 150.0;  // either side of the middle, at least
 constexpr double kStill_mm = 2.0;         // of a stylus that lies or is held still
 constexpr double kMotionStep = 0.1;
 
-constexpr std::array<const char*, 3> kReachAxes{"x, right", "y, away", "z, up"};
+constexpr std::array<const char*, 3> kReachAxes{textOf("x, right"), textOf("y, away"), textOf("z, up")};
 
 // What holds the clutch and what opens the tools around the tip, in the order in which the page offers it.
 struct ButtonOffer {
@@ -32,11 +33,15 @@ struct ButtonOffer {
   const char* name;
 };
 constexpr std::array kOffers{
-    ButtonOffer{haptic::kSecondaryButton, "second button"},
-    ButtonOffer{1U << 2U, "third button"},
-    ButtonOffer{1U << 3U, "fourth button"},
-    ButtonOffer{0, "none"},
+    ButtonOffer{haptic::kSecondaryButton, textOf("second button")},
+    ButtonOffer{1U << 2U, textOf("third button")},
+    ButtonOffer{1U << 3U, textOf("fourth button")},
+    ButtonOffer{0, textOf("none")},
 };
+
+void showLine(const std::string& line) {
+  ImGui::TextUnformatted(line.c_str());
+}
 
 PanelColour outcome(bool as_expected) {
   return as_expected ? PanelColour::kGood : PanelColour::kProblem;
@@ -50,7 +55,7 @@ std::size_t offerOf(std::uint32_t buttons) {
 // One axis: the measured part, and where the stylus is now.
 void reachBar(int axis, const std::optional<DeviceReach>& reach, double now_mm, double shown_mm) {
   const float line = ImGui::GetTextLineHeight();
-  ImGui::TextUnformatted(kReachAxes[static_cast<std::size_t>(axis)]);
+  ImGui::TextUnformatted(tr(kReachAxes[static_cast<std::size_t>(axis)]));
   ImGui::SameLine(6.0F * line);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = 14.0F * line;
@@ -68,9 +73,9 @@ void reachBar(int axis, const std::optional<DeviceReach>& reach, double now_mm, 
                      colourOf(PanelColour::kText));
   ImGui::SameLine();
   if (reach)
-    ImGui::Text("%.1f to %.1f mm, now %.1f", reach->low_mm[axis], reach->high_mm[axis], now_mm);
+    showLine(trFormat("{:.1f} to {:.1f} mm, now {:.1f}", reach->low_mm[axis], reach->high_mm[axis], now_mm));
   else
-    ImGui::Text("now %.1f mm", now_mm);
+    showLine(trFormat("now {:.1f} mm", now_mm));
 }
 
 void reachPart(Parts& parts, const haptic::LoopState& now) {
@@ -78,14 +83,15 @@ void reachPart(Parts& parts, const haptic::LoopState& now) {
   DeviceSetup& setup = parts.device_setup;
   Questions& questions = parts.feedback.questions;
   const bool runs = check.running() == Running::kReach;
-  ImGui::TextDisabled("Reach");
+  ImGui::TextDisabled("%s", tr("Reach"));
   const std::optional<DeviceReach>& shown = check.reach() ? check.reach() : setup.reach;
   double shown_mm = kShownReach_mm;
   if (shown)
     for (int axis = 0; axis < 3; ++axis)
       shown_mm = std::max({shown_mm, std::abs(shown->low_mm[axis]), std::abs(shown->high_mm[axis])});
   for (int axis = 0; axis < 3; ++axis) reachBar(axis, shown, now.device_mm[axis], shown_mm);
-  if (dialogButton(runs ? "Use what was reached (R)" : "Measure the reach (R)", questions, letter('R'))) {
+  if (dialogButton(runs ? textOf("Use what was reached (R)") : textOf("Measure the reach (R)"), questions,
+                   letter('R'))) {
     if (!runs) {
       check.beginReach();
     } else if (check.reachIsUsable()) {
@@ -99,51 +105,52 @@ void reachPart(Parts& parts, const haptic::LoopState& now) {
   ImGui::EndDisabled();
   if (runs)
     ImGui::TextUnformatted(check.reachIsUsable()
-                               ? "move the stylus slowly to all its limits, then press R"
-                               : "move the stylus slowly to all its limits: not far enough yet");
+                               ? tr("move the stylus slowly to all its limits, then press R")
+                               : tr("move the stylus slowly to all its limits: not far enough yet"));
   else if (setup.reach)
-    ImGui::Text("used: a ball of %.0f mm about its middle", setup.reach->radius());
+    showLine(trFormat("used: a ball of {:.0f} mm about its middle", setup.reach->radius()));
   else
-    ImGui::TextUnformatted("used: what its maker states");
+    ImGui::TextUnformatted(tr("used: what its maker states"));
 }
 
 void restPart(Parts& parts) {
   DeviceCheck& check = parts.device_check;
-  ImGui::TextDisabled("Force at rest");
+  ImGui::TextDisabled("%s", tr("Force at rest"));
   if (dialogButton("Measure at rest (T)", parts.feedback.questions, letter('T'))) check.beginRest();
   ImGui::SameLine();
   if (check.running() == Running::kRest) {
     ImGui::ProgressBar(static_cast<float>(check.restDone()), ImVec2(-1.0F, 0.0F),
-                       "let it lie, or hold it still");
+                       tr("let it lie, or hold it still"));
   } else if (check.rest()) {
     const DeviceCheck::Rest& rest = *check.rest();
     const bool good = rest.force_n == 0.0 && rest.device_faults == 0 && rest.moved_mm <= kStill_mm;
-    textIn(outcome(good), fmt::format("{:.3f} N sent, moved {:.2f} mm, {} faults", rest.force_n,
-                                      rest.moved_mm, rest.device_faults));
+    textIn(outcome(good), trFormat("{:.3f} N sent, moved {:.2f} mm, {} faults", rest.force_n, rest.moved_mm,
+                                   rest.device_faults));
     if (rest.moved_mm > kStill_mm)
-      ImGui::TextUnformatted("it moved: by the hand, by its own weight, or by a force that is not Fettle's");
+      ImGui::TextUnformatted(
+          tr("it moved: by the hand, by its own weight, or by a force that is not Fettle's"));
   } else {
-    ImGui::TextUnformatted("no force is sent; a stylus at rest stays where it is");
+    ImGui::TextUnformatted(tr("no force is sent; a stylus at rest stays where it is"));
   }
 }
 
 void directionPart(Parts& parts) {
   DeviceCheck& check = parts.device_check;
-  ImGui::TextDisabled("Directions");
+  ImGui::TextDisabled("%s", tr("Directions"));
   for (int i = 0; i < kPushedWays; ++i) {
     const auto way = static_cast<PushedWay>(i);
-    const std::string label = fmt::format("Push {} ({})", name(way), i + 1);
+    const std::string label = trFormat("Push {} ({})", tr(name(way)), i + 1);
     if (dialogButton(label.c_str(), parts.feedback.questions, letter(static_cast<char>('1' + i))))
       check.beginDirection(way);
     ImGui::SameLine(11.0F * ImGui::GetTextLineHeight());
     if (check.running() == Running::kDirection && check.asked() == way) {
-      ImGui::Text("push the stylus straight %s", name(way));
+      showLine(trFormat("push the stylus straight {}", tr(name(way))));
     } else if (const auto& came = check.direction(way)) {
       const bool right = DeviceCheck::asExpected(way, *came);
-      textIn(outcome(right), fmt::format("{} came, {:.0f} mm{}", axisText(*came), came->moved_mm,
-                                         right ? "" : ": turn the device, or see its configuration"));
+      textIn(outcome(right), trFormat("{} came, {:.0f} mm{}", axisText(*came), came->moved_mm,
+                                      right ? "" : tr(": turn the device, or see its configuration")));
     } else {
-      ImGui::TextDisabled("+%c is expected", "xyz"[i]);
+      ImGui::TextDisabled("%s", trFormat("+{} is expected", "xyz"[i]).c_str());
     }
   }
 }
@@ -151,7 +158,7 @@ void directionPart(Parts& parts) {
 void motionPart(Parts& parts) {
   DeviceSetup& setup = parts.device_setup;
   Questions& questions = parts.feedback.questions;
-  ImGui::TextDisabled("Motion");
+  ImGui::TextDisabled("%s", tr("Motion"));
   const auto move = [&](double step) {
     setup.motion = std::clamp(std::round((setup.motion + step) / kMotionStep) * kMotionStep,
                               DeviceSetup::kLeastMotion, 1.0);
@@ -160,19 +167,19 @@ void motionPart(Parts& parts) {
   ImGui::SameLine();
   if (dialogButton("Wider (+)", questions, Key::kPlus)) move(kMotionStep);
   ImGui::SameLine();
-  ImGui::Text("%.0f %% of what reaches all of the scan", 100.0 * setup.motion);
+  showLine(trFormat("{:.0f} % of what reaches all of the scan", 100.0 * setup.motion));
   const auto after = [](std::uint32_t buttons) {
     return kOffers[(offerOf(buttons) + 1) % kOffers.size()].buttons;
   };
   if (dialogButton("Clutch (C)", questions, letter('C'))) setup.giveClutch(after(setup.clutch_buttons));
   ImGui::SameLine();
-  ImGui::Text("held by: %s", kOffers[offerOf(setup.clutch_buttons)].name);
+  showLine(trFormat("held by: {}", tr(kOffers[offerOf(setup.clutch_buttons)].name)));
   if (dialogButton("Tools around the tip (U)", questions, letter('U')))
     setup.giveMenu(after(setup.menu_buttons));
   explain(
       "While the button is held, a movement of the stylus points at a tool or a tip; letting go chooses it.");
   ImGui::SameLine();
-  ImGui::Text("opened by: %s", kOffers[offerOf(setup.menu_buttons)].name);
+  showLine(trFormat("opened by: {}", tr(kOffers[offerOf(setup.menu_buttons)].name)));
 }
 
 }  // namespace
@@ -183,17 +190,17 @@ std::optional<Choice> devicePage(Parts& parts) {
   const haptic::DeviceProfile& profile = client.device().profile();
   const haptic::LoopState now = client.state();
   ImGui::Dummy(ImVec2(kDevicePage * static_cast<float>(parts.window.scale()), 0.0F));
-  ImGui::Text("%s%s%s", profile.name.c_str(), profile.serial.empty() ? "" : ", serial number ",
-              profile.serial.c_str());
+  showLine(profile.serial.empty() ? std::string(tr(std::string_view(profile.name)))
+                                  : trFormat("{}, serial number {}", profile.name, profile.serial));
   const bool measures = profile.space == haptic::DeviceSpace::kDesk;
   if (!measures)
-    ImGui::TextUnformatted("It moves in the picture itself: there is nothing to measure.");
+    ImGui::TextUnformatted(tr("It moves in the picture itself: there is nothing to measure."));
   else if (now.link != haptic::LinkState::kConnected)
     textIn(PanelColour::kProblem, now.link == haptic::LinkState::kUncalibrated
-                                      ? "It is not calibrated: go back, and calibrate it (Ctrl+Shift+A)."
-                                      : "It is not plugged in.");
+                                      ? tr("It is not calibrated: go back, and calibrate it (Ctrl+Shift+A).")
+                                      : tr("It is not plugged in."));
   else
-    ImGui::TextUnformatted("No force is given while this page is open, and none until A is pressed.");
+    ImGui::TextUnformatted(tr("No force is given while this page is open, and none until A is pressed."));
   if (measures) {
     ImGui::Separator();
     reachPart(parts, now);

@@ -7,6 +7,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/result_files.h"
@@ -39,19 +40,20 @@ void goFromUnderCursor(const Questions& questions) {
 std::string saveLabel(const Parts& parts) {
   const SessionKeeper& keeper = *parts.document.keeper();
   const std::string path = keeper.named() ? keeper.path() : parts.saving.path();
-  return path.empty() ? "Save session ... (Enter)"
-                      : fmt::format("Save to {} (Enter)", fs::path(path).filename().string());
+  return path.empty() ? textOf("Save session ... (Enter)")
+                      : trFormat("Save to {} (Enter)", fs::path(path).filename().string());
 }
 
 void stopAskingTick(Question& question, Questions& questions) {
-  ImGui::Checkbox("Do not ask again (N)", &question.stop_asking);
+  ImGui::Checkbox(labelOf("Do not ask again (N)"), &question.stop_asking);
   if (questions.take(render::letter('N'))) question.stop_asking = !question.stop_asking;
 }
 
 // Discarding has a key that does nothing to the picture, and no letter.
 std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
   Questions& questions = parts.feedback.questions;
-  ImGui::Text("%s was changed, and no session keeps the steps.", parts.document.fileName().c_str());
+  ImGui::TextUnformatted(
+      trFormat("{} was changed, and no session keeps the steps.", parts.document.fileName()).c_str());
   if (const std::string exported = parts.saving.exportText(parts.document); !exported.empty())
     ImGui::TextUnformatted(exported.c_str());
   const bool writes = dialogButton(saveLabel(parts).c_str(), questions, Key::kEnter);
@@ -63,8 +65,8 @@ std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
   if (question.afterwards.what == Afterwards::What::kQuit) {
     stopAskingTick(question, questions);
     ImGui::TextDisabled(
-        "Unsaved work is then stored at the end, and offered when the scan is opened again.\n"
-        "The File menu and the Display panel turn the question on again.");
+        "%s", tr("Unsaved work is then stored at the end, and offered when the scan is opened again.\n"
+                 "The File menu and the Display panel turn the question on again."));
   }
   if (stays) return Choice::kBack;
   if (writes) return Choice::kConfirm;
@@ -74,9 +76,11 @@ std::optional<Choice> unsavedDialog(Question& question, Parts& parts) {
 std::optional<Choice> unsavedSceneDialog(Question& question, Parts& parts) {
   Questions& questions = parts.feedback.questions;
   const std::string& path = parts.scene_files.path();
-  ImGui::Text("Effects or numbers of the scene were changed, and %s.",
-              path.empty() ? "no file has them"
-                           : fmt::format("{} has others", fs::path(path).filename().string()).c_str());
+  ImGui::TextUnformatted(path.empty()
+                             ? tr("Effects or numbers of the scene were changed, and no file has them.")
+                             : trFormat("Effects or numbers of the scene were changed, and {} has others.",
+                                        fs::path(path).filename().string())
+                                   .c_str());
   const bool writes = dialogButton("Save scene ... (Enter)", questions, Key::kEnter);
   ImGui::SameLine();
   const bool stays = dialogButton("Go back (Esc)", questions, Key::kEscape);
@@ -84,20 +88,23 @@ std::optional<Choice> unsavedSceneDialog(Question& question, Parts& parts) {
   const bool drops = dialogButton("Leave it (Delete)", questions, Key::kDelete);
   goFromUnderCursor(questions);
   stopAskingTick(question, questions);
-  ImGui::TextDisabled("A session has the scene with the work on its scan, whether it is saved here or not.");
+  ImGui::TextDisabled(
+      "%s", tr("A session has the scene with the work on its scan, whether it is saved here or not."));
   if (stays) return Choice::kBack;
   if (writes) return Choice::kConfirm;
   return drops ? std::optional(Choice::kOther) : std::nullopt;
 }
 
 std::optional<Choice> recoverDialog(const Question& question, Questions& questions) {
-  ImGui::Text("Work on %s was not saved when the program ended.", fs::path(question.path).filename().c_str());
+  ImGui::TextUnformatted(trFormat("Work on {} was not saved when the program ended.",
+                                  fs::path(question.path).filename().string())
+                             .c_str());
   const bool takes = dialogButton("Continue it (Enter)", questions, Key::kEnter);
   ImGui::SameLine();
   const bool leaves = dialogButton("Start from the scan (S)", questions, render::letter('S'));
   ImGui::SameLine();
   const bool stays = dialogButton("Go back (Esc)", questions, Key::kEscape);
-  ImGui::TextDisabled("Starting from the scan, the first new step replaces that work.");
+  ImGui::TextDisabled("%s", tr("Starting from the scan, the first new step replaces that work."));
   if (stays) return Choice::kBack;
   if (takes) return Choice::kConfirm;
   return leaves ? std::optional(Choice::kOther) : std::nullopt;
@@ -118,64 +125,65 @@ std::string keysOf(Action action) {
 void howToClean() {
   using enum Action;
   const auto tool = [](haptic::Tool t) { return keysOf(actionOf(t)); };
-  ImGui::TextUnformatted("How to clean a scan");
+  ImGui::TextUnformatted(tr("How to clean a scan"));
   for (const std::string& line :
-       {fmt::format("1. {} opens it, or drop it on the window; say its unit, and which number means a hole.",
-                    keysOf(kOpen)),
-        fmt::format("2. Drag and wheel turn and zoom it; {} shows all of it.", keysOf(kViewAll)),
-        fmt::format("3. {} suggests edges to keep and {} takes them; or {} and draw along one.",
-                    keysOf(kEdges), keysOf(kFilterApply), tool(haptic::Tool::kMark)),
-        fmt::format("4. {} suggests filters, or choose one at the right: {} previews it, {} applies it;",
-                    keysOf(kFilterSuggest), keysOf(kFilterPreview), keysOf(kFilterApply)),
-        fmt::format("   {} smooths by hand.", tool(haptic::Tool::kSmooth)),
-        fmt::format(
-            "5. Look at what changed: {} colours it, {} held shows the scan before; {} takes it back.",
-            keysOf(kDeviation), keysOf(kShowBefore), keysOf(kUndo)),
-        fmt::format("6. {} exports the part; {} keeps every step in a session.", keysOf(kExport),
-                    keysOf(kSave))})
-    ImGui::TextUnformatted(("  " + line).c_str());
-  ImGui::TextUnformatted(
-      "Screen readers cannot read this window; every function is on the command line, too.");
+       {trFormat("1. {} opens it, or drop it on the window; say its unit, and which number means a hole.",
+                 keysOf(kOpen)),
+        trFormat("2. Drag and wheel turn and zoom it; {} shows all of it.", keysOf(kViewAll)),
+        trFormat("3. {} suggests edges to keep and {} takes them; or {} and draw along one.", keysOf(kEdges),
+                 keysOf(kFilterApply), tool(haptic::Tool::kMark)),
+        trFormat("4. {} suggests filters, or choose one at the right: {} previews it, {} applies it;",
+                 keysOf(kFilterSuggest), keysOf(kFilterPreview), keysOf(kFilterApply)),
+        trFormat("   {} smooths by hand.", tool(haptic::Tool::kSmooth)),
+        trFormat("5. Look at what changed: {} colours it, {} held shows the scan before; {} takes it back.",
+                 keysOf(kDeviation), keysOf(kShowBefore), keysOf(kUndo)),
+        trFormat("6. {} exports the part; {} keeps every step in a session.", keysOf(kExport),
+                 keysOf(kSave))})
+    writeWrapped("  " + line);
+  writeWrapped("Screen readers cannot read this window; every function is on the command line, too.");
 }
 
 std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, float scale) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(420.0F * scale);
-  ImGui::InputTextWithHint("##sought", "search: a word, or a key", &question.sought);
+  ImGui::InputTextWithHint("##sought", tr("search: a word, or a key"), &question.sought);
   ImGui::SameLine();
   const bool left = dialogButton("Close (Esc)", questions, Key::kEscape);
   const std::string sought = lower(question.sought);
   if (sought.empty()) howToClean();
   std::string_view section;
   for (const ActionRow& row : actions()) {
-    const std::string all = fmt::format("{} {} {}", row.section, row.name, keyText(row.key, row.modifiers));
+    const std::string all =
+        fmt::format("{} {} {}", tr(row.section), tr(row.name), keyText(row.key, row.modifiers));
     if (lower(all).find(sought) == std::string::npos) continue;
     if (row.section != section) {
       section = row.section;
       ImGui::Separator();
-      ImGui::TextUnformatted(section.data(), section.data() + section.size());
+      const std::string_view title = tr(section);
+      ImGui::TextUnformatted(title.data(), title.data() + title.size());
     }
     std::string keys = keyText(row.key, row.modifiers);
-    if (row.other_key != Key::kNone) keys += " or " + keyText(row.other_key, row.modifiers);
+    if (row.other_key != Key::kNone) keys = trFormat("{} or {}", keys, keyText(row.other_key, row.modifiers));
     ImGui::Text("  %-24s", keys.c_str());
     ImGui::SameLine(220.0F * scale);
-    ImGui::TextUnformatted(row.name.data(), row.name.data() + row.name.size());
+    writeWrapped(std::string(tr(row.name)));
   }
   if (!sought.empty()) return left ? std::optional(Choice::kBack) : std::nullopt;
   ImGui::Separator();
-  ImGui::TextUnformatted(
+  ImGui::TextUnformatted(tr(
       "  Ctrl+1 .. Ctrl+9         recent files\n"
       "  left button              the stylus, while a tool is on; the wheel then sets how deep it presses\n"
       "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
       "  Alt + left button        turn the view\n"
-      "  Ctrl + Shift + left      drag an edge line; a click chooses one where no tool is on");
+      "  Ctrl + Shift + left      drag an edge line; a click chooses one where no tool is on"));
   return left ? std::optional(Choice::kBack) : std::nullopt;
 }
 
 std::optional<Choice> messageDialog(const Question& question, Questions& questions, float scale) {
   ImGui::PushTextWrapPos(600.0F * scale);
-  ImGui::TextUnformatted(question.said.what.c_str());
-  if (!question.said.remedy.empty()) ImGui::TextDisabled("%s", question.said.remedy.c_str());
+  ImGui::TextUnformatted(std::string(tr(std::string_view(question.said.what))).c_str());
+  if (!question.said.remedy.empty())
+    ImGui::TextDisabled("%s", std::string(tr(std::string_view(question.said.remedy))).c_str());
   ImGui::PopTextWrapPos();
   const bool read = dialogButton("OK", questions, Key::kEscape) || questions.take(Key::kEnter);
   return read ? std::optional(Choice::kBack) : std::nullopt;

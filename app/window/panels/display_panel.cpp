@@ -15,7 +15,7 @@ namespace {
 void shareSlider(const char* label, const char* id, double& share, const char* tip) {
   auto value = static_cast<float>(share);
   if (field(label, tip, [&] {
-        return ImGui::SliderFloat(id, &value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : "off",
+        return ImGui::SliderFloat(id, &value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : tr("off"),
                                   ImGuiSliderFlags_AlwaysClamp);
       }))
     share = static_cast<double>(value);
@@ -27,10 +27,10 @@ void materialFields(render::FormShading& form) {
           "material",
           "What the surface looks like to be made of. A material is lit from beside you, however the view is "
           "turned, and shows form better than colours do.",
-          [&] { return ImGui::BeginCombo("##material", std::string(chosen.word).c_str()); })) {
+          [&] { return ImGui::BeginCombo("##material", std::string(tr(chosen.word)).c_str()); })) {
     for (const render::MaterialRow& row : render::materials()) {
       const bool is = row.material == form.material;
-      if (ImGui::Selectable(fmt::format("{}: {}", row.word, row.shows).c_str(), is))
+      if (ImGui::Selectable(fmt::format("{}: {}", tr(row.word), tr(row.shows)).c_str(), is))
         form.material = row.material;
       if (is) ImGui::SetItemDefaultFocus();
     }
@@ -59,7 +59,7 @@ void stylusTicks(StylusLook& look, bool reduced_motion) {
 }
 
 std::string scaleText(double scale) {
-  return scale > 0.0 ? fmt::format("{:.0f} %", 100.0 * scale) : "as the display";
+  return scale > 0.0 ? fmt::format("{:.0f} %", 100.0 * scale) : tr("as the display");
 }
 
 // Of text and panels.
@@ -74,16 +74,16 @@ void uiScaleField(double& scale) {
 }
 
 void penFields(PenUse& pen) {
-  constexpr const char* kSays =
+  constexpr const char* kSays = textOf(
       "A tablet's pen presses as deep as the hand presses it, up to the depth of the brush. Off: always to "
       "that "
-      "depth. Its other end has the opposite tool.";
+      "depth. Its other end has the opposite tool.");
   (void)field("pen", kSays, [&] { return tickBox("presses as the hand does", pen.presses, {}); });
   ImGui::BeginDisabled(!pen.presses);
   auto firmness = static_cast<float>(pen.firmness);
   if (field("", "Above 1 the hand has to press more for the same depth, below 1 less.", [&] {
         return ImGui::SliderFloat("##firmness", &firmness, static_cast<float>(PenUse::kSoftest),
-                                  static_cast<float>(PenUse::kFirmest), "firmness %.2f",
+                                  static_cast<float>(PenUse::kFirmest), trPrintf("firmness %.2f"),
                                   ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
       }))
     pen.firmness = std::round(100.0 * static_cast<double>(firmness)) / 100.0;
@@ -135,20 +135,22 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
     display.stereo = static_cast<render::StereoMode>(mode);
   constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
   (void)field("marks", "How strongly marked samples are tinted; 0 leaves the colours of the values.", [&] {
-    return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, "opacity %.2f", kClamp);
+    return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, trPrintf("opacity %.2f"),
+                              kClamp);
   });
   (void)field(
       "light from",
       "Where the light comes from, counted from the picture's right over its top. A material has light of "
       "its own.",
       [&] {
-        return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, "%.0f deg", kClamp);
+        return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, trPrintf("%.0f deg"),
+                                  kClamp);
       });
   (void)field("light above",
               "How high the light stands: low light shows faint slopes. A material has light of its own.",
               [&] {
                 return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F,
-                                          "%.0f deg", kClamp);
+                                          trPrintf("%.0f deg"), kClamp);
               });
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
@@ -160,15 +162,16 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
               "Between the eyes, as a share of their distance from the field: more depth, harder to fuse.",
               [&] {
                 return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F,
-                                          "eyes %.3f apart", kClamp);
+                                          trPrintf("eyes %.3f apart"), kClamp);
               });
   ImGui::EndDisabled();
   (void)field("heights",
               "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "
               "readable.",
               [&] {
-                return typeNumber("##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
-                                  view.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");
+                return typeNumber(
+                    "##exaggeration", view.vertical_exaggeration, 0.0, 1e6,
+                    view.vertical_exaggeration > 0.0 ? trPrintf("%.3g times") : tr("0: automatic"));
               });
   endFields();
 }

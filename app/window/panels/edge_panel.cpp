@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -17,7 +18,8 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
             "Over how many samples an edge may rise: larger scales see through noise and lose fine edges.",
             [&] {
               return ImGui::SliderFloat("##scale", &sigma, static_cast<float>(EdgeResponse::kSmallestSigma),
-                                        static_cast<float>(EdgeResponse::kLargestSigma), "%.2f samples",
+                                        static_cast<float>(EdgeResponse::kLargestSigma),
+                                        trPrintf("%.2f samples"),
                                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
             }))
     edges.sigma = static_cast<double>(sigma);
@@ -33,7 +35,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   auto thickness = static_cast<float>(edges.choice.thickness);
   if (field("thickness", "How wide the marks along an edge become; within them heights stay as they are.",
             [&] {
-              return ImGui::SliderFloat("##thickness", &thickness, 0.0F, 16.0F, "%.1f samples",
+              return ImGui::SliderFloat("##thickness", &thickness, 0.0F, 16.0F, trPrintf("%.1f samples"),
                                         ImGuiSliderFlags_AlwaysClamp);
             })) {
     edges.choice.thickness = static_cast<double>(thickness);
@@ -53,8 +55,8 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   ImGui::EndDisabled();
   beginPlace("##edges outcome", kOutcomeOfEdges);
   if (found != nullptr)
-    writeWrapped(fmt::format("{} lines, {} samples, not marked yet: take them, or paint over them",
-                             found->lines, found->samples));
+    writeWrapped(trFormat("{} lines, {} samples, not marked yet: take them, or paint over them", found->lines,
+                          found->samples));
   else if (edges.busy() && cancelledBar(edges.progress(), "looking", "Cancel"))
     edges.drop();
   endPlace();

@@ -4,24 +4,28 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
 
 namespace fettle::app {
 namespace {
 
+// The title of an effect whose word has an underscore: the list of texts has words alone.
+[[maybe_unused]] constexpr const char* kEdgeSnap = textOf("edge snap");
+
 std::string titleOfEffect(std::string_view word) {
   std::string title(word);
   std::ranges::replace(title, '_', ' ');
-  return title;
+  return std::string(tr(std::string_view(title)));
 }
 
 std::string numberTip(const LoopClient& client, const haptic::SceneNumber& number) {
-  std::string tip = fmt::format("{} {}; {:.4g} unless a scene says otherwise.", number.says,
-                                haptic::rangeText(number), number.of(haptic::defaultScene()));
+  std::string tip = trFormat("{} {}; {:.4g} unless a scene says otherwise.", tr(number.says),
+                             rangeInWords(number), number.of(haptic::defaultScene()));
   if (const auto held = largestHeld(client, number))
-    tip += fmt::format(" The {} holds {:.4g} {} at most with the rest of the scene.",
-                       client.device().profile().name, *held, number.unit);
+    tip += trFormat(" The {} holds {:.4g} {} at most with the rest of the scene.",
+                    client.device().profile().name, *held, number.unit);
   return tip;
 }
 
@@ -29,9 +33,9 @@ void wordField(const PanelContext& context, const haptic::SceneWord& word) {
   haptic::Scene scene = context.client.scene();
   const std::size_t now = word.of(scene);
   fieldName(word.name.data(), word.says);
-  if (ImGui::BeginCombo(fmt::format("##{} {}", word.table, word.key).c_str(), word.words[now].data())) {
+  if (ImGui::BeginCombo(fmt::format("##{} {}", word.table, word.key).c_str(), tr(word.words[now].data()))) {
     for (std::size_t i = 0; i < word.words.size(); ++i)
-      if (ImGui::Selectable(word.words[i].data(), i == now) && i != now) {
+      if (ImGui::Selectable(labelOf(word.words[i].data()), i == now) && i != now) {
         word.set(scene, i);
         applyScene(context.client, scene, context.notices);
       }
@@ -72,15 +76,16 @@ void sceneNumberField(const PanelContext& context, const haptic::SceneNumber& nu
 }
 
 void effectTicks(const PanelContext& context) {
-  ImGui::TextDisabled("effects");
+  ImGui::TextDisabled("%s", tr("effects"));
   for (int i = 0; i < haptic::kEffectKinds; ++i) {
     const auto kind = static_cast<haptic::EffectKind>(i);
     bool on = context.client.scene().lists(kind);
     // In two columns, or in one where the panels are narrow.
     const float half = 0.5F * ImGui::GetWindowWidth();
     if (i % 2 != 0 && half > 8.0F * ImGui::GetFontSize()) ImGui::SameLine(half);
-    if (ImGui::Checkbox(titleOfEffect(haptic::effectName(kind)).c_str(), &on))
-      listEffect(context.client, kind, on, context.notices);
+    const std::string label =
+        fmt::format("{}###effect {}", titleOfEffect(haptic::effectName(kind)), haptic::effectName(kind));
+    if (ImGui::Checkbox(label.c_str(), &on)) listEffect(context.client, kind, on, context.notices);
     explain(haptic::rowOf(kind).says);
   }
 }
@@ -93,7 +98,7 @@ void effectFields(const PanelContext& context) {
     tableFields(context, haptic::effectName(kind), titleOfEffect(haptic::effectName(kind)));
   const auto lists = [&](EffectKind kind) { return std::ranges::find(listed, kind) != listed.end(); };
   if (lists(EffectKind::kViscosity) || lists(EffectKind::kCoupling))
-    tableFields(context, "velocity", "speed of viscosity and coupling");
+    tableFields(context, "velocity", tr("speed of viscosity and coupling"));
 }
 
 }  // namespace fettle::app

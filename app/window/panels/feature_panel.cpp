@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/work/read_units.h"
 
@@ -73,7 +74,8 @@ void featureTable(const Report& rows, const FeatureUnits& units) {
   constexpr int kFeatureColumns = 6;
   constexpr ImGuiTableFlags kLook = ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
   if (!ImGui::BeginTable("features", kFeatureColumns, kLook)) return;
-  for (const char* title : {"", "x", "y", "height", "area", "volume"}) ImGui::TableSetupColumn(title);
+  for (const char* title : {"", "x", "y", tr("height"), tr("area"), tr("volume")})
+    ImGui::TableSetupColumn(title);
   ImGui::TableHeadersRow();
   // Of hundreds of thousands those rows alone are laid out that are visible.
   ImGuiListClipper clipper;
@@ -99,21 +101,20 @@ void outcome(const FeatureTool& features) {
   const Report& report = *features.found();
   const FeatureUnits units = unitsOf(report);
   if (features.outdated()) writeWrapped("the field has changed since: Find");
-  writeWrapped(fmt::format("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
-                           report["kind"].get<std::string>(),
-                           report["least_height"].get<double>() / units.height.size, units.height.name));
+  writeWrapped(trFormat("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
+                        tr(std::string_view(report["kind"].get_ref<const std::string&>())),
+                        report["least_height"].get<double>() / units.height.size, units.height.name));
   if (!report["mean_volume"].is_null())
-    writeWrapped(fmt::format("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}",
-                             report["mean_height"].get<double>() / units.height.size, units.height.name,
-                             report["mean_volume"].get<double>() / units.height.size, units.volume));
+    writeWrapped(trFormat("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}",
+                          report["mean_height"].get<double>() / units.height.size, units.height.name,
+                          report["mean_volume"].get<double>() / units.height.size, units.volume));
   if (!report["mean_area"].is_null())
-    writeWrapped(fmt::format("those that nothing cuts in the mean: area {:.4g} {}\u00b2",
-                             report["mean_area"].get<double>(), units.length));
+    writeWrapped(trFormat("those that nothing cuts in the mean: area {:.4g} {}",
+                          report["mean_area"].get<double>(), units.length + "\u00b2"));
   featureTable(report["features"], units);
   writeIn(render::PanelColour::kMuted,
-          fmt::format(
-              "places in {0}, areas in {0}\u00b2; * open: above its saddle it reaches the border or a hole",
-              units.length));
+          trFormat("places in {}, areas in {}; * open: above its saddle it reaches the border or a hole",
+                   units.length, units.length + "\u00b2"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
@@ -137,13 +138,13 @@ void folderLine(Question& question, Parts& parts) {
     files.browser.goUp();
   }
   ImGui::SameLine();
-  if (pressButton(files.places.has(files.browser.folder()) ? "No bookmark" : "Bookmark",
+  if (pressButton(files.places.has(files.browser.folder()) ? textOf("No bookmark") : textOf("Bookmark"),
                   "Keeps this folder in the list at the left, or takes it out."))
     files.toggleBookmark(parts.recent.paths());
   ImGui::SameLine();
   FolderView view = files.browser.view();
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
-  bool changed = ImGui::InputTextWithHint("##names", "names with", &view.typed);
+  bool changed = ImGui::InputTextWithHint("##names", tr("names with"), &view.typed);
   explain("Only names that contain this are listed.");
   ImGui::SameLine();
   changed = tickBox("all files", view.all_files, "Files that Fettle cannot read are listed, too.") || changed;
@@ -151,8 +152,8 @@ void folderLine(Question& question, Parts& parts) {
   changed = tickBox("hidden", view.hidden, "Files and folders whose name begins with a dot, too.") || changed;
   if (changed) files.browser.setView(std::move(view));
   ImGui::SameLine();
-  ImGui::TextDisabled("%s",
-                      files.browser.busy() ? "listing" : fmt::format("{}", files.browser.count()).c_str());
+  ImGui::TextDisabled(
+      "%s", files.browser.busy() ? tr("listing") : fmt::format("{}", files.browser.count()).c_str());
 }
 
 void followSorting(FileBrowser& browser) {
@@ -192,13 +193,13 @@ bool fileTable(Question& question, Files& files, ImVec2 size, bool scroll) {
   if (!ImGui::BeginTable("files", 3, kFlags, size)) return false;
   FileBrowser& browser = files.browser;
   const auto column = [](const char* name, FolderOrder order, ImGuiTableColumnFlags flags, float width) {
-    ImGui::TableSetupColumn(name, flags, width, static_cast<ImGuiID>(order));
+    ImGui::TableSetupColumn(tr(name), flags, width, static_cast<ImGuiID>(order));
   };
   const float letter = ImGui::GetFontSize() * 0.55F;
-  column("name", FolderOrder::kName, ImGuiTableColumnFlags_WidthStretch, 0.0F);
-  column("size", FolderOrder::kSize,
+  column(textOf("name"), FolderOrder::kName, ImGuiTableColumnFlags_WidthStretch, 0.0F);
+  column(textOf("size"), FolderOrder::kSize,
          ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 9.0F * letter);
-  column("changed", FolderOrder::kChanged,
+  column(textOf("changed"), FolderOrder::kChanged,
          ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 17.0F * letter);
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
@@ -230,7 +231,7 @@ void preview(const Question& question, Parts& parts, float scale) {
         const float side = ImGui::GetContentRegionAvail().x;
         const auto cursor = scanPicture(*shown.picture, ImVec2(side, 0.7F * side));
         if (cursor) valueTip(cursorText(*shown.picture, *cursor));
-        if (shown.picture->empty()) ImGui::TextDisabled("too large for a quick look");
+        if (shown.picture->empty()) ImGui::TextDisabled("%s", tr("too large for a quick look"));
         for (const std::string& text :
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
           if (!text.empty()) ImGui::TextUnformatted(text.c_str());
@@ -239,7 +240,7 @@ void preview(const Question& question, Parts& parts, float scale) {
       } else if (shown.problem != nullptr) {
         ImGui::TextUnformatted(shown.problem->what.c_str());
       } else {
-        ImGui::TextDisabled("reading");
+        ImGui::TextDisabled("%s", tr("reading"));
       }
       ImGui::PopTextWrapPos();
     }
@@ -250,12 +251,12 @@ void preview(const Question& question, Parts& parts, float scale) {
 // The formats that can be written; a session is the usual one of "save as". Choosing one changes the extension.
 void formatChooser(Question& question) {
   const std::string extension = engine::extensionOf(question.path);
-  std::string now = "by extension";
+  std::string now = tr("by extension");
   for (const engine::FormatInfo& format : engine::formats())
     for (const std::string_view each : format.extensions)
       if (format.writes && each == extension) now = format.description;
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 16.0F);
-  const bool open = ImGui::BeginCombo("format", now.c_str(), ImGuiComboFlags_HeightLargest);
+  const bool open = ImGui::BeginCombo(labelOf("format"), now.c_str(), ImGuiComboFlags_HeightLargest);
   if (!open) {
     explain("The format that is written: choosing one changes the ending of the name.");
     return;
@@ -273,10 +274,11 @@ void formatChooser(Question& question) {
 void resultFormatChooser(Question& question, const ResultFile& file) {
   const ResultFormat* const now = formatOf(file, question.path);
   const auto label = [](const ResultFormat& format) {
-    return fmt::format("{} ({})", format.text, format.ending);
+    return fmt::format("{} ({})", tr(format.text), format.ending);
   };
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 24.0F);
-  const bool open = ImGui::BeginCombo("format", now != nullptr ? label(*now).c_str() : "by the ending");
+  const bool open =
+      ImGui::BeginCombo(labelOf("format"), now != nullptr ? label(*now).c_str() : tr("by the ending"));
   if (!open) {
     explain("The format that is written: choosing one changes the ending of the name.");
     return;
@@ -299,21 +301,21 @@ void sectionChoices(SectionTool& sections) {
 
 void resultHelp(Question& question, const ResultFile& file, Parts& parts) {
   resultFormatChooser(question, file);
-  ImGui::TextDisabled("%s", file.content);
+  ImGui::TextDisabled("%s", tr(file.content));
   if (question.kind == Kind::kExportSections) sectionChoices(parts.section);
 }
 
 void writingHelp(Question& question, bool& embeds) {
   if (isScene(question)) {
-    ImGui::TextDisabled("tip, force, brushes and effects with their numbers, as a .toml file");
+    ImGui::TextDisabled("%s", tr("tip, force, brushes and effects with their numbers, as a .toml file"));
     return;
   }
   formatChooser(question);
   const bool session = isSessionPath(question.path);
   ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextDisabled("%s", session ? "a session keeps everything, each step as it is made"
-                                    : "the field; marks and lines go next to it, as NAME_marks.png and "
-                                      "NAME_lines.csv");
+  ImGui::TextDisabled("%s", session ? tr("a session keeps everything, each step as it is made")
+                                    : tr("the field; marks and lines go next to it, as NAME_marks.png and "
+                                         "NAME_lines.csv"));
   ImGui::PopTextWrapPos();
   if (question.kind != Kind::kSaveAs) return;
   ImGui::BeginDisabled(!session);
@@ -330,10 +332,10 @@ void remark(const Question& question, const FileBrowser& browser, const ResultFi
     writeIn(PanelColour::kProblem, problem->line());
   } else if (result != nullptr && formatOf(*result, question.path) == nullptr) {
     ImGui::SameLine();
-    textIn(PanelColour::kWarning, "choose a format, or end the name with one");
+    textIn(PanelColour::kWarning, tr("choose a format, or end the name with one"));
   } else if (!reads(question) && fs::is_regular_file(question.path, error)) {
     ImGui::SameLine();
-    textIn(PanelColour::kWarning, "this file exists already");
+    textIn(PanelColour::kWarning, tr("this file exists already"));
   }
 }
 
@@ -373,7 +375,8 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
     resultHelp(question, *result, parts);
   else if (!reads(question))
     writingHelp(question, parts.saving.embeds);
-  confirmed = dialogButton(reads(question) ? "Open" : "Write", questions, Key::kEnter) || confirmed || twice;
+  confirmed = dialogButton(reads(question) ? textOf("Open") : textOf("Write"), questions, Key::kEnter) ||
+              confirmed || twice;
   ImGui::SameLine();
   const bool as =
       question.kind == Kind::kOpen &&

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/work/read_units.h"
 
@@ -15,13 +16,13 @@ constexpr int kPreviewLines = 5;
 void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
   fieldName("filter", engine::filterOf(spec.kind).says);
   const bool open =
-      ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title, ImGuiComboFlags_HeightLargest);
+      ImGui::BeginCombo("##filter", tr(engine::filterOf(spec.kind).title), ImGuiComboFlags_HeightLargest);
   if (!open) {
     explain(engine::filterOf(spec.kind).says);
     return;
   }
   for (const engine::Filter& each : engine::filters()) {
-    const bool chosen = ImGui::Selectable(each.title, each.kind == spec.kind);
+    const bool chosen = ImGui::Selectable(labelOf(each.title), each.kind == spec.kind);
     explain(each.says);
     if (chosen && each.kind != spec.kind) {
       spec.kind = each.kind;
@@ -56,19 +57,20 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
   if (window && grid.spacingXMm() != grid.spacingYMm()) {
     fieldName("", {});
     const render::ShownUnit length = ofMillimetres(units.length, grid.lateral_unit.mm);
-    ImGui::TextDisabled("x %s along columns", lengthText(spec.window * grid.spacingYMm(), length).c_str());
+    ImGui::TextDisabled(
+        "%s", trFormat("x {} along columns", lengthText(spec.window * grid.spacingYMm(), length)).c_str());
   }
   if (engine::filterOf(spec.kind).has_element) {
     constexpr const char* kSays =
-        "What is moved over the surface: a ball rolls over it, a disk and a square stay level.";
+        textOf("What is moved over the surface: a ball rolls over it, a disk and a square stay level.");
     fieldName("element", kSays);
     if (!ImGui::BeginCombo("##element",
-                           engine::kElementWords[static_cast<std::size_t>(spec.element)].data())) {
+                           tr(engine::kElementWords[static_cast<std::size_t>(spec.element)].data()))) {
       explain(kSays);
     } else {
       for (std::size_t i = 0; i < engine::kElementWords.size(); ++i)
         if (const auto each = static_cast<engine::Element>(i);
-            ImGui::Selectable(engine::kElementWords[i].data(), each == spec.element))
+            ImGui::Selectable(labelOf(engine::kElementWords[i].data()), each == spec.element))
           spec.element = each;
       ImGui::EndCombo();
     }
@@ -90,22 +92,23 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
   if (filter.sigma.exists())
     (void)field("sigma", "Standard deviation of the weights in the window.", [&] {
       return typeNumber("##sigma", spec.sigma, 0.0, 1000.0,
-                        spec.sigma > 0.0 ? "%.2f samples" : "0: " + std::string(filter.sigma.when_zero));
+                        spec.sigma > 0.0 ? trPrintf("%.2f samples")
+                                         : "0: " + std::string(tr(std::string_view(filter.sigma.when_zero))));
     });
   // With its number as soon as that is known.
-  const std::string by_noise = range_of_noise ? lengthText(*range_of_noise, units.change, 3) + " by the noise"
-                                              : std::string(filter.range_sigma.when_zero);
+  const std::string by_noise = range_of_noise
+                                   ? trFormat("{} by the noise", lengthText(*range_of_noise, units.change, 3))
+                                   : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
   if (filter.range_sigma.exists())
-    (void)field(
-        "range sigma",
-        fmt::format("Heights that differ by no more than about this differ by noise, which goes; what "
-                    "differs by more stays. 0: {}, that of the scan as it was opened, also after other "
-                    "filters.",
-                    filter.range_sigma.when_zero),
-        [&] {
-          return typeLength("##range", spec.range_sigma, 0.0, filter.range_sigma.most, units.change,
-                            by_noise);
-        });
+    (void)field("range sigma",
+                trFormat("Heights that differ by no more than about this differ by noise, which goes; what "
+                         "differs by more stays. 0: {}, that of the scan as it was opened, also after other "
+                         "filters.",
+                         tr(std::string_view(filter.range_sigma.when_zero))),
+                [&] {
+                  return typeLength("##range", spec.range_sigma, 0.0, filter.range_sigma.most, units.change,
+                                    by_noise);
+                });
 }
 
 bool isRunning(const FilterPreview& filters) {
@@ -121,21 +124,21 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
   sameLineIfFits("Add preview");
   actionButton("Add preview", Action::kFilterAdd, context.act);
   sameLineIfFits("Apply");
-  if (ImGui::Button("Apply")) filters.apply(context.client);
+  if (ImGui::Button(labelOf("Apply"))) filters.apply(context.client);
   tip(Action::kFilterApply);
   ImGui::EndDisabled();
   sameLineIfFits("Suggest");
   actionButton("Suggest", Action::kFilterSuggest, context.act);
   if (workRow(runs ? std::optional(filters.progress()) : std::nullopt,
-              filters.applying() ? "applying" : "filtering", "Cancel"))
+              filters.applying() ? tr("applying") : tr("filtering"), "Cancel"))
     filters.cancel(context.client);
 }
 
 void previewSoFar(const FilterPreview& filters) {
   const engine::FilterView::Picture& so_far = filters.soFar();
   if ((filters.computing() || filters.applying()) && so_far.step > 0)
-    writeWrapped(fmt::format("{}; from means of {} x {} samples", previewState(so_far, so_far.field.grid()),
-                             so_far.step, so_far.step));
+    writeWrapped(trFormat("{}; from means of {} x {} samples", previewState(so_far, so_far.field.grid()),
+                          so_far.step, so_far.step));
 }
 
 void previewList(bool anything_marked, FilterPreview& filters) {
@@ -151,13 +154,13 @@ void previewList(bool anything_marked, FilterPreview& filters) {
         v.spec.scope == engine::FilterScope::kOnlyMarks && v.result.report.changed == 0 && !anything_marked;
     const engine::LengthUnit& unit = v.base.grid().height_unit;
     const ReadAs as = readOnScreenAs(v.result.report.max_change, unit.mm, unit.name);
-    const std::string came = nothing_marked
-                                 ? "nothing is marked: with \"only marks\" nothing changes"
-                                 : fmt::format("{} change, by up to {:.3g} {}", v.result.report.changed,
-                                               v.result.report.max_change / as.size, as.name) +
-                                       (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
-                                            ? ";\nthe limit counts from the scan as it was opened"
-                                            : "");
+    const std::string came =
+        nothing_marked ? tr("nothing is marked: with \"only marks\" nothing changes")
+                       : trFormat("{} change, by up to {:.3g} {}", v.result.report.changed,
+                                  v.result.report.max_change / as.size, as.name) +
+                             (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
+                                  ? ";\n" + std::string(tr("the limit counts from the scan as it was opened"))
+                                  : std::string());
     const std::string warning = engine::warningOf(v.result.report);
     ImGui::TextUnformatted(
         fmt::format("{}\n{}{}{}", filterName(v.spec), came, warning.empty() ? "" : ";\n", warning).c_str());
@@ -178,10 +181,10 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   (void)limitField(context, spec.max_change, Action::kFilterMaxChange);
   endFields();
   int scope = static_cast<int>(spec.scope);
-  ImGui::RadioButton("keep marks", &scope, 0);
+  ImGui::RadioButton(labelOf("keep marks"), &scope, 0);
   tip(Action::kFilterScope);
   sameLineIfFits("only marks", ItemKind::kTick);
-  ImGui::RadioButton("only marks", &scope, 1);
+  ImGui::RadioButton(labelOf("only marks"), &scope, 1);
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);

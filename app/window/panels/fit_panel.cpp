@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -20,11 +21,11 @@ void fitFields(FitTool::Options& options) {
               "The simplest: one is taken in place of a simpler one only where it lowers the rms by a tenth.",
               [&] {
                 const std::string now =
-                    options.shape ? std::string(engine::infoOf(*options.shape).word) : "the simplest";
+                    options.shape ? std::string(tr(engine::infoOf(*options.shape).word)) : tr("the simplest");
                 if (!ImGui::BeginCombo("##fitted shape", now.c_str())) return false;
-                if (ImGui::Selectable("the simplest", !options.shape)) options.shape.reset();
+                if (ImGui::Selectable(labelOf("the simplest"), !options.shape)) options.shape.reset();
                 for (const engine::ShapeInfo& info : engine::shapeInfos())
-                  if (ImGui::Selectable(std::string(info.word).c_str(), options.shape == info.kind))
+                  if (ImGui::Selectable(labelOf(std::string(info.word).c_str()), options.shape == info.kind))
                     options.shape = info.kind;
                 ImGui::EndCombo();
                 return true;
@@ -52,7 +53,7 @@ void fitTable(const std::vector<FitLine>& lines, const char* id) {
   for (const FitLine& line : lines) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(line.name.c_str());
+    ImGui::TextUnformatted(std::string(tr(std::string_view(line.name))).c_str());
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(line.text.c_str());
   }
@@ -66,8 +67,8 @@ void pairFields(FitTool& fit) {
   const std::vector<FittedRegion>& fitted = fit.fits()->fitted;
   const auto choose = [&](const char* id, std::size_t& now, std::size_t other) {
     const auto name = [&](std::size_t i) {
-      return fmt::format("region {}: {}", fitted[i].number,
-                         engine::infoOf(fitted[i].chosen.fit.shape.kind).word);
+      return trFormat("region {}: {}", fitted[i].number,
+                      tr(engine::infoOf(fitted[i].chosen.fit.shape.kind).word));
     };
     if (!ImGui::BeginCombo(id, name(now).c_str())) return false;
     bool changed = false;
@@ -98,13 +99,13 @@ void outcome(FitTool& fit) {
   for (const Report& one : fits.report["fits"]) {
     writeWrapped(fitTitle(one));
     if (const auto left = one["left_out"].get<std::int64_t>(); left > 0)
-      writeWrapped(fmt::format("{} samples lie apart and do not count", left));
-    fitTable(fitLines(one), fmt::format("fit {}", ++number).c_str());
+      writeWrapped(trFormat("{} samples lie apart and do not count", left));
+    fitTable(fitLines(one), trFormat("fit {}", ++number).c_str());
   }
   for (const std::string& warning : fits.warnings) writeIn(render::PanelColour::kWarning, warning);
   for (const Report& one : fits.report["not_fitted"])
     writeIn(render::PanelColour::kMuted,
-            fmt::format("region {}: {}", one["region"].get<int>(), one["reason"].get<std::string>()));
+            trFormat("region {}: {}", one["region"].get<int>(), one["reason"].get<std::string>()));
 }
 
 // As it stands in the panel, in columns.
@@ -119,7 +120,7 @@ std::string copiedText(const FieldFits& fits) {
   }
   if (!fits.report.contains("between")) return text;
   const Report& between = fits.report["between"];
-  text += fmt::format("between {} and {}\n", between["first"].get<int>(), between["second"].get<int>());
+  text += trFormat("between {} and {}\n", between["first"].get<int>(), between["second"].get<int>());
   add(relationLines(between));
   return text;
 }

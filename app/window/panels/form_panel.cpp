@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/action_tips.h"
 #include "app/window/panels/panels.h"
 
@@ -15,15 +16,16 @@ namespace {
 constexpr int kOutcomeOfForm = 6;  // lines
 
 std::string shortTitle(const engine::FormInfo& form) {
-  return form.degree >= 2 ? fmt::format("polynomial {}", form.degree) : std::string(form.title);
+  return form.degree >= 2 ? trFormat("polynomial {}", form.degree)
+                          : std::string(tr(std::string_view(form.title)));
 }
 
-constexpr const char* kByPoints = "plane by three points";
+constexpr const char* kByPoints = textOf("plane by three points");
 
 void formKindField(const PanelContext& context, FormTool& form, PlanePicking& points) {
   engine::FormChoice& options = form.options;
   const bool by_points = options.through.has_value();
-  const std::string now = by_points ? kByPoints : shortTitle(engine::infoOf(options.kind));
+  const std::string now = by_points ? tr(kByPoints) : shortTitle(engine::infoOf(options.kind));
   (void)field("form", "The shape of the part that is taken out, so that colours show what deviates from it.",
               [&] {
                 if (!ImGui::BeginCombo("##form", now.c_str())) return false;
@@ -34,7 +36,7 @@ void formKindField(const PanelContext& context, FormTool& form, PlanePicking& po
                     points.stop();
                   }
                   if (info.kind != engine::FormKind::kPlane) continue;
-                  if (ImGui::Selectable(kByPoints, by_points) && !by_points)
+                  if (ImGui::Selectable(labelOf(kByPoints), by_points) && !by_points)
                     choosePlaneByPoints(options, context.client.field().grid());
                   explain(tipOf(Action::kPlanePoints));
                 }
@@ -53,16 +55,18 @@ void pointFields(const PanelContext& context, FormTool& form, const PlanePicking
   for (std::size_t i = 0; i < through.at_mm.size(); ++i)
     for (const auto& [axis, value] :
          {std::pair('x', &through.at_mm[i].x), std::pair('y', &through.at_mm[i].y)}) {
-      const std::string name = fmt::format("{} of point {}", axis, i + 1), id = "##plane " + name;
+      const std::string name = trFormat("{} of point {}", axis, i + 1),
+                        id = fmt::format("##plane {} {}", axis, i);
       (void)field(name.c_str(), "Where this point lies on the scan.",
                   [&, value = value] { return typeLength(id.c_str(), *value, -kFar, kFar, length); });
     }
   (void)field("around each", "Heights of the samples this near to a point are averaged.", [&] {
-    return typeLength("##plane radius", through.radius_mm, 0.0, kFar, length, "5 samples");
+    return typeLength("##plane radius", through.radius_mm, 0.0, kFar, length, textOf("5 samples"));
   });
   endFields();
   ImGui::BeginDisabled(form.busy());
-  actionButton(points.next() ? "Set them again###plane points" : "Set them on the surface###plane points",
+  actionButton(points.next() ? textOf("Set them again###plane points")
+                             : textOf("Set them on the surface###plane points"),
                Action::kPlanePoints, context.act);
   ImGui::EndDisabled();
 }
@@ -83,17 +87,17 @@ std::string tiltText(const engine::Tilt& tilt) {
     return std::isnan(error) ? fmt::format("{:.4g}", degrees)
                              : fmt::format("{:.4g} +- {:.2g}", degrees, error);
   };
-  return fmt::format("tilted {} degrees along x, {} along y\n", one(tilt.x_deg, tilt.x_error_deg),
-                     one(tilt.y_deg, tilt.y_error_deg));
+  return trFormat("tilted {} degrees along x, {} along y\n", one(tilt.x_deg, tilt.x_error_deg),
+                  one(tilt.y_deg, tilt.y_error_deg));
 }
 
 std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
-  std::string text = fmt::format("{} of {} samples\n", formName(*fit.form), fit.samples);
+  std::string text = trFormat("{} of {} samples\n", formName(*fit.form), fit.samples);
   if (const std::string figures = formFigures(*fit.form); !figures.empty()) text += figures + "\n";
   if (fit.options.through && fit.tilt) text += tiltText(*fit.tilt);
-  text += fmt::format("rms of what is left {}", lengthText(fit.rms, units.height, 3));
+  text += trFormat("rms of what is left {}", lengthText(fit.rms, units.height, 3));
   if (fit.beyond > 0)
-    text += fmt::format("\n{} samples lie beyond its outline: there it is continued by a plane", fit.beyond);
+    text += trFormat("\n{} samples lie beyond its outline: there it is continued by a plane", fit.beyond);
   return text;
 }
 
@@ -101,7 +105,8 @@ std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
 
 void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points) {
   const engine::FieldForm& over = context.client.newest().formOver();
-  writeWrapped(over != nullptr ? "taken out: " + formName(*over) : std::string("nothing is taken out"));
+  writeWrapped(over != nullptr ? trFormat("taken out: {}", formName(*over))
+                               : std::string(tr("nothing is taken out")));
   beginFields();
   formKindField(context, form, points);
   regionField(form.options);
@@ -117,9 +122,10 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
   if (pressButton("Fit", "Fits the form and says how much is left without it; nothing changes."))
     form.measure(context.client);
   // As wide with either word, so that the buttons beside it stay where they are.
-  const float wide = ImGui::CalcTextSize("Drop preview").x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  const float wide = ImGui::CalcTextSize(tr("Drop preview")).x + 2.0F * ImGui::GetStyle().FramePadding.x;
   sameLineIfFits("Drop preview");
-  actionButton(previewed ? "Drop preview" : "Preview", Action::kFormPreview, context.act, wide);
+  actionButton(previewed ? textOf("Drop preview") : textOf("Preview"), Action::kFormPreview, context.act,
+               wide);
   sameLineIfFits("Take out");
   actionButton("Take out", Action::kFormOut, context.act);
   ImGui::BeginDisabled(over == nullptr);
@@ -133,10 +139,11 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
   if (form.busy()) {
     if (cancelledBar(form.progress(), "fitting", "Cancel##form")) form.cancel();
     if (const auto& preview = form.previewed(); preview && preview->coarse)
-      writeWrapped(fmt::format("preview, from means of {} x {} samples: {}", preview->coarse->step,
-                               preview->coarse->step, coarseFormState(*preview->coarse)));
+      writeWrapped(trFormat("preview, from means of {} x {} samples: {}", preview->coarse->step,
+                            preview->coarse->step, coarseFormState(*preview->coarse)));
   } else {
-    if (over != nullptr && over->shape() != nullptr) writeWrapped("taken out: " + formFigures(*over));
+    if (over != nullptr && over->shape() != nullptr)
+      writeWrapped(trFormat("taken out: {}", formFigures(*over)));
     if (previewed) writeWrapped("preview: colours are heights without the form, touch is with it");
     if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -40,8 +41,8 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
   }
   const int pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
   if (ImGui::IsItemHovered() && pointed >= 0 && pointed < kOctaves)
-    valueTip(fmt::format("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
-                         counts[static_cast<std::size_t>(pointed)]));
+    valueTip(trFormat("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
+                      counts[static_cast<std::size_t>(pointed)]));
   const float left = ImGui::GetStyle().WindowPadding.x;
   const auto mark = [&](int octave, const char* text) {
     if (octave > 0) ImGui::SameLine(left + bar * static_cast<float>(octave));
@@ -54,7 +55,7 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
 }
 
 std::string rateText(double hz) {
-  return fmt::format("{:g} kHz", 1e-3 * hz);
+  return trFormat("{:g} kHz", 1e-3 * hz);
 }
 
 // Their numbers, as the documentation of devices names them.
@@ -62,24 +63,28 @@ std::string heldButtons(std::uint32_t buttons) {
   std::string text;
   for (int i = 0; i < 32; ++i)
     if ((buttons >> i & 1U) != 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", i + 1);
-  return text.empty() ? "none" : text;
+  return text.empty() ? tr("none") : text;
 }
+
+// Of all names of devices this one is Fettle's own.
+[[maybe_unused]] constexpr const char* kMouseName = textOf("mouse");
 
 // The device in a list of those there are; returns the words of another one that was chosen.
 std::optional<std::string> deviceField(const LoopClient& client, DeviceLister& devices) {
-  constexpr const char* kSays =
+  constexpr const char* kSays = textOf(
       "Another device takes the place of this one: the force fades first, and it gives none until A is "
-      "pressed.";
+      "pressed.");
   const haptic::DeviceProfile& profile = client.device().profile();
+  const std::string name(tr(std::string_view(profile.name)));
   std::optional<std::string> chosen;
   beginFields();
   fieldName("device", kSays);
-  if (ImGui::BeginCombo("##device", (profile.name + (profile.gives_force ? "" : ", no force")).c_str(),
+  if (ImGui::BeginCombo("##device", (profile.gives_force ? name : trFormat("{}, no force", name)).c_str(),
                         ImGuiComboFlags_HeightLargest)) {
     if (ImGui::IsWindowAppearing()) devices.list(client.deviceWords());
     for (const DeviceChoice& each : devices.all()) {
-      const std::string text =
-          each.problem.empty() ? each.title : fmt::format("{}: {}", each.title, each.problem);
+      const std::string text = each.problem.empty() ? std::string(tr(std::string_view(each.title)))
+                                                    : fmt::format("{}: {}", each.title, each.problem);
       ImGui::BeginDisabled(!each.problem.empty());
       if (ImGui::Selectable(fmt::format("{}##{}", text, each.words).c_str(),
                             each.words == client.deviceWords()))
@@ -87,7 +92,7 @@ std::optional<std::string> deviceField(const LoopClient& client, DeviceLister& d
       ImGui::EndDisabled();
       explain(each.remedy);
     }
-    if (devices.busy()) ImGui::TextDisabled("looking for devices");
+    if (devices.busy()) ImGui::TextDisabled("%s", tr("looking for devices"));
     ImGui::EndCombo();
   } else {
     explain(kSays);
@@ -100,13 +105,14 @@ void deviceFigures(const PanelContext& context) {
   const haptic::LoopState state = context.client.state();
   // A mouse cannot be unplugged and gives no force.
   const bool mouse = context.client.mouse() != nullptr;
-  figure("link",
-         mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
-         : state.link == haptic::LinkState::kConnected    ? "connected"
-         : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
-                                                          : "not plugged in");
+  figure("link", mouse ? (state.link == haptic::LinkState::kConnected ? tr("on the surface")
+                                                                      : tr("no tool on the surface"))
+                 : state.link == haptic::LinkState::kConnected    ? tr("connected")
+                 : state.link == haptic::LinkState::kUncalibrated ? tr("not calibrated")
+                                                                  : tr("not plugged in"));
   if (!mouse) figure("buttons held", heldButtons(state.buttons));
-  figure("safety", mouse ? "no force to limit" : std::string(haptic::name(state.safety)));
+  figure("safety",
+         mouse ? std::string(tr("no force to limit")) : std::string(tr(haptic::name(state.safety))));
   ImGui::BeginDisabled(mouse);
   actionButton("Arm", Action::kArm, context.act);
   sameLineIfFits("Disarm");
@@ -122,22 +128,22 @@ void loopFigures(LoopClient& client, const std::vector<float>& forces) {
   const auto limit = static_cast<float>(client.scene().force_limit_n);
   if (!forces.empty())
     ImGui::PlotLines("##force", forces.data(), static_cast<int>(forces.size()), 0,
-                     fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
+                     trFormat("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
                      ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
   const haptic::TimingFigures compute = client.timing().compute.figures();
   const haptic::TimingFigures late = client.timing().lateness.figures();
-  figure("ticks", fmt::format("{:.0f} of {:.0f} per second", client.measuredRate(), client.rate()));
-  figure("tick takes", fmt::format("{:.1f} us, p99 {:.1f}", haptic::microseconds(compute.p50_ns),
-                                   haptic::microseconds(compute.p99_ns)));
-  figure("ticks late by", fmt::format("{:.0f} us, p99 {:.0f}", haptic::microseconds(late.p50_ns),
-                                      haptic::microseconds(late.p99_ns)));
+  figure("ticks", trFormat("{:.0f} of {:.0f} per second", client.measuredRate(), client.rate()));
+  figure("tick takes", trFormat("{:.1f} us, p99 {:.1f}", haptic::microseconds(compute.p50_ns),
+                                haptic::microseconds(compute.p99_ns)));
+  figure("ticks late by", trFormat("{:.0f} us, p99 {:.0f}", haptic::microseconds(late.p50_ns),
+                                   haptic::microseconds(late.p99_ns)));
   drawLateness(client.timing().lateness);
 }
 
 std::optional<double> rateField(double now_hz) {
   std::optional<double> chosen;
-  constexpr const char* kSays =
-      "How often a second the force is computed: more feels harder surfaces, if the machine keeps up.";
+  constexpr const char* kSays = textOf(
+      "How often a second the force is computed: more feels harder surfaces, if the machine keeps up.");
   fieldName("rate", kSays);
   if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) {
     explain(kSays);
@@ -153,12 +159,12 @@ std::optional<double> rateField(double now_hz) {
 void soundControls(LoopClient& client, Loudness& loudness) {
   if (!client.scene().lists(haptic::EffectKind::kSound)) return;
   const SoundPlayer* const player = client.soundPlayer();
-  figure("plays on", player != nullptr ? player->driver() : "no audio device");
+  figure("plays on", player != nullptr ? player->driver() : tr("no audio device"));
   if (player == nullptr) return;
   const Loudness before = loudness;
   int percent = static_cast<int>(std::lround(100.0F * loudness.volume));
   beginFields();
-  constexpr const char* kSays = "How loud the surface is; kept for the next start.";
+  constexpr const char* kSays = textOf("How loud the surface is; kept for the next start.");
   fieldName("volume", kSays);
   if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
     loudness.volume = 0.01F * static_cast<float>(percent);
@@ -187,7 +193,7 @@ LoopRequests hapticsPanel(const PanelContext& context, Parts& parts) {
   sceneNumberField(context, haptic::sceneNumber("force", "limit_n"));
   endFields();
   if (const auto largest = client.largestStiffness())
-    figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
+    figure("it can hold", trFormat("{:.4g} N/mm at most", *largest));
   effectTicks(context);
   effectFields(context);
   soundControls(client, parts.settings.loudness);

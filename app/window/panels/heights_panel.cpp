@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -31,25 +32,27 @@ void linesFields(engine::LineOptions& lines) {
     const char* says;
   };
   constexpr Row kRows[] = {
-      {"median", engine::LineMethod::kMedian, 0,
-       "All lines get the same median height: what fills less than half of a line does not count."},
-      {"mean", engine::LineMethod::kPolynomial, 0,
-       "All lines get the same mean height: everything on a line counts."},
-      {"straight line", engine::LineMethod::kPolynomial, 1, "All lines get the same mean height and slope."},
-      {"polynomial 2", engine::LineMethod::kPolynomial, 2, "The same mean height, slope and bend."},
-      {"polynomial 3", engine::LineMethod::kPolynomial, 3, "The same with one bend more."},
-      {"difference", engine::LineMethod::kDifference, 0,
-       "From line to line by the middle of their differences: features may fill a line."},
-      {"matching", engine::LineMethod::kMatching, 0,
-       "From line to line by what is alike in both: best where there is noise."}};
+      {textOf("median"), engine::LineMethod::kMedian, 0,
+       textOf("All lines get the same median height: what fills less than half of a line does not count.")},
+      {textOf("mean"), engine::LineMethod::kPolynomial, 0,
+       textOf("All lines get the same mean height: everything on a line counts.")},
+      {textOf("straight line"), engine::LineMethod::kPolynomial, 1,
+       textOf("All lines get the same mean height and slope.")},
+      {textOf("polynomial 2"), engine::LineMethod::kPolynomial, 2,
+       textOf("The same mean height, slope and bend.")},
+      {textOf("polynomial 3"), engine::LineMethod::kPolynomial, 3, textOf("The same with one bend more.")},
+      {textOf("difference"), engine::LineMethod::kDifference, 0,
+       textOf("From line to line by the middle of their differences: features may fill a line.")},
+      {textOf("matching"), engine::LineMethod::kMatching, 0,
+       textOf("From line to line by what is alike in both: best where there is noise.")}};
   int chosen = 0;
   for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
   beginFields();
   (void)field("by", kRows[chosen].says, [&] {
-    if (!ImGui::BeginCombo("##lines by", kRows[chosen].name)) return false;
+    if (!ImGui::BeginCombo("##lines by", tr(kRows[chosen].name))) return false;
     for (const Row& row : kRows) {
-      if (ImGui::Selectable(row.name, &row == &kRows[chosen])) {
+      if (ImGui::Selectable(labelOf(row.name), &row == &kRows[chosen])) {
         lines.method = row.method;
         lines.degree = row.degree;
       }
@@ -64,10 +67,10 @@ void linesFields(engine::LineOptions& lines) {
     if (changed) lines.axis = axis == 0 ? engine::ScanAxis::kX : engine::ScanAxis::kY;
     return changed;
   });
-  constexpr const char* kForm =
+  constexpr const char* kForm = textOf(
       "What changes slowly from line to line, as tilt and bends up to a wave as long as the field: form of "
       "the part, and slow drift of the scanner. Drift can be taken out with the panel Form. With \"goes, "
-      "too\" all lines end at the same height.";
+      "too\" all lines end at the same height.");
   (void)field("slow form", kForm, [&] {
     int goes = lines.form_degree ? 0 : 1;
     const bool changed = chooseWord("##lines form", goes, {"stays", "goes, too"});
@@ -88,8 +91,8 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
-constexpr HeightButtons kFillButtons{Action::kFillPreview, Action::kFillHoles, "Fill holes"};
-constexpr HeightButtons kLevelButtons{Action::kLevelPreview, Action::kLevelLines, "Level lines"};
+constexpr HeightButtons kFillButtons{Action::kFillPreview, Action::kFillHoles, textOf("Fill holes")};
+constexpr HeightButtons kLevelButtons{Action::kLevelPreview, Action::kLevelLines, textOf("Level lines")};
 
 }  // namespace
 
@@ -113,7 +116,8 @@ void heightOutcome(HeightTool& heights, bool here) {
   beginPlace("##heights outcome", kLines);
   if (here && heights.busy() && !heights.followsSoon()) {
     if (cancelledBar(heights.progress(), "computing heights", "Cancel##heights")) heights.cancel();
-    if (const std::string so_far = heights.soFar(); !so_far.empty()) writeWrapped("preview: " + so_far);
+    if (const std::string so_far = heights.soFar(); !so_far.empty())
+      writeWrapped(trFormat("preview: {}", so_far));
   } else if (here && !heights.found().empty()) {
     writeWrapped(heights.found());
   }

@@ -7,6 +7,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
@@ -60,25 +61,25 @@ void choice(std::string_view option, std::string& value,
 
 void spacingFields(Files& files) {
   ImportForm& form = files.form;
-  std::string across = "as in the file", up = across;
+  std::string across = tr("as in the file"), up = across;
   if (files.found_grid) {
-    const char* const whence = !files.form.camera[0].empty()                  ? "by the camera"
-                               : isAssumed(files.found_warnings, "--spacing") ? "guessed"
-                                                                              : "in the file";
+    const char* const whence = !files.form.camera[0].empty()                  ? tr("by the camera")
+                               : isAssumed(files.found_warnings, "--spacing") ? tr("guessed")
+                                                                              : tr("in the file");
     across = fmt::format("{:.6g} {}", files.found_grid->spacing_x, whence);
     up = fmt::format("{:.6g} {}", files.found_grid->spacing_y, whence);
   }
   const bool square = files.found_grid && files.found_grid->spacing_x == files.found_grid->spacing_y;
-  if (square || !form.spacing_x.empty()) up = "as along a row";
+  if (square || !form.spacing_x.empty()) up = tr("as along a row");
   typed("--spacing", across, form.spacing_x);
-  typed("--spacing", "of the rows", up, form.spacing_y);
+  typed("--spacing", textOf("of the rows"), up, form.spacing_y);
 }
 
 void unitChoice(Files& files) {
-  std::string as_it_is = "as in the file, else mm";
+  std::string as_it_is = tr("as in the file, else mm");
   if (files.found_grid && files.form.unit.empty())
     as_it_is = fmt::format("{}, {}", files.found_grid->height_unit.name,
-                           isAssumed(files.found_warnings, "--unit") ? "guessed" : "as in the file");
+                           isAssumed(files.found_warnings, "--unit") ? tr("guessed") : tr("as in the file"));
   std::vector<std::pair<std::string, std::string>> words{{"", as_it_is}};
   for (const std::string& name : engine::lengthUnitNames()) words.emplace_back(name, name);
   choice("--unit", files.form.unit, words);
@@ -86,23 +87,22 @@ void unitChoice(Files& files) {
 
 // What the file's whole numbers are multiplied with; of other numbers none is known.
 std::string foundScale(const Files& files) {
-  if (!files.found_grid || files.found_grid->height_per_count == 0.0) return "as in the file, else 1";
+  if (!files.found_grid || files.found_grid->height_per_count == 0.0) return tr("as in the file, else 1");
   return fmt::format("{:.6g} {}", files.found_grid->height_per_count,
-                     isAssumed(files.found_warnings, "--z-scale") ? "guessed" : "in the file");
+                     isAssumed(files.found_warnings, "--z-scale") ? tr("guessed") : tr("in the file"));
 }
 
 std::string foundCell(const Files& files) {
-  if (!files.found_grid) return "by the density of the points";
-  return fmt::format("{:.6g} by the points", files.found_grid->spacing_x);
+  if (!files.found_grid) return tr("by the density of the points");
+  return trFormat("{:.6g} by the points", files.found_grid->spacing_x);
 }
 
 // Lone values of the scan, to be taken as holes by one click.
 void noData(std::string& value, const ScanThumbnail* picture) {
-  typed("--no-data", "as in the file", value);
+  typed("--no-data", tr("as in the file"), value);
   if (picture == nullptr) return;
   for (const engine::LoneValue& lone : picture->lone_values) {
-    if (ImGui::Button(fmt::format("{} are holes", lone.number).c_str()))
-      value = fmt::format("{}", lone.number);
+    if (ImGui::Button(trFormat("{} are holes", lone.number).c_str())) value = fmt::format("{}", lone.number);
     explainOption("--no-data");
   }
 }
@@ -111,15 +111,16 @@ void noData(std::string& value, const ScanThumbnail* picture) {
 void cameraFields(ImportForm& form) {
   const bool said = std::ranges::any_of(form.camera, [](const std::string& text) { return !text.empty(); });
   ImGui::SetNextItemOpen(said, ImGuiCond_Appearing);
-  const bool open = ImGui::TreeNode("distances from a depth camera");
+  const bool open = ImGui::TreeNode(labelOf("distances from a depth camera"));
   explainOption("--depth-camera");
   if (!open) return;
   const float quarter = 0.25F * (ImGui::GetContentRegionAvail().x - 3.0F * ImGui::GetStyle().ItemSpacing.x);
-  static constexpr std::array kNames{"fx", "fy: fx", "cx: middle", "cy: middle"};
+  static constexpr std::array kNames{textOf("fx"), textOf("fy: fx"), textOf("cx: middle"),
+                                     textOf("cy: middle")};
   for (std::size_t i = 0; i < form.camera.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     ImGui::SetNextItemWidth(quarter);
-    (void)ImGui::InputTextWithHint((std::string("##camera ") + kNames[i]).c_str(), kNames[i],
+    (void)ImGui::InputTextWithHint((std::string("##camera ") + kNames[i]).c_str(), tr(kNames[i]),
                                    &form.camera[i]);
     explainOption("--depth-camera");
   }
@@ -137,13 +138,14 @@ void fields(Files& files, const ScanThumbnail* picture) {
   if (files.apply.cells) {
     typed("--cell-size", foundCell(files), form.cell_size);
     choice("--cell-rule", form.cell_rule,
-           {{"", "median of its points"}, {"mean", "mean"}, {"highest", "highest"}});
+           {{"", tr("median of its points")}, {"mean", tr("mean")}, {"highest", tr("highest")}});
   }
   if (files.apply.camera) cameraFields(form);
   endFields();
   if (files.found_grid)
-    ImGui::TextDisabled("units now: %s across, %s up", files.found_grid->lateral_unit.name.c_str(),
-                        files.found_grid->height_unit.name.c_str());
+    ImGui::TextDisabled("%s", trFormat("units now: {} across, {} up", files.found_grid->lateral_unit.name,
+                                       files.found_grid->height_unit.name)
+                                  .c_str());
 }
 
 void bullets(const std::vector<std::string>& warnings, bool guesses) {
@@ -160,7 +162,7 @@ void found(const ThumbnailShelf::Shown& shown, const Files& files) {
   if (shown.problem != nullptr) {
     writeIn(PanelColour::kProblem, inFieldWords(shown.problem->line()));
   } else if (shown.picture == nullptr) {
-    ImGui::TextDisabled("reading");
+    ImGui::TextDisabled("%s", tr("reading"));
   } else {
     const ScanThumbnail& picture = *shown.picture;
     const ReadingSources sources = readingSources(files.reading, picture.warnings, files.apply);
@@ -168,11 +170,11 @@ void found(const ThumbnailShelf::Shown& shown, const Files& files) {
                                     picture.whole ? sources.file : std::string(), sources.person})
       if (!line.empty()) ImGui::TextUnformatted(line.c_str());
     if (!picture.whole)
-      ImGui::TextDisabled("a coarse look: what is guessed is said when all of it is read");
+      ImGui::TextDisabled("%s", tr("a coarse look: what is guessed is said when all of it is read"));
     else if (anyGuess(picture.warnings))
-      ImGui::TextUnformatted("guessed:");
+      ImGui::TextUnformatted(tr("guessed:"));
     else
-      ImGui::TextDisabled("nothing else was guessed");
+      ImGui::TextDisabled("%s", tr("nothing else was guessed"));
     bullets(picture.warnings, true);
     bullets(picture.warnings, false);
   }
@@ -190,7 +192,7 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   ImGui::TextUnformatted(std::filesystem::path(question.path).filename().c_str());
   if (question.guessed != nullptr)
     ImGui::TextUnformatted(
-        "It does not say all about its numbers. Say what you know; Enter opens it as it is read below.");
+        tr("It does not say all about its numbers. Say what you know; Enter opens it as it is read below."));
   const auto typed_so_far = files.form.read();
   if (typed_so_far) files.reading = *typed_so_far;
   const ThumbnailShelf::Shown shown = files.shelf.find(question.path, files.reading);

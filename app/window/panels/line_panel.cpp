@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -23,17 +24,19 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
   const render::ShownUnit &length = context.units.length, &upward = context.units.height;
   const double mm =
       length.per_unit / context.client.field().grid().lateral_unit.mm;  // shown units in a millimetre
-  const std::string off = "+- " + length.name, step = "step " + upward.name;
+  const std::string off = "+- " + length.name, step = trFormat("step {}", upward.name);
   const std::array columns{
-      std::pair{std::string("line"), "A click chooses a line; Y goes to the next."},
-      std::pair{length.name, "How long the line is."},
+      std::pair{std::string(tr("line")), textOf("A click chooses a line; Y goes to the next.")},
+      std::pair{length.name, textOf("How long the line is.")},
       std::pair{
-          std::string("found"),
-          "On how much of the line an edge was found in the heights. The rest, grey in the picture, lies "
-          "where the hand drew it."},
-      std::pair{off,
-                "How surely the found edge lies where the line is: a standard deviation, across the line."},
-      std::pair{step, "How high the edge is: the median along the line."}};
+          std::string(tr("found")),
+          textOf(
+              "On how much of the line an edge was found in the heights. The rest, grey in the picture, lies "
+              "where the hand drew it.")},
+      std::pair{
+          off,
+          textOf("How surely the found edge lies where the line is: a standard deviation, across the line.")},
+      std::pair{step, textOf("How high the edge is: the median along the line.")}};
   for (const auto& [title, meaning] : columns) ImGui::TableSetupColumn(title.c_str());
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const auto& [title, meaning] : columns) {
@@ -49,7 +52,8 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
       const LineFigures& line = figures[static_cast<std::size_t>(i)];
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      const std::string name = fmt::format("{}{}", line.id, line.closed ? " closed" : "");
+      const std::string name = (line.closed ? trFormat("{} closed", line.id) : fmt::format("{}", line.id)) +
+                               fmt::format("###line {}", line.id);
       if (ImGui::Selectable(name.c_str(), chosen == line.id, ImGuiSelectableFlags_SpanAllColumns))
         lines.choose(line.id);
       for (const std::string& text :
@@ -67,15 +71,15 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
 
 void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   actionTick("strokes become edge lines", draws, Action::kDrawLines, context.act);
-  constexpr const char* kHand =
+  constexpr const char* kHand = textOf(
       "How far a hand usually strays from the edge that it follows. The edge is sought that far beside the "
       "stroke: more finds it after a careless stroke, less keeps to the stroke where edges lie close "
-      "together.";
+      "together.");
   beginFields();
   fieldName("hand off by", kHand);
   auto hand = static_cast<float>(lines.options.hand_deviation);
   if (ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
-                         static_cast<float>(engine::LocateOptions::kMostHand), "%.2f samples",
+                         static_cast<float>(engine::LocateOptions::kMostHand), trPrintf("%.2f samples"),
                          ImGuiSliderFlags_AlwaysClamp))
     lines.options.hand_deviation = static_cast<double>(hand);
   explain(kHand);

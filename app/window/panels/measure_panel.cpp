@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/curve_plot.h"
 #include "app/window/panels/panels.h"
 
@@ -50,13 +51,13 @@ void arealTable(const MeasureTool& measure, bool noise) {
                          ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
     return;
   cell("");
-  if (before) cell("scan");
-  cell(before ? "now" : "value");
+  if (before) cell(tr("scan"));
+  cell(before ? tr("now") : tr("value"));
   cell("");
   for (const ArealLine& line : figures ? figures->lines : arealNames()) {
     ImGui::TableNextRow();
     cell(line.name);
-    if (ImGui::IsItemHovered()) valueTip(line.text);
+    if (ImGui::IsItemHovered()) valueTip(tr(std::string_view(line.text)));
     if (!figures) cell(measure.busy() ? "..." : "-");
     for (std::size_t i = 0; i < line.values.size(); ++i) {
       // A reason is longer than a figure: it is the tip of a dash.
@@ -66,7 +67,7 @@ void arealTable(const MeasureTool& measure, bool noise) {
         if (!stated)
           valueTip(line.values[i]);
         else if (!line.without[i].empty())
-          valueTip("without noise " + line.without[i]);
+          valueTip(trFormat("without noise {}", line.without[i]));
       }
     }
     cell(line.unit);
@@ -87,8 +88,8 @@ void caption(MeasureTool& measure) {
   if (measure.busy()) {
     if (cancelledBar(measure.progress(), "measuring", "Cancel##measure")) measure.cancel();
   } else if (const auto* figures = measure.figures()) {
-    writeWrapped(fmt::format("ISO 25178-2, {} samples{}", figures->samples,
-                             measure.outdated() ? "; the field has changed since" : ""));
+    writeWrapped(trFormat("ISO 25178-2, {} samples{}", figures->samples,
+                          measure.outdated() ? tr("; the field has changed since") : ""));
   } else {
     writeIn(render::PanelColour::kMuted, "surface texture by ISO 25178-2");
   }
@@ -102,7 +103,7 @@ void addCurve(CurvePlot& plot, std::size_t state, std::size_t states, std::size_
               std::vector<glm::dvec2> points) {
   const bool beneath = state + 1 < states;
   const PanelColour first = states > 1 ? PanelColour::kProfileNow : PanelColour::kProfile;
-  if (states > 1) name = (beneath ? "scan, " : "now, ") + name;
+  if (states > 1) name = beneath ? trFormat("scan, {}", name) : trFormat("now, {}", name);
   plot.curves.push_back({std::move(points),
                          beneath      ? PanelColour::kProfileBefore
                          : curve == 0 ? first
@@ -111,7 +112,7 @@ void addCurve(CurvePlot& plot, std::size_t state, std::size_t states, std::size_
 }
 
 CurvePlot abbottCurves(const std::vector<SurfaceCurves>& states, const render::ShownUnit& height) {
-  CurvePlot plot{.x_name = "material ratio [%]", .y_name = fmt::format("height [{}]", height.name)};
+  CurvePlot plot{.x_name = tr("material ratio [%]"), .y_name = trFormat("height [{}]", height.name)};
   const std::vector<double> ratios = curveRatios();
   bool any = false;
   for (std::size_t s = 0; s < states.size(); ++s) {
@@ -126,7 +127,7 @@ CurvePlot abbottCurves(const std::vector<SurfaceCurves>& states, const render::S
       plot.high = any ? std::max(plot.high, high) : high;
       any = true;
     }
-    addCurve(plot, s, states.size(), 0, "height", std::move(points));
+    addCurve(plot, s, states.size(), 0, tr("height"), std::move(points));
   }
   const double room = 0.2 * (plot.high - plot.low);
   plot.low -= room;
@@ -135,7 +136,7 @@ CurvePlot abbottCurves(const std::vector<SurfaceCurves>& states, const render::S
 }
 
 CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUnit& length) {
-  CurvePlot plot{.x_name = fmt::format("distance [{}]", length.name), .y_name = "autocorrelation"};
+  CurvePlot plot{.x_name = trFormat("distance [{}]", length.name), .y_name = tr("autocorrelation")};
   for (std::size_t s = 0; s < states.size(); ++s)
     for (std::size_t c = 0; c < states[s].decay.size(); ++c) {
       const DecayCurve& curve = states[s].decay[c];
@@ -143,7 +144,8 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
       for (std::size_t i = 0; i < curve.values.size(); ++i)
         points.emplace_back(static_cast<double>(i) * states[s].decay_step_mm * length.per_unit,
                             curve.values[i]);
-      addCurve(plot, s, states.size(), c, fmt::format("{}, {:.0f} degrees from x", curve.name, curve.degrees),
+      addCurve(plot, s, states.size(), c,
+               trFormat("{}, {:.0f} degrees from x", tr(std::string_view(curve.name)), curve.degrees),
                std::move(points));
     }
   return plot;
@@ -152,14 +154,14 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
 // `per_mm`: of the unit of heights.
 CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& unit, double per_mm) {
   CurvePlot plot{.scale = CurvePlot::Scale::kLogarithmic,
-                 .x_name = "frequency [1/mm]",
-                 .y_name = fmt::format("power density [{}^2 mm]", unit)};
+                 .x_name = tr("frequency [1/mm]"),
+                 .y_name = trFormat("power density [{}^2 mm]", unit)};
   for (std::size_t s = 0; s < states.size(); ++s)
     for (const auto& [spectrum, c] : {std::pair(&states[s].along_x, 0), {&states[s].along_y, 1}}) {
       std::vector<glm::dvec2> points;
       for (std::size_t i = 1; i < spectrum->density.size(); ++i)
         points.emplace_back(spectrum->frequency(i), spectrum->density[i] * per_mm * per_mm);
-      addCurve(plot, s, states.size(), static_cast<std::size_t>(c), c == 0 ? "along x" : "along y",
+      addCurve(plot, s, states.size(), static_cast<std::size_t>(c), c == 0 ? tr("along x") : tr("along y"),
                std::move(points));
     }
   return plot;
@@ -180,9 +182,10 @@ void surfaceCurves(const PanelContext& context, MeasureTool& measure) {
   beginPlace("##surface curves", kLines);
   const auto* figures = measure.figures();
   if (!figures) {
-    writeIn(PanelColour::kMuted, measure.busy() ? "measuring" : "no figures yet");
+    writeIn(PanelColour::kMuted, measure.busy() ? tr("measuring") : tr("no figures yet"));
   } else if (measure.curve != Curve::kAbbott && !figures->curves.back().no_decay.empty()) {
-    writeIn(PanelColour::kMuted, "no autocorrelation and no spectrum: " + figures->curves.back().no_decay);
+    writeIn(PanelColour::kMuted,
+            trFormat("no autocorrelation and no spectrum: {}", figures->curves.back().no_decay));
   } else {
     const engine::Grid& grid = context.client.field().grid();
     const render::ShownUnit& height = context.units.height;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -18,8 +19,8 @@ void items(std::string_view menu, int group, const Parts& parts, const Act& act)
     if (row.menu.group != group || row.menuTitle() != menu) continue;
     const bool ticked = row.ticked != nullptr && row.ticked(parts);
     const bool enabled = row.enabled != nullptr ? row.enabled(parts) : ready(row, parts);
-    if (ImGui::MenuItem(std::string(row.name).c_str(), keyText(row.key, row.modifiers).c_str(), ticked,
-                        enabled))
+    if (ImGui::MenuItem(labelOf(std::string(row.name).c_str()), keyText(row.key, row.modifiers).c_str(),
+                        ticked, enabled))
       act(row.action);
   }
 }
@@ -31,23 +32,24 @@ bool hasItems(std::string_view menu, int group) {
 
 std::optional<std::string> recentFiles(const RecentFiles& recent) {
   std::optional<std::string> chosen;
-  if (!ImGui::BeginMenu("Recent files", !recent.paths().empty())) return chosen;
+  if (!ImGui::BeginMenu(labelOf("Recent files"), !recent.paths().empty())) return chosen;
   for (std::size_t i = 0; i < recent.paths().size(); ++i)
-    if (ImGui::MenuItem(recent.paths()[i].c_str(), fmt::format("Ctrl+{}", i + 1).c_str()))
+    if (ImGui::MenuItem(recent.paths()[i].c_str(), trFormat("Ctrl+{}", i + 1).c_str()))
       chosen = recent.paths()[i];
   ImGui::EndMenu();
   return chosen;
 }
 
 void mouseHabits(Habits& habits) {
-  if (!ImGui::BeginMenu("Mouse")) return;
+  if (!ImGui::BeginMenu(labelOf("Mouse"))) return;
   for (const MousePreset& preset : kMousePresets)
-    if (ImGui::MenuItem(preset.line.data(), nullptr, habits == preset.habits)) habits = preset.habits;
+    if (ImGui::MenuItem(labelOf(preset.line.data()), nullptr, habits == preset.habits))
+      habits = preset.habits;
   ImGui::EndMenu();
 }
 
 void bookmarks(const Parts& parts, const Act& act) {
-  if (!ImGui::BeginMenu("Bookmarks")) return;
+  if (!ImGui::BeginMenu(labelOf("Bookmarks"))) return;
   items("Bookmarks", 1, parts, act);
   ImGui::Separator();
   items("Bookmarks", 2, parts, act);
@@ -60,14 +62,14 @@ std::optional<std::string> menuBar(Parts& parts, const Act& act) {
   std::optional<std::string> chosen;
   if (!ImGui::BeginMainMenuBar()) return chosen;
   for (const std::string_view menu : kMenus) {
-    if (!ImGui::BeginMenu(menu.data())) continue;
+    if (!ImGui::BeginMenu(labelOf(menu.data()))) continue;
     const bool file = menu == "File";
     for (int group = 1; group <= kGroups && hasItems(menu, group); ++group) {
       if (group > 1 && !file) ImGui::Separator();
       if (group == 3 && menu == "View") mouseHabits(parts.settings.habits);
       if (group == 3 && file) {
         bool& asks = parts.settings.ask_before_quitting;
-        if (ImGui::MenuItem("Ask before quitting with unsaved work", nullptr, asks)) asks = !asks;
+        if (ImGui::MenuItem(labelOf("Ask before quitting with unsaved work"), nullptr, asks)) asks = !asks;
       }
       items(menu, group, parts, act);
       if (group == 2 && menu == "View") bookmarks(parts, act);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -16,7 +17,9 @@ constexpr float kMostOfHeight = 0.35F;  // of the window's, more of them scroll
 constexpr float kTopLine = 2.0F;        // [pixels]
 
 std::string noticeText(const Notice& notice) {
-  return notice.remedy.empty() ? notice.what : fmt::format("{}: {}", notice.what, notice.remedy);
+  const std::string_view what = tr(std::string_view(notice.what)),
+                         remedy = tr(std::string_view(notice.remedy));
+  return remedy.empty() ? std::string(what) : fmt::format("{}: {}", what, remedy);
 }
 
 }  // namespace
@@ -46,11 +49,11 @@ void noticePanel(const std::vector<Notice>& notices, const Act& act, ImVec2 corn
                                       colourOf(PanelColour::kWarning), kTopLine);
   for (const Notice& notice : notices) writeIn(PanelColour::kWarning, noticeText(notice));
   if (std::ranges::any_of(notices, &Notice::of_reading)) {
-    if (ImGui::SmallButton("Read as ...")) act(Action::kReadAs);
+    if (ImGui::SmallButton(labelOf("Read as ..."))) act(Action::kReadAs);
     tip(Action::kReadAs);
     ImGui::SameLine();
   }
-  if (ImGui::SmallButton("Understood")) act(Action::kUnderstood);
+  if (ImGui::SmallButton(labelOf("Understood"))) act(Action::kUnderstood);
   tip(Action::kUnderstood);
   ImGui::End();
   ImGui::PopStyleVar();

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -36,14 +37,14 @@ void beforeLabel(const Parts& parts, float scale) {
   const float x = static_cast<float>(area.x) + 0.5F * static_cast<float>(area.width);
   ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(area.y) + 12.0F * scale), ImGuiCond_Always,
                           ImVec2(0.5F, 0.0F));
-  constexpr const char* kText = "before: the scan as it was";
+  const char* const before = tr("before: the scan as it was");
   // A window that takes its size from what is in it is seen a frame later, when the key may have been released.
-  const ImVec2 text = ImGui::CalcTextSize(kText), padding = ImGui::GetStyle().WindowPadding;
+  const ImVec2 text = ImGui::CalcTextSize(before), padding = ImGui::GetStyle().WindowPadding;
   ImGui::SetNextWindowSize(ImVec2(text.x + 2.0F * padding.x, text.y + 2.0F * padding.y));
   ImGui::Begin("##before", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::TextUnformatted(kText);
+  ImGui::TextUnformatted(before);
   ImGui::End();
 }
 

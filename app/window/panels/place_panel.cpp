@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -18,13 +19,13 @@ void writePlaces(const engine::WorthPlaces& found, const PlaceTool& places, cons
   if (const auto present = places.present()) {
     const engine::WorthPlace& place = found.places[*present];
     const State state = places.state(*present);
-    writeWrapped(fmt::format(
-        "place {} of {}{}: estimated error of tgv {:.3g}, with all up to here {}, {:.0f} s", *present + 1,
-        found.places.size(), state == State::kDone ? ", done" : "", found.rmseAfter(0) * unit.per_unit,
-        lengthText(found.rmseAfter(*present + 1), unit, 3), place.seconds));
+    writeWrapped(trFormat("place {} of {}{}: estimated error of tgv {:.3g}, with all up to here {}, {:.0f} s",
+                          *present + 1, found.places.size(), state == State::kDone ? tr(", done") : "",
+                          found.rmseAfter(0) * unit.per_unit,
+                          lengthText(found.rmseAfter(*present + 1), unit, 3), place.seconds));
   }
-  writeWrapped(fmt::format("{} done, {} skipped, {} left", places.count(State::kDone),
-                           places.count(State::kSkipped), places.count(State::kOpen)));
+  writeWrapped(trFormat("{} done, {} skipped, {} left", places.count(State::kDone),
+                        places.count(State::kSkipped), places.count(State::kOpen)));
   if (places.outdated())
     writeWrapped(
         "heights have changed since: places and estimates are of the surface before; hide them, then look "
@@ -38,8 +39,8 @@ void placePanel(const PanelContext& context, PlaceTool& places) {
   const bool some = found != nullptr && !found->places.empty();
   ImGui::BeginDisabled(places.busy() || (found != nullptr && !some));
   actionButton(
-      some ? "Next place" : "Where is a line worth most?", Action::kNextPlace, context.act,
-      ImGui::CalcTextSize("Where is a line worth most?").x + 2.0F * ImGui::GetStyle().FramePadding.x);
+      some ? textOf("Next place") : textOf("Where is a line worth most?"), Action::kNextPlace, context.act,
+      ImGui::CalcTextSize(tr("Where is a line worth most?")).x + 2.0F * ImGui::GetStyle().FramePadding.x);
   ImGui::EndDisabled();
   sameLineIfFits("Hide places");
   ImGui::BeginDisabled(found == nullptr);

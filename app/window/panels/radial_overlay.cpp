@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -36,7 +37,8 @@ void radialOverlay(const Parts& parts) {
       list.PathArcTo(middle, ring, turn - half, turn + half, 12);
       list.PathStroke(colourOf(PanelColour::kTick), ImDrawFlags_None, wide);
     }
-    const ImVec2 text = ImGui::CalcTextSize(item.name.data(), item.name.data() + item.name.size());
+    const std::string_view name = tr(item.name);
+    const ImVec2 text = ImGui::CalcTextSize(name.data(), name.data() + name.size());
     const ImVec2 half(0.5F * text.x + 9.0F * scale, 0.5F * text.y + 5.0F * scale);
     const float away = static_cast<float>(RadialMenu::kNames_px) * scale;
     // Names to the sides begin where those above and below have their middle.
@@ -46,7 +48,7 @@ void radialOverlay(const Parts& parts) {
                        5.0F * scale);
     if (on) list.AddRect(low, high, colourOf(PanelColour::kTick), 5.0F * scale, 0, 2.0F * scale);
     list.AddText(ImVec2(at.x - 0.5F * text.x, at.y - 0.5F * text.y), colourOf(PanelColour::kText),
-                 item.name.data(), item.name.data() + item.name.size());
+                 name.data(), name.data() + name.size());
   }
 }
 

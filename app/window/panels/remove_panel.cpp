@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -60,12 +61,12 @@ void heightFields(RemoveOptions& remove, const render::ValueRange& seen, const r
   const bool below = heights == RemovedHeights::kBelow, above = heights == RemovedHeights::kAbove;
   // Past the other end: that one is moved along.
   if ((both || below) &&
-      field(below ? "lower than" : "lowest", "The lower limit, as a height of the field.",
+      field(below ? textOf("lower than") : textOf("lowest"), "The lower limit, as a height of the field.",
             [&] { return typeLength("##remove low", remove.low, -1e30, 1e30, unit); }) &&
       both && remove.low > remove.high)
     remove.high = remove.low + width;
   if ((both || above) &&
-      field(above ? "higher than" : "highest", "The upper limit, as a height of the field.",
+      field(above ? textOf("higher than") : textOf("highest"), "The upper limit, as a height of the field.",
             [&] { return typeLength("##remove high", remove.high, -1e30, 1e30, unit); }) &&
       both && remove.low > remove.high)
     remove.low = remove.high - width;
@@ -92,15 +93,15 @@ constexpr int kCountLines = 2;
 
 std::string countText(const RemovalCount& count) {
   const auto& counts = count.counts();
-  if (!counts) return "counting ...";
-  if (counts->heights == 0) return "there is no sample with a height";
-  if (counts->removed == counts->heights) return "all samples: nothing would be left";
+  if (!counts) return tr("counting ...");
+  if (counts->heights == 0) return tr("there is no sample with a height");
+  if (counts->removed == counts->heights) return tr("all samples: nothing would be left");
   std::string text =
       counts->removed == 0
-          ? std::string("no sample would go")
-          : fmt::format("{} of {} samples would go, {:.3g} %", counts->removed, counts->heights,
-                        100.0 * static_cast<double>(counts->removed) / static_cast<double>(counts->heights));
-  if (counts->spared > 0) text += fmt::format("; {} stay since they are marked", counts->spared);
+          ? std::string(tr("no sample would go"))
+          : trFormat("{} of {} samples would go, {:.3g} %", counts->removed, counts->heights,
+                     100.0 * static_cast<double>(counts->removed) / static_cast<double>(counts->heights));
+  if (counts->spared > 0) text += trFormat("; {} stay since they are marked", counts->spared);
   return text;
 }
 
@@ -126,7 +127,8 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   }
   heights.remove = turned ? engine::upsideDown(remove) : remove;
   count.want(heights.remove);
-  heightButtons(context, heights, heights.remove, {Action::kRemovePreview, Action::kRemoveSamples, "Remove"});
+  heightButtons(context, heights, heights.remove,
+                {Action::kRemovePreview, Action::kRemoveSamples, textOf("Remove")});
   // Below the buttons: it takes one line or two.
   beginPlace("##remove count", kCountLines);
   writeWrapped(countText(count));

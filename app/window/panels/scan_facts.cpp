@@ -5,13 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "app/texts/texts.h"
 #include "app/work/read_units.h"
 
 namespace fettle::app {
 
 std::string sizeText(const ScanThumbnail& picture) {
   if (!picture.grid) return {};
-  return fmt::format("{} x {} samples", picture.grid->width, picture.grid->height);
+  return trFormat("{} x {} samples", picture.grid->width, picture.grid->height);
 }
 
 std::string extentText(const ScanThumbnail& picture) {
@@ -21,8 +22,8 @@ std::string extentText(const ScanThumbnail& picture) {
   const ReadAs whole = readOnScreenAs(std::max(across, up), grid.lateral_unit.mm, grid.lateral_unit.name);
   const ReadAs apart =
       readOnScreenAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit.mm, grid.lateral_unit.name);
-  return fmt::format("{:.4g} x {:.4g} {}, {:.4g} x {:.4g} {} apart", across / whole.size, up / whole.size,
-                     whole.name, grid.spacing_x / apart.size, grid.spacing_y / apart.size, apart.name);
+  return trFormat("{:.4g} x {:.4g} {}, {:.4g} x {:.4g} {} apart", across / whole.size, up / whole.size,
+                  whole.name, grid.spacing_x / apart.size, grid.spacing_y / apart.size, apart.name);
 }
 
 std::string heightsText(const ScanThumbnail& picture) {
@@ -30,8 +31,9 @@ std::string heightsText(const ScanThumbnail& picture) {
   const engine::LengthUnit& unit = picture.grid->height_unit;
   const double low = static_cast<double>(picture.lowest), high = static_cast<double>(picture.highest);
   const ReadAs as = readOnScreenAs(std::max(std::abs(low), std::abs(high)), unit.mm, unit.name);
-  return fmt::format("heights {}{:.4g} to {:.4g} {}", picture.whole ? "" : "about ", low / as.size,
-                     high / as.size, as.name);
+  return picture.whole
+             ? trFormat("heights {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name)
+             : trFormat("heights about {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name);
 }
 
 std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {
@@ -40,7 +42,7 @@ std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor
   const ReadAs across = readOnScreenAs(longest, grid.lateral_unit.mm, grid.lateral_unit.name);
   const std::string place = fmt::format("x {:.4g}  y {:.4g} {}", cursor.column * grid.spacing_x / across.size,
                                         cursor.row * grid.spacing_y / across.size, across.name);
-  if (!std::isfinite(cursor.height)) return place + "  hole";
+  if (!std::isfinite(cursor.height)) return fmt::format("{}  {}", place, tr("hole"));
   const auto height = static_cast<double>(cursor.height);
   const ReadAs up = readOnScreenAs(std::abs(height), grid.height_unit.mm, grid.height_unit.name);
   return fmt::format("{}  z {:.4g} {}", place, height / up.size, up.name);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -90,7 +91,7 @@ void profilePlot(SectionTool& tool) {
                                               colourOf(PanelColour::kField));
     const ImVec2 below = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos(ImVec2(corner.x + 0.5F * font, corner.y + 0.5F * font));
-    ImGui::TextUnformatted(tool.busy() ? "taking the section" : "no height along this line");
+    ImGui::TextUnformatted(tool.busy() ? tr("taking the section") : tr("no height along this line"));
     ImGui::SetCursorScreenPos(below);
     return;
   }
@@ -140,16 +141,18 @@ int figureLinesOf(const KeptSection& section) {
 void figureLines(const SectionTool& tool, const render::ShownUnit& length, const render::ShownUnit& height) {
   const auto write = [](const std::vector<SectionLine>& lines) {
     for (const SectionLine& line : lines)
-      writeWrapped(line.name.empty() ? "  " + line.text : line.name + " " + line.text);
+      writeWrapped(
+          fmt::format("{} {}", line.name.empty() ? " " : tr(std::string_view(line.name)), line.text));
   };
   beginPlace("##section figures", figureLinesOf(*tool.section()));
   if (tool.profiles()) {
     const PlotFrame frame = frameOf(*tool.profiles());
-    writeWrapped(fmt::format("shown {}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
-                             frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
+    writeWrapped(trFormat("shown {}, {:.5g} to {}", lengthText(frame.length_mm, length, 4),
+                          frame.low_mm * height.per_unit, lengthText(frame.high_mm, height, 5)));
     write(tool.figures().now);
     const bool differs = !tool.figures().before.empty();
-    writeIn(PanelColour::kMuted, differs ? "the same of the scan:" : "nothing differs from the scan here");
+    writeIn(PanelColour::kMuted,
+            differs ? tr("the same of the scan:") : tr("nothing differs from the scan here"));
     write(tool.figures().before);
   }
   endPlace();
@@ -157,7 +160,7 @@ void figureLines(const SectionTool& tool, const render::ShownUnit& length, const
 
 // What is measured between the cursors.
 void figureChoice(KeptSection& section, const render::ShownUnit& length) {
-  ImGui::TextUnformatted("between the cursors:");
+  ImGui::TextUnformatted(tr("between the cursors:"));
   tickBox("line##section", section.line,
           "Slope of the straight line through the heights, and what is left of them.");
   sameLineIfFits("step", ItemKind::kTick);
@@ -181,9 +184,9 @@ void figureChoice(KeptSection& section, const render::ShownUnit& length) {
 // Which of several, and another one.
 void sectionChoice(const PanelContext& context, SectionTool& tool) {
   const std::size_t count = tool.sections().size();
-  const std::string which = tool.chosen() ? fmt::format("section {} of {}", *tool.chosen() + 1, count)
-                                          : fmt::format("a new section, {} kept", count);
-  ImGui::TextUnformatted(count > 0 ? which.c_str() : "no section yet");
+  const std::string which = tool.chosen() ? trFormat("section {} of {}", *tool.chosen() + 1, count)
+                                          : trFormat("a new section, {} kept", count);
+  ImGui::TextUnformatted(count > 0 ? which.c_str() : tr("no section yet"));
   ImGui::BeginDisabled(count < 2 && (count == 0 || tool.chosen().has_value()));
   actionButton("Next##section", Action::kSectionNext, context.act);
   ImGui::EndDisabled();
@@ -208,7 +211,7 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   sectionChoice(context, tool);
   if (tool.section() == nullptr) {
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted("a line over the surface: point at its ends and press Q and Shift+Q");
+    ImGui::TextUnformatted(tr("a line over the surface: point at its ends and press Q and Shift+Q"));
     ImGui::PopTextWrapPos();
     if (pressButton("Along the middle row", "From the left to the right end of the field, to begin with.")) {
       const double y = 0.5 * (grid.height - 1) * grid.spacingYMm();
@@ -219,10 +222,10 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   KeptSection section = *tool.section();
   constexpr double kFar = 1e12;
   beginFields();
-  for (const auto& [name, id, value] : {std::tuple("from x", "##section from x", &section.from.x),
-                                        {"from y", "##section from y", &section.from.y},
-                                        {"to x", "##section to x", &section.to.x},
-                                        {"to y", "##section to y", &section.to.y}})
+  for (const auto& [name, id, value] : {std::tuple(textOf("from x"), "##section from x", &section.from.x),
+                                        {textOf("from y"), "##section from y", &section.from.y},
+                                        {textOf("to x"), "##section to x", &section.to.x},
+                                        {textOf("to y"), "##section to y", &section.to.y}})
     (void)field(name, "The ends of the section in the scan's own coordinates.",
                 [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
   (void)field(

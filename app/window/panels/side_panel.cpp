@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
@@ -19,7 +20,7 @@ void section(Parts& parts, const char* name, bool open_at_first, const Panel& pa
   }
   // In each frame: an action opens a panel by its setting, too.
   ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first);
-  const bool open = ImGui::CollapsingHeader(name);
+  const bool open = ImGui::CollapsingHeader(labelOf(name));
   settings.panels[name] = open;
   if (!open) return;
   ImGui::PushID(name);

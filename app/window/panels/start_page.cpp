@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
 #include "app/window/panels/scan_picture.h"
@@ -38,7 +39,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
   }
   ImGui::PopID();
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + size.x);
-  ImGui::TextUnformatted(fmt::format("{} (Ctrl+{})", file.filename().string(), number).c_str());
+  ImGui::TextUnformatted(trFormat("{} (Ctrl+{})", file.filename().string(), number).c_str());
   if (shown.problem != nullptr) ImGui::TextDisabled("%s", shown.problem->what.c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
@@ -49,7 +50,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
 
 void startPage(Parts& parts, const Act& act, PanelRequests& requests) {
   const auto scale = static_cast<float>(parts.window.scale());
-  ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");
+  ImGui::TextUnformatted(tr("Drop a scan here, or press Ctrl+O"));
   actionButton("Open a scan", Action::kOpen, act);
   ImGui::SameLine();
   if (pressButton("A sample part", "A simulated scan with noise and edges, to try everything on."))

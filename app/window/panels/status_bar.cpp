@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
 
@@ -17,30 +18,31 @@ void text(const std::string& what) {
 bool statusWork(const WorkProgress& progress, float width, const char* what) {
   workBar(progress, width, what);
   ImGui::SameLine();
-  return ImGui::SmallButton("Cancel");
+  return ImGui::SmallButton(labelOf("Cancel"));
 }
 
 // What is typed or moved beyond the ends stays at them, and says so.
 const char* endOfRadius(double samples) {
-  return samples >= haptic::kMaxBrushRadius ? " (the largest)" : samples < 1.0 ? " (one sample)" : "";
+  return samples >= haptic::kMaxBrushRadius ? tr(" (the largest)") : samples < 1.0 ? tr(" (one sample)") : "";
 }
 
 const char* endOfDepth(const haptic::MouseStylus& mouse) {
-  return mouse.pressMm() >= mouse.deepestMm() ? " (the largest)" : mouse.pressMm() <= 0.0 ? " (none)" : "";
+  return mouse.pressMm() >= mouse.deepestMm() ? tr(" (the largest)")
+         : mouse.pressMm() <= 0.0             ? tr(" (none)")
+                                              : "";
 }
 
 std::string brushText(const BrushAdjustment& brush, LoopClient& client) {
   const std::string now =
       brush.of() == BrushAdjustment::Of::kRadius
-          ? fmt::format("brush radius {:.3g} samples{}", brushRadius(client),
-                        endOfRadius(brushRadius(client)))
-          : fmt::format("press depth {}{}", lengthText(client.mouse()->pressMm(), brush.depthUnit()),
-                        endOfDepth(*client.mouse()));
+          ? trFormat("brush radius {:.3g} samples{}", brushRadius(client), endOfRadius(brushRadius(client)))
+          : trFormat("press depth {}{}", lengthText(client.mouse()->pressMm(), brush.depthUnit()),
+                     endOfDepth(*client.mouse()));
   const std::string typed = brush.typed().empty() ? ""
                             : brush.understood()  ? " [" + brush.typed() + "]"
-                                                  : " [not understood: " + brush.typed() + "]";
-  return fmt::format("{}{}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
-                     typed);
+                                                  : trFormat(" [not understood: {}]", brush.typed());
+  return trFormat("{}{}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
+                  typed);
 }
 
 // Of the surface under the cursor, whatever the mouse holds: a tenth of a sample across, and four digits of the span
@@ -79,37 +81,40 @@ void content(Parts& parts) {
     text(brushText(parts.brush, *parts.document.client()));
   } else if (lasso.active()) {
     text(lasso.shape() == Lasso::Shape::kBox
-             ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"
-             : "lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with Ctrl "
-               "unmarks; Esc leaves");
+             ? tr("box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves")
+             : tr("lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with "
+                  "Ctrl "
+                  "unmarks; Esc leaves"));
   } else if (const auto& point = parts.plane_points.next()) {
     const ActionRow& key = rowOf(Action::kPlanePoint);
-    text(fmt::format(
+    text(trFormat(
         "plane through three points: click point {} of 3 on the surface, or {} at the cursor; Esc leaves",
         *point + 1, keyText(key.key, key.modifiers)));
   } else if (edges != nullptr) {
-    text(fmt::format(
+    text(trFormat(
         "suggested: {} lines; Enter takes them, Ctrl+[ and Ctrl+] fewer and more, M and U paint over "
         "them, Esc drops them",
         edges->lines));
   } else if (const auto saving = parts.saving.progress(parts.document)) {
-    if (statusWork(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
+    if (statusWork(*saving, 240.0F, textOf("saving"))) parts.saving.cancel(parts.document);
   } else if (parts.results.busy()) {
-    if (statusWork(parts.results.progress(), 240.0F, fmt::format("writing {}", parts.results.what()).c_str()))
+    if (statusWork(parts.results.progress(), 240.0F,
+                   trFormat("writing {}", tr(parts.results.what())).c_str()))
       parts.results.cancel();
   } else if (parts.opening.coarse() != nullptr) {
-    if (statusWork(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
+    if (statusWork(parts.opening.progress(), 160.0F, textOf("reading"))) parts.opening.cancel();
     ImGui::SameLine();
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
-    if (statusWork(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+    if (statusWork(parts.opening.progress(), 240.0F, textOf("opening"))) parts.opening.cancel();
   } else if (parts.marking.edit.busy()) {
     if (statusWork(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
       parts.marking.edit.cancel();
   } else if (parts.marking.edges.busy()) {
-    if (statusWork(parts.marking.edges.progress(), 240.0F, "looking for edges")) parts.marking.edges.drop();
+    if (statusWork(parts.marking.edges.progress(), 240.0F, textOf("looking for edges")))
+      parts.marking.edges.drop();
   } else if (PlaceTool& places = parts.marking.places; places.busy()) {
-    if (statusWork(places.progress(), 240.0F, "looking for places")) places.drop();
+    if (statusWork(places.progress(), 240.0F, textOf("looking for places"))) places.drop();
   } else {
     text(documentText(parts));
   }
@@ -125,7 +130,7 @@ void deviceWord(const Parts& parts) {
     return;
   const std::string word =
       fmt::format("{}: {}", client.device().profile().name,
-                  link == haptic::LinkState::kUncalibrated ? "not calibrated" : "not plugged in");
+                  link == haptic::LinkState::kUncalibrated ? tr("not calibrated") : tr("not plugged in"));
   const float place =
       ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x - ImGui::CalcTextSize(word.c_str()).x;
   ImGui::SameLine();
@@ -161,13 +166,13 @@ void placeholder(Parts& parts, float width, const Act& act, PanelRequests& reque
                    ImGuiWindowFlags_NoFocusOnAppearing);  // dialogs lie over it
   Opening& opening = parts.opening;
   if (announces) {
-    ImGui::Text("%s: making the first picture", parts.document.fileName().c_str());
+    ImGui::TextUnformatted(trFormat("{}: making the first picture", parts.document.fileName()).c_str());
   } else if (opening.busy()) {
     ImGui::TextUnformatted(opening.fileName().c_str());
     const WorkProgress progress = opening.progress();
     workBar(progress, 360.0F * static_cast<float>(parts.window.scale()),
             fmt::format("{} {:.0f} %", opening.stage(), 100.0 * progress.share).c_str());
-    if (ImGui::Button("Cancel")) opening.cancel();
+    if (ImGui::Button(labelOf("Cancel"))) opening.cancel();
   } else {
     startPage(parts, act, requests);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/work/suggestion_text.h"
 
@@ -20,13 +21,13 @@ void requestFields(const PanelContext& context, FilterSuggester& suggester) {
       "the filters that stay within it the one with the least computing is suggested. 0: half of the noise.",
       [&] {
         return typeLength("##allowed error", suggester.tolerance, 0.0, kMostError, context.units.change,
-                          "half of the noise");
+                          textOf("half of the noise"));
       });
   (void)field("time",
               "Filters that take longer for the whole scan are not suggested. 0: whatever time it takes.",
               [&] {
                 return typeNumber("##time", suggester.budget_s, 0.0, kMostBudget_s,
-                                  suggester.budget_s > 0.0 ? "%.4g s" : "0: any");
+                                  suggester.budget_s > 0.0 ? "%.4g s" : tr("0: any"));
               });
   endFields();
 }
@@ -58,8 +59,8 @@ void take(const PanelContext& context, const engine::FilterCandidate& candidate,
   edges.choice = {};
   edges.choice.thickness = candidate.thickness;
   context.act(Action::kEdges);
-  context.notices.push_back({"this filter goes around marked edges, which are suggested now",
-                             "take them as marks, then preview it (P)"});
+  context.notices.push_back({tr("this filter goes around marked edges, which are suggested now"),
+                             tr("take them as marks, then preview it (P)")});
 }
 
 void writeFound(const PanelContext& context, const FilterSuggester& suggester, FilterPreview& filters,
@@ -71,9 +72,8 @@ void writeFound(const PanelContext& context, const FilterSuggester& suggester, F
   ImGui::BeginDisabled(suggester.outdated() || filters.applying());
   for (const ListedFilter& each : listedFilters(found.suggestion, found.asked, words.unit)) {
     const engine::FilterCandidate& candidate = found.suggestion.candidates[each.candidate];
-    const std::string text =
-        fmt::format("{}\n{}: leaves {}, takes about {}", words.method(candidate), each.why,
-                    leftText(candidate, words.unit), filterTimeText(candidate.seconds));
+    const std::string text = trFormat("{}\n{}: leaves {}, takes about {}", words.method(candidate), each.why,
+                                      leftText(candidate, words.unit), filterTimeText(candidate.seconds));
     if (entry(index++, text, filters.says(candidate.spec))) take(context, candidate, filters, edges);
     ImGui::Separator();
   }
@@ -87,7 +87,7 @@ void suggestionPanel(const PanelContext& context, FilterSuggester& suggester, Fi
                      EdgeTool& edges) {
   requestFields(context, suggester);
   ImGui::BeginDisabled(suggester.busy());
-  if (ImGui::Button("Try filters")) suggester.search(context.client);
+  if (ImGui::Button(labelOf("Try filters"))) suggester.search(context.client);
   tip(Action::kFilterSuggest);
   ImGui::EndDisabled();
   if (workRow(suggester.busy() ? std::optional(suggester.progress()) : std::nullopt, "trying filters",
@@ -97,7 +97,7 @@ void suggestionPanel(const PanelContext& context, FilterSuggester& suggester, Fi
   if (suggester.found() != nullptr)
     writeFound(context, suggester, filters, edges);
   else if (!suggester.nothing().empty())
-    writeWrapped("Nothing helps: " + suggester.nothing());
+    writeWrapped(trFormat("Nothing helps: {}", suggester.nothing()));
   else
     writeIn(render::PanelColour::kMuted,
             "Filters are tried on the scan as it is seen, with its marks; the best are listed here.");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
 
@@ -22,7 +23,7 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
     if (!first) sameLineIfFits(name);
     first = false;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, colourOf(PanelColour::kButtonHeld));
-    if (ImGui::Button(name)) context.act(action);
+    if (ImGui::Button(labelOf(name))) context.act(action);
     if (on) {
       ImGui::PopStyleColor();
       // Two blues alone are too much alike.
@@ -33,12 +34,12 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
     tip(action);
   };
   const auto draws = [&](Lasso::Shape shape) { return lasso.active() && lasso.shape() == shape; };
-  button("View", Action::kNavigate, !stylus.on() && !lasso.active());
+  button(textOf("View"), Action::kNavigate, !stylus.on() && !lasso.active());
   for (const haptic::ToolRow& row : haptic::kToolRows)
     button(std::string(row.title).c_str(), actionOf(row.tool),
            stylus.on() && context.client.tool() == row.tool);
-  button("Lasso", Action::kLasso, draws(Lasso::Shape::kFree));
-  button("Box", Action::kBox, draws(Lasso::Shape::kBox));
+  button(textOf("Lasso"), Action::kLasso, draws(Lasso::Shape::kFree));
+  button(textOf("Box"), Action::kBox, draws(Lasso::Shape::kBox));
 }
 
 // The profile of a brush, from rim to rim.
@@ -67,9 +68,9 @@ void falloffField(const PanelContext& context) {
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 curve(3.0F * line, line);
   const std::string says =
-      fmt::format("How smoothing falls from the middle of the brush to its rim: {}.", now.hint);
+      trFormat("How smoothing falls from the middle of the brush to its rim: {}.", tr(now.hint));
   fieldName("falloff", says);
-  const bool opened = ImGui::BeginCombo("##falloff", std::string(now.word).c_str());
+  const bool opened = ImGui::BeginCombo("##falloff", std::string(tr(now.word)).c_str());
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   if (!opened) {
     const float arrow = ImGui::GetFrameHeight();
@@ -81,7 +82,7 @@ void falloffField(const PanelContext& context) {
   for (const haptic::FalloffRow& row : haptic::kFalloffRows) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float room = ImGui::GetContentRegionAvail().x;
-    if (ImGui::Selectable(std::string(row.word).c_str(), row.falloff == scene.brush_falloff)) {
+    if (ImGui::Selectable(labelOf(std::string(row.word).c_str()), row.falloff == scene.brush_falloff)) {
       scene.brush_falloff = row.falloff;
       applyScene(context.client, scene, context.notices);
     }
@@ -94,13 +95,14 @@ void falloffField(const PanelContext& context) {
 void spacingField(const PanelContext& context) {
   haptic::Scene scene = context.client.scene();
   auto spacing = static_cast<float>(scene.brush_spacing);
-  constexpr const char* kSays =
+  constexpr const char* kSays = textOf(
       "All the time: the longer the tip stays, the smoother it gets. Else it acts again only when it has "
       "moved by "
-      "so many radii of the brush.";
+      "so many radii of the brush.");
   const bool changed = field("spacing", kSays, [&] {
     return ImGui::SliderFloat("##spacing", &spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
-                              spacing > 0.0F ? "%.2f radii" : "all the time", ImGuiSliderFlags_AlwaysClamp);
+                              spacing > 0.0F ? trPrintf("%.2f radii") : tr("all the time"),
+                              ImGuiSliderFlags_AlwaysClamp);
   });
   if (!changed) return;
   scene.brush_spacing = std::round(100.0 * static_cast<double>(spacing)) / 100.0;
@@ -112,13 +114,13 @@ void strengthText(LoopClient& client) {
   const haptic::Scene& scene = client.scene();
   const double pressed_n = client.mouse()->pressMm() * scene.stiffness_n_per_mm;
   const double strength = std::clamp(pressed_n / scene.force_limit_n, 0.0, 1.0);
-  const char* const words = strength < 1.0 / 3.0   ? "lightly: near samples count most"
-                            : strength < 2.0 / 3.0 ? "firmly"
-                                                   : "hard: all samples around count alike";
+  const char* const words = strength < 1.0 / 3.0   ? tr("lightly: near samples count most")
+                            : strength < 2.0 / 3.0 ? tr("firmly")
+                                                   : tr("hard: all samples around count alike");
   ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextDisabled("%s", fmt::format("pressed so deep it smooths {} ({:.0f} % of the force limit)", words,
-                                        100.0 * strength)
-                                .c_str());
+  ImGui::TextDisabled(
+      "%s", trFormat("pressed so deep it smooths {} ({:.0f} % of the force limit)", words, 100.0 * strength)
+                .c_str());
   ImGui::PopTextWrapPos();
 }
 
@@ -131,7 +133,7 @@ void brushFields(const PanelContext& context) {
   auto radius = static_cast<float>(samples);
   if (field("radius", "How far the brush reaches around the tip; [ and ] change it, too.", [&] {
         return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
-                                  "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
+                                  trPrintf("%.0f samples"), ImGuiSliderFlags_AlwaysClamp);
       }))
     setBrushRadius(client, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
@@ -150,7 +152,7 @@ void brushFields(const PanelContext& context) {
     if (field("depth",
               "How far below the surface the mouse presses the tip; the wheel changes it while it presses.",
               [&] {
-                return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
+                return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, trPrintf("%.2f cells"),
                                           ImGuiSliderFlags_AlwaysClamp);
               }))
       setPressDepth(client, static_cast<double>(depth) * cell);

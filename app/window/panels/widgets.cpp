@@ -8,6 +8,7 @@
 #include <fmt/printf.h>
 #include <imgui_stdlib.h>
 
+#include "app/texts/texts.h"
 #include "app/window/action_tips.h"
 #include "app/window/broken_text.h"
 #include "app/work/typed_number.h"
@@ -44,7 +45,12 @@ void writeIn(render::PanelColour colour, const std::string& text) {
   ImGui::PopStyleColor();
 }
 
-void figure(const char* name, const std::string& value) {
+void writeIn(render::PanelColour colour, const char* text) {
+  writeIn(colour, std::string(tr(text)));
+}
+
+void figure(const char* source_name, const std::string& value) {
+  const char* const name = tr(source_name);
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::TextDisabled("%s", name);
   const float column = left + kNames * width;
@@ -61,14 +67,14 @@ void figure(const char* name, const std::string& value) {
 
 void workBar(const WorkProgress& progress, float width, const char* what) {
   const std::string text =
-      progress.left ? fmt::format("{}, {} left", what, durationText(*progress.left)) : what;
+      progress.left ? trFormat("{}, {} left", tr(what), durationText(*progress.left)) : tr(what);
   ImGui::ProgressBar(static_cast<float>(progress.share), ImVec2(width, 0.0F), text.c_str());
 }
 
 bool cancelledBar(const WorkProgress& progress, const char* what, const char* cancel_id) {
   workBar(progress, -ImGui::GetFontSize() * 5.0F, what);
   ImGui::SameLine();
-  return ImGui::Button(cancel_id);
+  return ImGui::Button(labelOf(cancel_id));
 }
 
 bool workRow(const std::optional<WorkProgress>& progress, const char* what, const char* cancel_id) {
@@ -105,8 +111,9 @@ void writeTip(std::string_view says, float wrap) {
 
 }  // namespace
 
-void explain(std::string_view says) {
-  if (says.empty() || !ImGui::IsItemHovered()) return;
+void explain(std::string_view source) {
+  if (source.empty() || !ImGui::IsItemHovered()) return;
+  const std::string_view says = tr(source);
   // Beside a panel: over it the tip would hide what the field below says.
   const float beside = ImGui::GetWindowPos().x - ImGui::GetStyle().ItemSpacing.x;
   if (beside > (kTip + 2.0F) * ImGui::GetFontSize())
@@ -136,35 +143,54 @@ void valueTip(std::string_view says) {
 
 void tip(Action action) {
   const ActionRow& s = rowOf(action);
-  const std::string_view says = tipOf(action);
-  explain(fmt::format("{}: {}{}{}", s.name, keyText(s.key, s.modifiers), says.empty() ? "" : "\n", says));
+  if (!ImGui::IsItemHovered()) return;
+  const std::string_view says = tr(tipOf(action));
+  explain(fmt::format("{}: {}{}{}", tr(s.name), keyText(s.key, s.modifiers), says.empty() ? "" : "\n", says));
 }
 
 void actionButton(const char* name, Action action, const Act& act, float width) {
-  if (ImGui::Button(name, ImVec2(width, 0.0F))) act(action);
+  if (ImGui::Button(labelOf(name), ImVec2(width, 0.0F))) act(action);
   tip(action);
 }
 
 bool pressButton(const char* name, std::string_view says) {
-  const bool pressed = ImGui::Button(name);
+  const bool pressed = ImGui::Button(labelOf(name));
   explain(says);
   return pressed;
 }
 
+namespace {
+
+// A label that is wider than the room behind its box goes on in the line below: another language needs more of it.
+bool boxWithLabel(const char* name, bool& on) {
+  const std::string_view label = labelOf(name), shown = label.substr(0, label.find("##"));
+  const float room =
+      ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x;
+  if (shown.empty() || ImGui::CalcTextSize(shown.data(), shown.data() + shown.size()).x <= room)
+    return ImGui::Checkbox(label.data(), &on);
+  const std::size_t id = label.find("###");
+  const std::string lines =
+      inLines(std::string(shown), room) +
+      (id == std::string_view::npos ? "###" + std::string(name) : std::string(label.substr(id)));
+  return ImGui::Checkbox(lines.c_str(), &on);
+}
+
+}  // namespace
+
 bool tickBox(const char* name, bool& on, std::string_view says) {
-  const bool changed = ImGui::Checkbox(name, &on);
+  const bool changed = boxWithLabel(name, on);
   explain(says);
   return changed;
 }
 
 bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words) {
   const char* const now = *(words.begin() + std::clamp(chosen, 0, static_cast<int>(words.size()) - 1));
-  if (!ImGui::BeginCombo(id, now)) return false;
+  if (!ImGui::BeginCombo(id, tr(now))) return false;
   bool changed = false;
   int i = 0;
   for (const char* word : words) {
     const bool is = i == chosen;
-    if (ImGui::Selectable(word, is) && !is) {
+    if (ImGui::Selectable(labelOf(word), is) && !is) {
       chosen = i;
       changed = true;
     }
@@ -180,14 +206,14 @@ bool chooseRegion(const char* id, int& chosen) {
 }
 
 void previewButton(PreviewWord word, const char* id, Action action, const Act& act) {
-  constexpr const char* kWords[] = {"Preview", "Drop preview", "Show it"};
+  const char* const words[] = {tr("Preview"), tr("Drop preview"), tr("Show it")};
   float wide = 0.0F;
-  for (const char* each : kWords) wide = std::max(wide, ImGui::CalcTextSize(each).x);
+  for (const char* each : words) wide = std::max(wide, ImGui::CalcTextSize(each).x);
   wide += 2.0F * ImGui::GetStyle().FramePadding.x;
   const bool behind = word == PreviewWord::kBehind;
   if (behind) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-  actionButton(fmt::format("{}###preview {}", kWords[static_cast<std::size_t>(word)], id).c_str(), action,
-               act, wide);
+  actionButton(fmt::format("{}###preview {}", words[static_cast<std::size_t>(word)], id).c_str(), action, act,
+               wide);
   if (behind) ImGui::PopStyleColor();
 }
 
@@ -204,12 +230,17 @@ void writeWrapped(const std::string& text) {
   ImGui::PopTextWrapPos();
 }
 
+void writeWrapped(const char* text) {
+  writeWrapped(std::string(tr(text)));
+}
+
 void actionTick(const char* name, bool ticked, Action action, const Act& act) {
-  if (ImGui::Checkbox(name, &ticked)) act(action);
+  if (boxWithLabel(name, ticked)) act(action);
   tip(action);
 }
 
-void sameLineIfFits(const char* text, ItemKind what) {
+void sameLineIfFits(const char* source, ItemKind what) {
+  const char* const text = tr(source);
   const ImGuiStyle& style = ImGui::GetStyle();
   const float needed = what == ItemKind::kButton ? style.FramePadding.x * 2.0F
                                                  : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
@@ -225,7 +256,8 @@ void endFields() {
   ImGui::PopItemWidth();
 }
 
-void fieldName(const char* name, std::string_view says) {
+void fieldName(const char* source, std::string_view says) {
+  const char* const name = tr(source);
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", name);
@@ -241,7 +273,7 @@ void restOfLine() {
 
 void noField(const char* says) {
   ImGui::BeginDisabled();
-  std::string text(says);
+  std::string text(tr(says));
   ImGui::InputText(fmt::format("##no field, {}", says).c_str(), &text, ImGuiInputTextFlags_ReadOnly);
   ImGui::EndDisabled();
 }
@@ -312,21 +344,21 @@ std::optional<std::string> typedText(const char* id, const std::string& reads,
 
 // Sets it within the range; that it was not is said. Whether it is another.
 bool take(const char* id, double typed, double low, double high, double& value) {
-  if (typed > high) sayOfField(id, "at its largest");
-  if (typed < low) sayOfField(id, "at its smallest");
+  if (typed > high) sayOfField(id, tr("at its largest"));
+  if (typed < low) sayOfField(id, tr("at its smallest"));
   const double before = std::exchange(value, std::clamp(typed, low, high));
   return value != before;
 }
 
 std::nullopt_t notUnderstood(const char* id, const std::string& text) {
-  sayOfField(id, fmt::format("not understood: {}", text));
+  sayOfField(id, trFormat("not understood: {}", text));
   return std::nullopt;
 }
 
 }  // namespace
 
 NumberInField typingNumber(const char* id, double value, const std::string& format) {
-  const std::string reads = fmt::sprintf(format, value);
+  const std::string reads = fmt::sprintf(trPrintf(format.c_str()), value);
   std::string so_far;
   const auto text = typedText(id, reads, &so_far);
   const auto before = readTypedNumber(reads);
@@ -370,7 +402,7 @@ bool typeCount(const char* id, int& value, int low, int high, int step) {
 bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit,
                 const std::string& when_zero) {
   const auto text = typedText(id, value == 0.0 && !when_zero.empty()
-                                      ? "0: " + when_zero
+                                      ? "0: " + std::string(tr(std::string_view(when_zero)))
                                       : fmt::sprintf("%.4g " + unit.name, value * unit.per_unit));
   if (!text) return false;
   const auto typed = readTypedLength(*text, unit.name);

@@ -14,6 +14,8 @@
 #include "render/plan/number_text.h"
 #include "render/plan/panel_colours.h"
 
+// What stands in the source as a name, a label, a tip or a text, `const char*` or of a table, is translated here (app/texts): the
+// ids of widgets do not depend on the language. Text that was made, a std::string, is shown as it is.
 namespace fettle::app {
 
 /// The theme of all that is laid out from now on. Once per frame, as ImGui's own style.
@@ -23,6 +25,7 @@ void usePanelTheme(render::Theme theme);
 /// A text in it: on one line, or as wide as there is room.
 void textIn(render::PanelColour colour, const std::string& text);
 void writeIn(render::PanelColour colour, const std::string& text);
+void writeIn(render::PanelColour colour, const char* text);
 
 /// "name   value" on one line of a panel; values that are too long are truncated, and shown completely as a
 /// tip.
@@ -57,6 +60,7 @@ void tip(Action action);
 [[nodiscard]] std::string inLines(const std::string& text, float width);
 /// Text as wide as there is room; no line ends within a number, or between it and its unit.
 void writeWrapped(const std::string& text);
+void writeWrapped(const char* text);
 /// A button and a tick box for an action, with its tip. `width`: 0: as its name needs.
 void actionButton(const char* name, Action action, const Act& act, float width = 0.0F);
 void actionTick(const char* name, bool ticked, Action action, const Act& act);

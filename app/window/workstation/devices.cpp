@@ -1,4 +1,5 @@
 // The devices of hand and picture: what becomes of the work when one changes or is lost.
+#include "app/texts/texts.h"
 #include "app/window/workstation/workstation.h"
 
 #include <algorithm>
@@ -23,11 +24,11 @@ void Workstation::setUpDevice(const DeviceSetup& setup) {
   if (client.finished()) {
     end_ = set;
   } else if (!set) {
-    parts_.feedback.message(set.error().line(), "the device is used as before");
+    parts_.feedback.message(set.error().line(), tr("the device is used as before"));
   } else {
     parts_.settings.devices[setupKey(client.device().profile())] = setup;
     saveSettingsNow();  // nobody measures twice because the program was ended
-    parts_.feedback.status = "the device is set up, and will be when it is opened again";
+    parts_.feedback.status = tr("the device is set up, and will be when it is opened again");
   }
   parts_.picture.requestRedraw();
 }
@@ -42,7 +43,7 @@ void Workstation::setRate(double hz) {
   if (client.finished())
     end_ = set;
   else if (!set)
-    parts_.feedback.message(set.error().line(), "the loop continues as before");
+    parts_.feedback.message(set.error().line(), tr("the loop continues as before"));
   parts_.picture.requestRedraw();
 }
 
@@ -56,9 +57,9 @@ void Workstation::setDevice(const std::string& words) {
   if (client.finished())
     end_ = set;
   else if (!set)
-    parts_.feedback.message(set.error().line(), "the device is used as before");
+    parts_.feedback.message(set.error().line(), tr("the device is used as before"));
   else
-    parts_.feedback.status = fmt::format("the device is the {} now", client.device().profile().name);
+    parts_.feedback.status = trFormat("the device is the {} now", client.device().profile().name);
   parts_.picture.requestRedraw();
 }
 
@@ -96,11 +97,11 @@ void Workstation::renewPicture() {
     return;
   }
   std::vector<Notice>& notices = parts_.feedback.notices;
-  std::erase_if(notices, [](const Notice& n) { return n.what.starts_with(kDeviceLost); });
+  std::erase_if(notices, [](const Notice& n) { return n.what.find(tr(kDeviceLost)) != std::string::npos; });
   notices.push_back({before == window_->device()
-                         ? fmt::format("{} and works again", kDeviceLost)
-                         : fmt::format("{}; {} is used now", kDeviceLost, window_->device()),
-                     "the field, its marks and its steps are unchanged"});
+                         ? trFormat("{} and works again", tr(kDeviceLost))
+                         : trFormat("{}; {} is used now", tr(kDeviceLost), window_->device()),
+                     tr("the field, its marks and its steps are unchanged")});
 }
 
 }  // namespace fettle::app

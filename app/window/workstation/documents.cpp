@@ -1,4 +1,5 @@
 // Which scan is worked on: how one is asked for, read and begun with.
+#include "app/texts/texts.h"
 #include "app/window/workstation/workstation.h"
 
 #include <filesystem>
@@ -122,14 +123,13 @@ void Workstation::startDocument(Document document) {
   noteWarnings(document.warnings);
   if (options_.scene) noteWithoutForce(client, p.feedback.notices);
   if (document.scan.import.depth_camera && client.scene().invert)
-    p.feedback.notices.push_back({"distances from a camera are shown upside down: what is near is high",
-                                  "I shows them as they are stored"});
+    p.feedback.notices.push_back({tr("distances from a camera are shown upside down: what is near is high"),
+                                  tr("I shows them as they are stored")});
   if (document.recovered)
-    p.feedback.notices.push_back(
-        {fmt::format("{} unsaved steps were restored", client.history().number()), ""});
-  p.feedback.status = fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(),
-                                  grid.width, grid.height, grid.spacing_x * p.units.length.per_unit,
-                                  grid.spacing_y * p.units.length.per_unit, p.units.length.name);
+    p.feedback.notices.push_back({trFormat("{} unsaved steps were restored", client.history().number()), ""});
+  p.feedback.status = trFormat("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width,
+                               grid.height, grid.spacing_x * p.units.length.per_unit,
+                               grid.spacing_y * p.units.length.per_unit, p.units.length.name);
   window_->setTitle(p.document.fileName() + " - Fettle");
 }
 
@@ -141,7 +141,7 @@ void Workstation::noteWarnings(const std::vector<std::string>& warnings) {
   const bool as_said = said && scanOptionsText(*said) == scanOptionsText(p.reading);
   if (const std::string text = as_said ? readingText(*said) : ""; !text.empty())
     p.feedback.notices.push_back(
-        {fmt::format("{} is read as you said: {}", p.document.fileName(), text), "", "", 1, true, true});
+        {trFormat("{} is read as you said: {}", p.document.fileName(), text), "", "", 1, true, true});
   for (const std::string& warning : warnings) {
     // Who has seen the page and left it so does not want to be asked again.
     if (as_said && isGuess(warning)) continue;
@@ -158,7 +158,7 @@ void Workstation::restoreSections(const Document& document) {
   if (sections)
     parts_.section.restore(*std::move(sections));
   else
-    parts_.feedback.notices.push_back({sections.error().what, "the session is as it was otherwise"});
+    parts_.feedback.notices.push_back({sections.error().what, tr("the session is as it was otherwise")});
 }
 
 }  // namespace fettle::app

@@ -8,6 +8,8 @@
 #include <imgui.h>
 
 #include "app/terminal.h"
+#include "app/texts/chosen_catalogue.h"
+#include "app/texts/texts.h"
 #include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
 #include "app/work/behind_the_window.h"
@@ -57,7 +59,23 @@ Workstation::~Workstation() {
   parts_.closeDocument(SessionKeeper::Afterwards::kKeep);
 }
 
+// The window in the user's language. A catalogue that cannot be used leaves it in English, and says so.
+void useLanguage() {
+  auto catalogue = chosenCatalogue(languageWords(), catalogueFolders());
+  if (!catalogue) {
+    warn(fmt::format("{}; the window is in English", catalogue.error().line()));
+    return;
+  }
+  if (!*catalogue) return;
+  if (const auto& refused = (*catalogue)->refused(); !refused.empty())
+    warn(
+        fmt::format("{} texts are left in English, since their translation cannot take their place: \"{}\"{}",
+                    refused.size(), refused.front(), refused.size() > 1 ? " and others" : ""));
+  useTexts(**std::move(catalogue));
+}
+
 engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptions& options) {
+  useLanguage();
   if (options.xr) render::Headset::silenceLoader();
   render::WindowOptions window = options.window;
   window.layout_file = settingsPath("/layout.ini");
