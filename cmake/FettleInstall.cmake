@@ -43,6 +43,22 @@ install(FILES ${FETTLE_REFERENCE}/completion/_fettle DESTINATION ${CMAKE_INSTALL
 install(FILES ${FETTLE_REFERENCE}/completion/fettle.fish
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(DIRECTORY assets/scenes assets/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/fettle)
+# Translations of the window, where gettext is installed.
+find_program(MSGFMT msgfmt)
+file(GLOB FETTLE_TRANSLATIONS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/assets/texts/*.po)
+if(MSGFMT AND FETTLE_TRANSLATIONS)
+  set(FETTLE_CATALOGUES)
+  foreach(translation ${FETTLE_TRANSLATIONS})
+    get_filename_component(language ${translation} NAME_WE)
+    set(catalogue ${CMAKE_BINARY_DIR}/texts/${language}.mo)
+    add_custom_command(OUTPUT ${catalogue}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/texts
+      COMMAND ${MSGFMT} --endianness=little -o ${catalogue} ${translation} DEPENDS ${translation} VERBATIM)
+    list(APPEND FETTLE_CATALOGUES ${catalogue})
+  endforeach()
+  add_custom_target(catalogues ALL DEPENDS ${FETTLE_CATALOGUES})
+  install(FILES ${FETTLE_CATALOGUES} DESTINATION ${CMAKE_INSTALL_DATADIR}/fettle/texts)
+endif()
 install(FILES assets/udev/70-fettle.rules DESTINATION lib/udev/rules.d)
 install(FILES assets/desktop/io.github.fettle.fettle.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(FILES assets/desktop/fettle-mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME fettle.xml)
