@@ -26,6 +26,8 @@ std::vector<Word> wordsOfProfiles() {
   std::vector<Word> words;
   for (const engine::ProfileInfo& profile : engine::profileInfos())
     words.emplace_back(std::string(profile.word), std::string(profile.text));
+  for (const engine::ProfileInfo& profile : engine::profileInfos())
+    words.emplace_back(std::string(1, profile.letter), fmt::format("the same as {}", profile.word));
   return words;
 }
 
@@ -33,7 +35,7 @@ std::vector<Word> wordsOfProfiles() {
 engine::Status checkProfiles(const SectionArguments& options) {
   bool by_cutoff = options.profiles.empty();
   for (const std::string& word : options.profiles) {
-    const auto profile = std::ranges::find(engine::profileInfos(), word, &engine::ProfileInfo::word);
+    const engine::ProfileInfo* const profile = profileCalled(word);
     if (profile->by_cutoff && !options.cutoff)
       return engine::inputError(fmt::format("{} needs a cut-off", word), "--profile", "add --cutoff");
     by_cutoff = by_cutoff || profile->by_cutoff;

@@ -23,10 +23,6 @@ using engine::Stretch;
 constexpr std::string_view kSectionKeys[] = {"cursors", "line",      "step",    "groove",  "angle",
                                              "arc",     "roughness", "primary", "waviness"};
 
-const engine::ProfileInfo& profileNamed(std::string_view word) {
-  return *std::ranges::find(engine::profileInfos(), word, &engine::ProfileInfo::word);
-}
-
 Report lineReport(const engine::LineFigures& line) {
   Report report;
   addEstimate(report, "inclination", "deg", line.inclination_deg);
@@ -60,7 +56,7 @@ class SectionMeasurement {
     if (key == "groove") return groove(section, marks);
     if (key == "angle") return angle(section, marks);
     if (key == "arc") return arc(section, marks);
-    return profile(section, profileNamed(key));
+    return profile(section, *profileCalled(key));
   }
 
  private:
@@ -254,6 +250,12 @@ std::span<const std::string_view> sectionFigureKeys() noexcept {
   return kSectionKeys;
 }
 
+const engine::ProfileInfo* profileCalled(std::string_view name) noexcept {
+  for (const engine::ProfileInfo& profile : engine::profileInfos())
+    if (name == profile.word || name == std::string_view(&profile.letter, 1)) return &profile;
+  return nullptr;
+}
+
 bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept {
   if (key == "cursors") return !wants.cursors.empty();
   if (key == "line") return !wants.line.empty();
@@ -261,10 +263,10 @@ bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept {
   if (key == "groove") return !wants.groove.empty();
   if (key == "angle") return !wants.angle.empty();
   if (key == "arc") return !wants.arc.empty();
-  const engine::ProfileInfo& profile = profileNamed(key);
+  const engine::ProfileInfo& profile = *profileCalled(key);
   if (profile.by_cutoff && !wants.cutoff) return false;
   if (wants.profiles.empty()) return profile.kind == engine::ProfileKind::kRoughness;
-  return std::ranges::find(wants.profiles, key) != wants.profiles.end();
+  return std::ranges::find(wants.profiles, &profile, profileCalled) != wants.profiles.end();
 }
 
 engine::Result<Report> sectionFigure(std::string_view key, const SectionWants& wants, const Section& section,

@@ -28,7 +28,7 @@ struct SectionWants {
   std::string groove;              ///< both edges' lengths A,B, or "auto"
   std::optional<double> cutoff;    ///< of roughness and waviness
   std::optional<double> lambda_s;  ///< of their S-filter and that of the primary profile
-  /// Words of engine::profileInfos(), whose parameters are measured; empty: those of roughness where there is a cut-off.
+  /// Words or letters of engine::profileInfos(), whose parameters are measured; empty: those of roughness where there is a cut-off.
   std::vector<std::string> profiles;
 };
 
@@ -41,6 +41,8 @@ struct SectionMark {
 /// Keys of the figures, in the order in which they are reported: cursors, line, step, groove, angle, arc, and
 /// the words of engine::profileInfos().
 [[nodiscard]] std::span<const std::string_view> sectionFigureKeys() noexcept;
+/// The profile of a word or a letter, "waviness" or "W"; null for another text.
+[[nodiscard]] const engine::ProfileInfo* profileCalled(std::string_view name) noexcept;
 [[nodiscard]] bool wantsFigure(const SectionWants& wants, std::string_view key) noexcept;
 
 /// One figure as `fettle section` reports it, and the window with it. `noise`: sectionNoiseOf() the scan. `marks`: places of it

@@ -160,6 +160,8 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   };
   refused({"--profile", "waviness"}, "add --cutoff");
   refused({"--profile", "primary", "--cutoff", "1.5"}, "--cutoff");
+  // Letters are the words.
+  EXPECT_EQ(with({"--cutoff", "1.5", "--profile", "R,P,W"}), all);
   refused({"--profile", "w"}, "--profile");
 }
 
