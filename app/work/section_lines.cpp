@@ -14,6 +14,11 @@ namespace {
 
 const ReadAs kDegrees{"degrees", 1.0};
 
+// "0.3 to 0.9 mm"
+std::string shownStretch(const Report& stretch, const ReadAs& unit) {
+  return fmt::format("{:.6g} to {}", stretch[0].get<double>() / unit.size, shownLength(stretch[1], unit));
+}
+
 }  // namespace
 
 SectionUnits sectionUnits(double longest_mm, double span_mm) {
@@ -47,8 +52,9 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
   }
   if (of.contains("step")) {
     const Report& step = of["step"];
-    row("step", fmt::format("{}, edge at {}, rms {}", shownEstimate(step, "step", "mm", height),
-                            shownLength(step["edge_mm"], along), shownLength(step["rms_mm"], height)));
+    row("step", fmt::format("{}, edge at {}, by {} and {}, rms {}", shownEstimate(step, "step", "mm", height),
+                            shownLength(step["edge_mm"], along), shownStretch(step["before"], along),
+                            shownStretch(step["after"], along), shownLength(step["rms_mm"], height)));
   }
   if (of.contains("groove")) {
     const Report& groove = of["groove"];
@@ -86,7 +92,10 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                              : profile.by_cutoff
                                  ? fmt::format("cut-off {}", shownLength(r["cutoff_mm"], along))
                                  : std::string("without a cut-off");
-    row(word.c_str(), fmt::format("{}{}; without noise +- standard error", over, smooth));
+    // Of a session of before it was kept there is none.
+    const std::string where =
+        r.contains("evaluated") ? fmt::format(", from {}", shownStretch(r["evaluated"], along)) : "";
+    row(word.c_str(), fmt::format("{}{}{}; without noise +- standard error", over, where, smooth));
     for (const engine::RoughnessInfo& info : engine::roughnessInfos()) {
       const RoughnessKeys keys = keysOf(info, profile);
       if (!r.contains(keys.value)) continue;  // of a session of before it was measured

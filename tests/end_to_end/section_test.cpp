@@ -44,6 +44,9 @@ TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   const Outcome text =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--groove", "auto"});
   EXPECT_NE(text.out.find("depth 50 +- "), std::string::npos) << text.out;
+  const Outcome step =
+      fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--step", "2.95"});
+  EXPECT_NE(step.out.find("by 0 to 1.96667 mm and 3.93333 to 5.9 mm"), std::string::npos) << step.out;
 }
 
 TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
@@ -152,7 +155,7 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   std::vector<std::string> text = line;
   text.insert(text.end(), {"--cutoff", "1.5", "--profile", "primary", "--profile", "waviness"});
   const Outcome shown = fettle(text);
-  for (const char* const part : {"waviness", "cut-off 1.5 mm", "Wq ", "WSm ", "PSm ", "without a cut-off"})
+  for (const char* const part : {"waviness", "cut-off 1.5 mm, from 0.75 to ", "Wq ", "WSm ", "PSm ", "without a cut-off"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << shown.out;
   const auto refused = [&](std::vector<std::string> more, const char* why) {
     more.insert(more.begin(), line.begin(), line.end());
