@@ -71,6 +71,21 @@ TEST_F(ColoursTest, handles_are_dragged_ends_are_typed_and_a_rule_leads_back) {
   (void)quit(user);
 }
 
+// Names of fields are their panel's own: the filter's range is a text, that of colours a list.
+TEST_F(ColoursTest, a_range_is_typed_beside_the_range_of_colours) {
+  const auto program = start({scan});
+  User user(display, *program, "ranges");
+  (void)opened(*program);
+  for (int i = 0; i < 3; ++i) (void)user.key("n");
+  ASSERT_TRUE(user.readsScrolled("Colours"));
+  (void)user.click("Colours");
+  ASSERT_TRUE(user.readsScrolled("range sigma"));
+  const State typed = user.enter("range sigma", "12,5 um");
+  EXPECT_EQ(typed["colour_rule"], "automatic");
+  EXPECT_TRUE(user.readsScrolled("12.5 "));
+  (void)quit(user);
+}
+
 TEST_F(ColoursTest, a_small_change_is_seen_beside_an_edge_that_moved_and_a_tolerance_hides_it) {
   const auto program = start({scan});
   User user(display, *program, "change");
