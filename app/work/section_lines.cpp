@@ -104,7 +104,9 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                         : info.unit == Unit::kAlong ? along
                         : info.unit == Unit::kRatio ? ReadAs{"%", 0.01}
                                                     : ReadAs{"", 1.0};
-      std::string text = shownLength(r[keys.value], in);
+      std::string text = r[keys.value].is_null() && info.unit == Unit::kRatio
+                             ? "not stated: the core has no height"
+                             : shownLength(r[keys.value], in);
       if (const Report& without = r[keys.without], &error = r[keys.error]; !without.is_null()) {
         const double by = error.get<double>() / in.size;
         text += fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);

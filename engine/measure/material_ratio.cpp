@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "engine/compare/tile_sums.h"
 
@@ -102,6 +103,8 @@ MaterialRatio materialRatio(std::span<const float> sorted) noexcept {
   // Triangles of the same area on the same base.
   if (result.smrk1 > 0.0) result.spk = 2.0 * curve.volumeAbove(line.top) / result.smrk1;
   if (result.smrk2 < 1.0) result.svk = 2.0 * curve.volumeBelow(line.bottom) / (1.0 - result.smrk2);
+  // A core at one height ends nowhere.
+  if (!(result.sk > 0.0)) result.smrk1 = result.smrk2 = std::numeric_limits<double>::quiet_NaN();
 
   constexpr double kPeaks = 0.1, kDales = 0.8;
   const double peaks = curve.height(kPeaks), dales = curve.height(kDales);

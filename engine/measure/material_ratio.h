@@ -10,7 +10,7 @@ struct MaterialRatio {
   double sk = 0.0;     ///< core height
   double spk = 0.0;    ///< reduced peak height
   double svk = 0.0;    ///< reduced dale height
-  double smrk1 = 0.0;  ///< material ratio where the peaks end
+  double smrk1 = 0.0;  ///< material ratio where the peaks end; NaN, as smrk2, where the core has no height
   double smrk2 = 0.0;  ///< where the dales begin
   double vmp = 0.0;    ///< material volume of the peaks, above 10 %
   double vmc = 0.0;    ///< of the core, 10 to 80 %

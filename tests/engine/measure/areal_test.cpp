@@ -228,6 +228,12 @@ TEST(Areal, OfHardFieldsIsAFigureOrNone) {
   EXPECT_EQ(flat.sz, 0.0);
   EXPECT_EQ(flat.sdq, 0.0);
   EXPECT_EQ(flat.sdr, 0.0);
+  // Where the peaks end is not stated of a core without a height, which two levels have, too.
+  const ArealParameters levels = measured(Made(70, 65, [](int c, int) { return c < 35 ? 4.0 : 5.0; }));
+  EXPECT_GT(levels.sq, 0.0);
+  for (const ArealParameters* const p : {&flat, &levels})
+    for (const char* const key : {"smrk1", "smrk2"})
+      EXPECT_EQ(std::ranges::count(p->not_stated, key, &NotStated::parameter), 1) << key;
   const ArealParameters row = measured(Made(70, 1, [](int c, int) { return c % 2; }));
   EXPECT_DOUBLE_EQ(row.sq, 0.5);
   EXPECT_EQ(row.cells, 0);

@@ -69,6 +69,7 @@ TEST(MaterialRatio, OfOneOrEqualHeightsIsZero) {
   for (const std::size_t n : {std::size_t{1}, std::size_t{2}, std::size_t{1000}}) {
     const MaterialRatio ratio = materialRatio(std::vector<float>(n, 7.25F));
     EXPECT_EQ(ratio.sk, 0.0);
+    EXPECT_TRUE(std::isnan(ratio.smrk1) && std::isnan(ratio.smrk2)) << "where a core without a height ends";
     EXPECT_EQ(ratio.spk, 0.0);
     EXPECT_EQ(ratio.svk, 0.0);
     EXPECT_EQ(ratio.vmp, 0.0);

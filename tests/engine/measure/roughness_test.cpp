@@ -294,6 +294,7 @@ TEST(Roughness, FlatProfilesHaveNoRatios) {
   EXPECT_EQ(flat.rt, 0.0);
   EXPECT_EQ(flat.rdq, 0.0);
   EXPECT_TRUE(std::isnan(flat.rc));
+  EXPECT_TRUE(std::isnan(flat.rmrk1) && std::isnan(flat.rmrk2));
   std::vector<double> few(10, 0.0);
   few[4] = 1.0;
   const Roughness shorter = measured(profileOf(few, 1.0), 4.0);
