@@ -261,8 +261,9 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     result.ratio = materialRatio(heights);
     if (std::isnan(result.ratio.smrk1))
       for (const char* const key : {"smrk1", "smrk2"})
-        result.not_stated.push_back(
-            {key, variance > 0.0 ? "two fifths of the heights are one: the core has none" : "the surface is flat"});
+        result.not_stated.push_back({key, variance > 0.0
+                                              ? "two fifths of the heights are one: the core has none"
+                                              : "the surface is flat"});
     for (const double height : options.at_heights) result.ratios.push_back(ratioAtHeight(heights, height));
     for (const double ratio : options.at_ratios) result.heights.push_back(heightAtRatio(heights, ratio));
   }

@@ -155,7 +155,8 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   std::vector<std::string> text = line;
   text.insert(text.end(), {"--cutoff", "1.5", "--profile", "primary", "--profile", "waviness"});
   const Outcome shown = fettle(text);
-  for (const char* const part : {"waviness", "cut-off 1.5 mm, from 0.75 to ", "Wq ", "WSm ", "PSm ", "without a cut-off"})
+  for (const char* const part :
+       {"waviness", "cut-off 1.5 mm, from 0.75 to ", "Wq ", "WSm ", "PSm ", "without a cut-off"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << shown.out;
   const auto refused = [&](std::vector<std::string> more, const char* why) {
     more.insert(more.begin(), line.begin(), line.end());
