@@ -18,20 +18,20 @@
 namespace fettle::app {
 namespace {
 
-constexpr int kSide = 160;
+constexpr int kNoisySide = 160;
 constexpr double kSpacing = 0.01, kNoise = 0.002, kOff = 0.01;  // mm
 
 engine::Version scanOf(std::uint64_t seed, bool rows) {
   engine::Grid grid;
-  grid.width = grid.height = kSide;
+  grid.width = grid.height = kNoisySide;
   grid.spacing_x = grid.spacing_y = kSpacing;
   std::mt19937_64 random(seed + 1);
   std::normal_distribution<double> normal;
-  std::vector<double> off(kSide);
+  std::vector<double> off(kNoisySide);
   for (double& each : off) each = kOff * normal(random);
   std::vector<float> heights;
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c)
+  for (int r = 0; r < kNoisySide; ++r)
+    for (int c = 0; c < kNoisySide; ++c)
       heights.push_back(
           static_cast<float>(off[static_cast<std::size_t>(rows ? r : c)] + kNoise * normal(random)));
   return engine::makeField(grid, heights);
