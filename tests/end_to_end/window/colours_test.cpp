@@ -77,8 +77,7 @@ TEST_F(ColoursTest, a_range_is_typed_beside_the_range_of_colours) {
   User user(display, *program, "ranges");
   (void)opened(*program);
   for (int i = 0; i < 3; ++i) (void)user.key("n");
-  ASSERT_TRUE(user.readsScrolled("Colours"));
-  (void)user.click("Colours");
+  (void)user.click("Filters");
   ASSERT_TRUE(user.readsScrolled("range sigma"));
   const State typed = user.enter("range sigma", "12,5 um");
   EXPECT_EQ(typed["colour_rule"], "automatic");
