@@ -16,7 +16,8 @@ namespace {
 
 using render::Key;
 
-constexpr int kScrollBar = 10;  // pixels at the right of the panels
+constexpr int kScrollBar = 10;     // pixels at the right of the panels
+constexpr double kWholeLine = 15;  // pixels, of a header's letters at scale 1
 
 std::string nameOf(Key key) {
   const int code = static_cast<int>(key);
@@ -122,7 +123,7 @@ int Monkey::actions() {
 }
 
 void Monkey::key(std::vector<std::string>& words, const State& state) {
-  static const std::array<std::string, 12> kAnswers{"Escape", "Return", "d",      "n",         "s", "space",
+  static const std::array<std::string, 12> kAnswers{"Escape", "Return", "Delete", "n",         "s", "space",
                                                     "Tab",    "Left",   "ctrl+1", "BackSpace", "5", "ctrl+a"};
   static const std::array<std::string, 4> kWork{"s", "m", "u", "ctrl+i"};
   // A dialog takes few keys, and those that leave it are among them.
@@ -250,6 +251,11 @@ std::vector<std::string> Monkey::step(const std::string& step, const State& stat
     if (const auto place = placeOf(t["text"]); place < std::ssize(namesOfPanels()))
       above = placeOf(name) < place;
     if (t["text"] != name) continue;
+    // Half of it is above or below what is seen: it takes no click.
+    if (box[3].get<double>() < std::floor(kWholeLine * state.value("scale", 1.0))) {
+      above = box[1].get<int>() < picture[1].get<int>() + picture[3].get<int>() / 2;
+      break;
+    }
     moveTo(words, box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2);
     say(words, {"click", "--delay", "0", "1"});
     return words;

@@ -72,10 +72,10 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
             {"export fits", {"ctrl+shift+f", "alt+f"}},
             {"unsaved", {"ctrl+i", "drop " + folder.file("second.tif")}},
             {"replace", {"ctrl+e", "ctrl+a", "type " + folder.file("there.tif"), "Return"}},
-            {"recover", {"drop " + folder.file("left.tif"), "d"}},
+            {"recover", {"drop " + folder.file("left.tif"), "Delete"}},
             {"device", {"ctrl+shift+d"}},
             {"shortcuts", {"F1"}},
-            {"message", {"drop " + folder.file("broken.tif"), "d"}}})
+            {"message", {"drop " + folder.file("broken.tif"), "Delete"}}})
     add(
         "dialog", what, [is = what](const State& s) { return s["dialog"] == is; }, way);
   for (const std::string& panel : namesOfPanels())
