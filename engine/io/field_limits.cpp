@@ -1,5 +1,6 @@
 #include "engine/io/field_limits.h"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -57,11 +58,23 @@ void describeTally(const HeightTally& tally, const std::string& unit, std::vecto
                     tally.rounding, unit));
 }
 
+// Of decimals only what is seen beside their range: 1e-6 of it takes an offset of 16 times the range. The floats may have
+// lost the range, and not all heights may have been looked at.
+HeightTally noticed(HeightTally tally, const HeightBounds& floats) {
+  constexpr double kNoticed = 1e-6;
+  double range = tally.most - tally.least;
+  if (!floats.empty())
+    range = std::fmax(range, static_cast<double>(floats.max) - static_cast<double>(floats.min));
+  if (tally.decimals && (tally.rounding <= kNoticed * range || range == 0.0)) tally.rounding = 0.0;
+  return tally;
+}
+
 Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule, const HeightTally& tally,
                               std::string format, std::vector<std::string> warnings) {
-  describeTally(tally, builder.grid().height_unit.name, warnings);
   Imported imported;
   imported.field = std::move(builder).build();
+  describeTally(noticed(tally, imported.field.reader().bounds()), imported.field.grid().height_unit.name,
+                warnings);
   if (imported.field.reader().bounds().empty())
     warnings.emplace_back("there is no height: every sample is no-data; check the file and --no-data");
   imported.lone_values = doubtLoneValues(imported.field, rule, warnings);

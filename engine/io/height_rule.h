@@ -18,11 +18,23 @@ struct HeightTally {
   std::int64_t holes = 0;     ///< by no-data value or NaN
   std::int64_t infinite = 0;  ///< infinities, also those caused only by rounding to float
   double rounding = 0.0;      ///< largest |float height - double height|
+  /// Of the heights whose rounding was looked at, before it.
+  double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
+  bool decimals =
+      false;  ///< numbers that are no floats at any size: their rounding counts beside the range alone
 
+  void rounded(double height, float to) noexcept {
+    rounding = std::fmax(rounding, std::abs(static_cast<double>(to) - height));
+    least = std::fmin(least, height);
+    most = std::fmax(most, height);
+  }
   void merge(const HeightTally& other) noexcept {
     holes += other.holes;
     infinite += other.infinite;
     rounding = std::fmax(rounding, other.rounding);
+    least = std::fmin(least, other.least);
+    most = std::fmax(most, other.most);
+    decimals = decimals || other.decimals;
   }
 };
 
@@ -103,8 +115,7 @@ struct HeightRule {
       if (offset != 0.0) height += offset;  // nothing is added to -0, otherwise it would lose its sign
       const float rounded = toFloat(height);
       if (std::isfinite(rounded)) {
-        if constexpr (sizeof(T) > 2 && !std::is_same_v<T, float>)
-          tally.rounding = std::fmax(tally.rounding, std::abs(static_cast<double>(rounded) - height));
+        if constexpr (sizeof(T) > 2 && !std::is_same_v<T, float>) tally.rounded(height, rounded);
         heights[i] = rounded;
       } else {
         heights[i] = std::numeric_limits<float>::quiet_NaN();

@@ -260,7 +260,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
     rule.convert(row.data(), heights.data(), width, tally);
     builder->writeHeights(0, r, grid.width, 1, heights.data(), grid.width);
   }
-  tally.rounding = 0.0;  // interpolated heights have no digits of their own
+  tally.decimals = true;  // interpolated heights have no digits of their own
   if (job.cancelled()) return cancelled();
   warnings.push_back(fmt::format(
       "a mesh of {} triangles, sampled from above: surfaces underneath are left out", mesh.triangles.size()));

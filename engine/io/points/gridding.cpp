@@ -155,7 +155,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
     rule.convert(row.data(), heights.data(), width, tally);
     builder->writeHeights(0, r, grid.width, 1, heights.data(), grid.width);
   }
-  tally.rounding = 0.0;  // decimal numbers, or floats originally
+  tally.decimals = true;  // decimal numbers, or floats originally
   job.advance();
   if (job.cancelled()) return cancelled();
   rule.user_no_data = options.no_data;  // applied already, before a cell could mix it with heights

@@ -107,7 +107,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
     builder->writeHeights(0, static_cast<std::int32_t>(height - 1 - r), static_cast<std::int32_t>(width), 1,
                           heights.data(), static_cast<std::ptrdiff_t>(width));
   }
-  tally.rounding = 0.0;  // floats originally, or doubles of a sensor of much lower resolution
+  tally.decimals = true;  // floats originally, or doubles of a sensor of much lower resolution
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings));
   if (imported) {

@@ -95,7 +95,7 @@ Status writePlaces(const PointCloud& cloud, const RangeGrid& grid, const RangeFi
     if (job.cancelled()) return cancelled();
     job.advance();
   }
-  tally.rounding = 0.0;  // floats originally, or doubles of a sensor of much lower resolution
+  tally.decimals = true;  // floats originally, or doubles of a sensor of much lower resolution
   return {};
 }
 

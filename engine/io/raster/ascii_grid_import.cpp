@@ -105,6 +105,13 @@ Result<Grid> gridOf(const Header& h, std::uint64_t file_size, StatedUnits& units
   return grid;
 }
 
+void tallyRounding(std::string_view word, float number, const HeightRule& rule, HeightTally& tally) {
+  const char* at = word.data();
+  double exact = 0.0;
+  if (!rule.hole(number) && std::isfinite(number) && parseNumber(at, word.data() + word.size(), exact))
+    tally.rounded(exact, number);
+}
+
 // The rows, parsed as Float: directly to float where they are not scaled, so that they are rounded once;
 // otherwise to double.
 template <class Float>
@@ -128,6 +135,9 @@ Status readRows(TextReader& text, const std::string& first, const HeightRule& ru
       if (!parseNumber(at, word.data() + word.size(), numbers[static_cast<std::size_t>(c)]) ||
           at != word.data() + word.size())
         return badWord(word, fmt::format("in row {}, column {}", r + 1, c + 1), path);
+      // What a float loses is seen by one number of each row, down the diagonal: parsed as double they would be rounded twice.
+      if constexpr (std::is_same_v<Float, float>)
+        if (c == r % width) tallyRounding(word, numbers[static_cast<std::size_t>(c)], rule, tally);
     }
     if (job.cancelled()) return cancelled();
     rule.convert(numbers.data(), heights.data(), numbers.size(), tally);
@@ -177,7 +187,7 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   const Status status = rule.scale == 1.0 ? readRows<float>(text, first, rule, *builder, tally, path, job)
                                           : readRows<double>(text, first, rule, *builder, tally, path, job);
   if (!status) return tl::unexpected(status.error());
-  tally.rounding = 0.0;  // decimal numbers are not floats originally
+  tally.decimals = true;
   if (!declared && tally.holes > 0)
     warnings.push_back("the header states no NODATA_VALUE, -9999 is used as defined by the format");
   if (text.lastLineIsOpen()) warnings.emplace_back(kOpenLastLine);

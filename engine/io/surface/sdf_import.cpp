@@ -180,8 +180,10 @@ SdfPlan planOf(const SdfHeader& h, const ImportOptions& options) {
 }
 
 Result<Imported> finishSdf(SdfPlan plan, FieldBuilder&& builder, HeightTally tally) {
-  // As long as counts stay distinct, the float of each represents it and nothing is lost; decimals are no floats.
-  tally.rounding = 0.0;
+  // As long as counts stay distinct, the float of each represents it and nothing is lost.
+  if (plan.grid.height_per_count > 0.0 && tally.rounding < 0.5 * plan.grid.height_per_count)
+    tally.rounding = 0.0;
+  tally.decimals = true;
   return finishImport(std::move(builder), plan.rule, tally, "SDF", std::move(plan.warnings));
 }
 

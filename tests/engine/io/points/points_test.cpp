@@ -49,6 +49,13 @@ TEST(Xyz, AFieldLeftEmptyIsAPointLeftOut) {
   EXPECT_TRUE(warned(scan.warnings, "3 points"));
 }
 
+TEST(Xyz, DigitsThatAFloatLosesBesideTheRangeAreWarnedOf) {
+  FETTLE_LOAD_TEXT(offset, "0 0 5000.0001\n1 0 5000.0003\n0 1 5000.0007\n1 1 5000.0012\n");
+  EXPECT_TRUE(warned(offset.warnings, "more digits than a float holds"));
+  FETTLE_LOAD_TEXT(plain, "0 0 0.1\n1 0 0.3\n0 1 0.7\n1 1 1.2\n");
+  EXPECT_FALSE(warned(plain.warnings, "more digits than a float holds"));
+}
+
 TEST(Xyz, TheUnitOfACommentIsTaken) {
   FETTLE_LOAD_TEXT(scan, "# x y z, units: um\n0 0 1\n1 0 2\n");
   EXPECT_EQ(scan.field.grid().lateral_unit, (LengthUnit{"um", 1e-3}));

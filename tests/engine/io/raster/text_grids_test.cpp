@@ -64,6 +64,22 @@ TEST(AsciiGrid, NumbersAreRoundedOnceStraightToFloat) {
   EXPECT_EQ(stored(scan.field, 0, 1), std::numeric_limits<float>::denorm_min());
 }
 
+TEST(AsciiGrid, DigitsThatAFloatLosesBesideTheRangeAreWarnedOf) {
+  const TempFolder folder;
+  const auto warnedOf = [&](const char* heights) {
+    writeBytes(folder.file("a.asc"),
+               std::string("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n") + heights);
+    const auto scan = load(folder.file("a.asc"));
+    EXPECT_TRUE(scan) << heights;
+    return scan && warned(scan->warnings, "more digits than a float holds");
+  };
+  // Steps of floats at 5,000 are 0.0005: half of the range is lost.
+  EXPECT_TRUE(warnedOf("5000.0001 5000.0003\n5000.0007 5000.0011"));
+  EXPECT_TRUE(warnedOf("5000.0001 5000.0002\n5000.0001 5000.0002"));  // all the same as floats, a range before
+  EXPECT_FALSE(warnedOf("0.1 0.3\n0.7 -9999"));
+  EXPECT_FALSE(warnedOf("5000.1 5000.1\n5000.1 5000.1"));  // no range that could be lost
+}
+
 TEST(AsciiGrid, HeightsEqualToTheUsualMarkChooseAnother) {
   const TempFolder folder;
   const Version field = makeField(gridOf(3, 1), {-9999.0F, kNan, 4.0F});

@@ -187,6 +187,12 @@ TEST_F(Sdf, MoreThanTheHeaderStatesAndAMissingEndAreWarnedOf) {
   EXPECT_TRUE(std::isnan(stored(holed->field, 1, 0)));
 }
 
+TEST_F(Sdf, DigitsThatAFloatLosesBesideTheRangeAreWarnedOf) {
+  const auto offset = read(binarySdf<double>(7, 3, {5e8 + 1, 5e8 + 3, 5e8 + 7, 5e8 + 8, 5e8 + 9, 5e8 + 12}));
+  ASSERT_TRUE(offset) << offset.error().line();
+  EXPECT_TRUE(warned(offset->warnings, "more digits than a float holds"));
+}
+
 TEST_F(Sdf, OnlySdfIsAskedForText) {
   ExportOptions options;
   options.ascii = true;
