@@ -95,7 +95,7 @@ engine::Result<PlacedB> alignedNominal(const AlignCommand& options, const engine
       [&](const engine::SampleRect& r, engine::JobControl& own) {
         const engine::Version piece = engine::pieceOf(a, r.column, r.row, r.columns, r.rows);
         return engine::nominalHeights(
-            engine::NominalSurface(*nominal, engine::RigidMotion{}, engine::slackOn(piece.grid())),
+            engine::NominalSurface(*nominal, engine::RigidMotion{}, engine::slackOn(piece.grid(), *nominal)),
             piece.grid(), own);
       },
       job);

@@ -138,7 +138,7 @@ engine::Result<double> secondsOf(const engine::Version& a, const engine::Nominal
   if (!each) return tl::unexpected(each.error());
   constexpr std::int32_t kSide = 256;
   const engine::Grid seen = middleOf(a, kSide).grid();
-  const engine::NominalSurface surface(b, engine::RigidMotion{}, engine::slackOn(seen));
+  const engine::NominalSurface surface(b, engine::RigidMotion{}, engine::slackOn(seen, b));
   const engine::Stopwatch watch;
   if (auto heights = engine::nominalHeights(surface, seen, job); !heights)
     return tl::unexpected(heights.error());

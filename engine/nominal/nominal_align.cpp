@@ -70,7 +70,7 @@ Result<Alignment> alignNominal(const Version& part, const NominalMesh& nominal, 
   const glm::dvec3 middle(0.0, 0.0, 0.5 * (nominal.box().low.z + nominal.box().high.z));
   RigidMotion down;
   down.shift = -middle;
-  auto seen = nominalHeights(NominalSurface(nominal, down, slackOn(over)), over, job);
+  auto seen = nominalHeights(NominalSurface(nominal, down, slackOn(over, nominal)), over, job);
   if (!seen) return tl::unexpected(seen.error());
   auto found = alignFields(part, *seen, options, job);
   if (!found) return found;
@@ -78,7 +78,7 @@ Result<Alignment> alignNominal(const Version& part, const NominalMesh& nominal, 
   AlignOptions again = options;
   again.search = false;
   for (int round = 0; round < kRounds; ++round) {
-    seen = nominalHeights(NominalSurface(nominal, motion, slackOn(grid)), grid, job);
+    seen = nominalHeights(NominalSurface(nominal, motion, slackOn(grid, nominal)), grid, job);
     if (!seen) return tl::unexpected(seen.error());
     found = alignFields(part, *seen, again, job);
     if (!found) return found;

@@ -67,7 +67,7 @@ Result<NominalDeviation> deviationFromNominal(const Version& part, const Nominal
     return inputError("a tolerance below 0 has no meaning", "tolerance", "give half the width of the band");
   Grid grid = part.grid();
   grid.height_per_count = 0.0;
-  const NominalSurface surface(nominal, motion, slackOn(grid));
+  const NominalSurface surface(nominal, motion, slackOn(grid, nominal));
   NominalDeviation result;
   result.turned = seenFromInside(surface, grid);
   Result<FieldBuilder> builder = FieldBuilder::create(grid, "the deviation");

@@ -94,6 +94,16 @@ double slackOn(const Grid& grid) noexcept {
                   4.0 * std::numeric_limits<double>::epsilon() * world);
 }
 
+double slackOn(const Grid& grid, const NominalMesh& mesh) noexcept {
+  constexpr double kDigits = 5e-7;
+  const glm::dvec3 &low = mesh.box().low, &high = mesh.box().high, &corner = mesh.corner();
+  double most = 0.0;
+  for (const int axis : {0, 1})
+    for (const double end : {low[axis], high[axis]}) most = std::max(most, std::abs(end + corner[axis]));
+  return std::max(slackOn(grid),
+                  std::min(kDigits * most, 0.01 * std::min(grid.spacingXMm(), grid.spacingYMm())));
+}
+
 Result<Version> nominalHeights(const NominalSurface& surface, const Grid& grid, JobControl& job) {
   Grid onto = grid;
   onto.height_per_count = 0.0;

@@ -40,6 +40,9 @@ class NominalSurface {
 
 /// The slack for samples of a grid: 1e-9 of its spacing, and what the grid's position in the world leaves of a length.
 [[nodiscard]] double slackOn(const Grid& grid) noexcept;
+/// The same over a mesh: half of the seventh digit of its file's coordinates besides, which STL has at most, in float as in
+/// text, up to a hundredth of the spacing. Without it a scan's own border lies beside the mesh that was made of it.
+[[nodiscard]] double slackOn(const Grid& grid, const NominalMesh& mesh) noexcept;
 
 /// Heights of the surface at the samples of a grid, in its height unit, rounded to float once; a hole where there is none.
 /// No marks. Some microsecond per sample on one core over a million triangles. Errors: kFailed without memory; kCancelled.

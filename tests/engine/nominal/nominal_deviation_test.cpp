@@ -162,6 +162,19 @@ TEST(NominalDeviation, CountsWhatHasNoNominal) {
   }
 }
 
+TEST(NominalDeviation, BordersOfAMeshInFloatsHaveTheirSamples) {
+  // 250 spacings of 1/2.2 mm: as floats the last corners lie up to 4e-6 mm inside of the part's samples.
+  Triangles triangles = surfaceOver(250 / 2.2, 3 / 2.2, 250, 3, [](double, double) { return 1.0; });
+  for (auto& triangle : triangles)
+    for (auto& corner : triangle)
+      for (int axis = 0; axis < 3; ++axis)
+        corner[axis] = static_cast<double>(static_cast<float>(corner[axis]));
+  const NominalDeviation found = deviationOf(
+      partOf(partGrid(251, 4, 1 / 2.2, 1 / 2.2), [](double, double) { return 3.0; }), meshOf(triangles));
+  EXPECT_EQ(found.no_nominal, 0);
+  EXPECT_EQ(found.samples, 251 * 4);
+}
+
 TEST(NominalDeviation, MeetsTheHardCases) {
   const NominalMesh flat = meshOf(surfaceOver(10, 10, 1, 1, [](double, double) { return 0.0; }));
   const Grid grid = partGrid(33, 17, 0.3, 0.5);
