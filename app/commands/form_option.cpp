@@ -132,6 +132,12 @@ engine::Result<engine::FittedForm> formOf(const engine::Version& field, const st
   return fit;
 }
 
+void warnOfLeaving(const engine::FittedForm& fit, const std::string& scan) {
+  if (!fit.leaves.empty())
+    warn(fmt::format("{}: {}: beyond its region it is a guess, take a lower degree or a larger region",
+                     shownInput(scan), fit.leaves));
+}
+
 void addForm(Report& report, const FormArguments& arguments, const engine::FittedForm& fit,
              const engine::Grid& grid) {
   report["form"] = arguments.form;

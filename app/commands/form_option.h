@@ -41,6 +41,10 @@ void setThrough(const std::optional<engine::ThreePoints>& points, FormArguments&
 /// form than a plane or of a robust one, a radius without them; and points that are not three.
 [[nodiscard]] engine::Status checkForm(const FormArguments& arguments);
 
+/// Warns of a polynomial of a region that leaves the heights of the field beyond it (engine::FittedForm::leaves): for those who
+/// take it out of the whole field. `scan` is its path.
+void warnOfLeaving(const engine::FittedForm& fit, const std::string& scan);
+
 /// The form of a field; of "none" the form whose height is 0 everywhere. Warns of a polynomial that so few samples do not
 /// determine, of samples beyond the outline of a shape, and of a scan in a camera's perspective. `scan` is its path. Errors: as
 /// engine::fitNominalForm, naming the scan.

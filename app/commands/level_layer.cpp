@@ -157,6 +157,7 @@ engine::Result<Report> changeLayer(const LayerChange& change, const BatchTask& t
                        formWordOf(*imported->field.seenOf()->form())));
     const auto fit = fitOver(*samples, original, form, *imported, task.in, job);
     if (!fit) return tl::unexpected(fit.error());
+    warnOfLeaving(*fit, task.in);
     const auto over = std::make_shared<const engine::NominalForm>(fit->form);
     for (engine::Version* version : {&result, original ? &*original : nullptr}) {
       if (version == nullptr) continue;

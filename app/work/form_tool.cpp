@@ -26,6 +26,7 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                        fit->samples,
                        fit->rms,
                        fit->open,
+                       fit->leaves,
                        fit->beyond,
                        engine::tiltOf(*fit, field.grid())};
 }
@@ -133,6 +134,9 @@ bool FormTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   if (work.preview) preview_ = std::move(work.preview);
   if (work.fit && !work.fit->open.empty())
     notices.push_back({work.fit->open, textOf("of the planes that come nearest to them it is the flattest")});
+  if (work.fit && !work.fit->leaves.empty())
+    notices.push_back({work.fit->leaves,
+                       textOf("beyond its region it is a guess: take a lower degree, or a larger region")});
   if (!work.change || client.changeForm(*work.change)) return true;
   // The field was filtered meanwhile: once more, near what is known.
   working_.replace([field = client.newest(),

@@ -28,7 +28,7 @@ class FormTool {
     engine::FieldForm form;
     std::int64_t samples = 0;
     double rms = 0.0;                       ///< [height_unit]
-    std::string open;                       ///< as FittedForm::open
+    std::string open, leaves;               ///< as those of FittedForm
     std::int64_t beyond = 0;                ///< samples that count beyond the outline of a shape
     std::optional<engine::Tilt> tilt = {};  ///< of a polynomial; with errors of a plane through three points
   };

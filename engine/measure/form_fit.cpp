@@ -61,6 +61,24 @@ Status addAbout(const Version& field, Region region, FittedForm& fitted, JobCont
   return {};
 }
 
+// FittedForm::leaves.
+std::string leavesText(const PolynomialForm& form, const Version& field, std::string_view word) {
+  constexpr int kPlaces = 32;
+  const HeightBounds heights = field.reader().bounds();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int j = 0; j <= kPlaces; ++j)
+    for (int i = 0; i <= kPlaces; ++i) {
+      const double z = form.heightAt((form.width - 1.0) * i / kPlaces, (form.height - 1.0) * j / kPlaces);
+      low = std::fmin(low, z);
+      high = std::fmax(high, z);
+    }
+  const double from = heights.min, to = heights.max, range = to - from;
+  if (heights.empty() || (from - low <= range && high - to <= range)) return "";
+  return fmt::format(
+      "{} reaches from {:.4g} to {:.4g} {} over the field, whose heights are from {:.4g} to {:.4g}", word,
+      low, high, field.grid().height_unit.name, from, to);
+}
+
 std::string openTermsText(const FormFit& fit, std::string_view title) {
   if (fit.open.empty()) return "";
   const bool one = fit.samples == 1;
@@ -184,6 +202,7 @@ Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice
   fitted.rms = fit->rms;
   fitted.rounds = fit->rounds;
   fitted.numbers = fit->decided;
+  if (choice.region != Region::kAll) fitted.leaves = leavesText(fit->form, field, info.word);
   fitted.form = std::move(fit->form);
   return fitted;
 }

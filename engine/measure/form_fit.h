@@ -35,6 +35,9 @@ struct FittedForm {
   /// Of a plane whose samples lie on one line, which they leave open, as a sentence: "3 samples decide 2 of the 3 terms of a plane
   /// and leave y open"; else empty. It is the flattest of those that come nearest to them then, as fitForm().
   std::string open = {};
+  /// Of a polynomial of a region beyond which it leaves the heights of the field by more than their range, as a sentence: "poly4
+  /// reaches from -302 to 312 mm over the field, whose heights are from 0 to 18 mm"; else empty. Found on 33 x 33 places.
+  std::string leaves = {};
   std::optional<ShapeFit> fit;  ///< of a shape
   std::int64_t beyond = 0;      ///< samples of the region beyond the outline of the shape (shape_form.h)
   /// Of a plane through three points: `samples` and `rms` are those of the samples around these.
