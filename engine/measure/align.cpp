@@ -439,7 +439,8 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
       !moves.empty())
     return inputError(fmt::format("the surface does not decide {}", moves), "alignment",
                       options.moves.tilt || options.moves.rotation || options.moves.shift
-                          ? "allow fewer motions, or are A and B scans of different parts?"
+                          ? "allow fewer motions; where B is turned further than was searched, --rotation "
+                            "180; or are A and B scans of different parts?"
                           : "are A and B scans of different parts?");
   Matrix6 cross = Matrix6::Zero(), spread = Matrix6::Zero();
   Alignment result;
