@@ -133,8 +133,9 @@ engine::Result<Report> features(const FeatureRun& options, engine::JobControl& j
 void printFeatures(const Report& report) {
   if (report.contains("text")) return printReport(report);
   constexpr std::size_t kShown = 12;
-  const ReadAs height = readLengthAs(report["sz"].get<double>(), report["unit_mm"], report["unit"]);
-  const std::string length = report["lateral_unit"];
+  const auto [height, across] = featureUnits(report);
+  const std::string& length = across.name;
+  const double area = across.size * across.size;
   const std::string volume =
       height.name == length ? length + "3" : fmt::format("{}2 {}", length, height.name);
   const Report& all = report["features"];
@@ -145,19 +146,19 @@ void printFeatures(const Report& report) {
   if (!report["mean_volume"].is_null())
     fmt::print("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}\n",
                report["mean_height"].get<double>() / height.size, height.name,
-               report["mean_volume"].get<double>() / height.size, volume);
+               report["mean_volume"].get<double>() / height.size / area, volume);
   if (!report["mean_area"].is_null())
-    fmt::print("those that nothing cuts in the mean: area {:.4g} {}2\n", report["mean_area"].get<double>(),
-               length);
+    fmt::print("those that nothing cuts in the mean: area {:.4g} {}2\n",
+               report["mean_area"].get<double>() / area, length);
   if (all.empty()) return;
   fmt::print("{:>6} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "number", "x " + length, "y " + length,
              "z " + height.name, "height " + height.name, "area " + length + "2", "volume " + volume);
   for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i) {
     const Report& f = all[i];
     fmt::print("{:>6} {:>12.6g} {:>12.6g} {:>12.5g} {:>12.5g} {:>12.5g} {:>12.5g}{}\n",
-               f["number"].get<int>(), f["x"].get<double>(), f["y"].get<double>(),
+               f["number"].get<int>(), f["x"].get<double>() / across.size, f["y"].get<double>() / across.size,
                f["z"].get<double>() / height.size, f["height"].get<double>() / height.size,
-               f["area"].get<double>(), f["volume"].get<double>() / height.size,
+               f["area"].get<double>() / area, f["volume"].get<double>() / height.size / area,
                f["open"].get<bool>() ? "  open" : "");
   }
   if (all.size() > kShown) fmt::print("and {} more: --csv has all\n", all.size() - kShown);

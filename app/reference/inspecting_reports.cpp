@@ -172,6 +172,7 @@ std::vector<ReportSchema> inspecting() {
                          {"unit_mm", "number", "millimetres in a height unit"},
                          {"lateral_unit", "string", "of lengths along the surface"},
                          {"lateral_unit_mm", "number", "millimetres in it"},
+                         {"spacing", "number", "the larger one, lateral unit"},
                          {"kind", "string", "hills or dales"},
                          {"sz", "number", "height unit"},
                          {"least_height", "number", "of a segment, height unit"},

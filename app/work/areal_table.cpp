@@ -83,12 +83,6 @@ constexpr ArealGroup kArealGroups[] = {
     {"feature", "Feature", "Spd Svd Spc Svc S5p S5v S10z Sha Sda Shv Sdv"},
 };
 
-// Of lengths along the surface: millimetres, as drawings state them, metres where samples are far apart.
-ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
-  const double least_mm = spacing * unit_mm < 10.0 ? 1.0 : 1e3;
-  return readLengthAs(least_mm / unit_mm, unit_mm, unit);
-}
-
 // Of the root mean square height: one unit for all rows. The scan's where there is none.
 ReadAs readHeightsAs(const Report& report) {
   const Report& sq = report["sq"];

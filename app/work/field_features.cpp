@@ -150,6 +150,7 @@ Report featureReport(const FieldFeatures& features, const engine::Grid& grid) {
   report["unit_mm"] = grid.height_unit.mm;
   report["lateral_unit"] = grid.lateral_unit.name;
   report["lateral_unit_mm"] = grid.lateral_unit.mm;
+  report["spacing"] = std::max(grid.spacing_x, grid.spacing_y);
   report["sz"] = features.sz;
   report["least_height"] = features.least;
   report["count"] = features.figures.size();
@@ -191,6 +192,11 @@ std::string featureCsv(const Report& report) {
                         f["open"].get<bool>() ? "yes" : "no", f["cut"].get<bool>() ? "yes" : "no",
                         layerOf(report));
   return text;
+}
+
+FeatureUnits featureUnits(const Report& report) {
+  return {readLengthAs(report["sz"], report["unit_mm"], report["unit"]),
+          readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"])};
 }
 
 }  // namespace fettle::app

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/report.h"
+#include "app/work/read_units.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/nominal_form.h"
@@ -54,5 +55,11 @@ struct FieldFeatures {
 [[nodiscard]] Report featureReport(const FieldFeatures& features, const engine::Grid& grid);
 /// A row for each of a report, with the form over the scan.
 [[nodiscard]] std::string featureCsv(const Report& report);
+
+/// The units in which a report of featureReport() is read at ease: of heights by Sz, of places and areas by the spacing.
+struct FeatureUnits {
+  ReadAs height, length;
+};
+[[nodiscard]] FeatureUnits featureUnits(const Report& report);
 
 }  // namespace fettle::app

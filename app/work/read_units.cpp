@@ -27,8 +27,16 @@ ReadAs readLengthAs(double length, double unit_mm, const std::string& unit) {
   return {"nm", 1e-6 / unit_mm};
 }
 
+ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
+  const double least_mm = spacing * unit_mm < 10.0 ? 1.0 : 1e3;
+  return readLengthAs(least_mm / unit_mm, unit_mm, unit);
+}
+
 ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit) {
-  ReadAs as = readLengthAs(length, unit_mm, unit);
+  return onScreen(readLengthAs(length, unit_mm, unit));
+}
+
+ReadAs onScreen(ReadAs as) {
   if (as.name == "um") as.name = "\u00b5m";
   return as;
 }

@@ -15,8 +15,13 @@ struct ReadAs {
 /// nm, so that 0.0000113 mm are 11.3 nm; of others the same. 0 is read in the unit that it is kept in.
 [[nodiscard]] ReadAs readLengthAs(double length, double unit_mm, const std::string& unit);
 
-/// The same for the window, whose lengths read "\u00b5m".
+/// The unit for lengths along a surface whose samples are `spacing` apart: of metric ones mm, as drawings state them, m where
+/// samples are 10 mm apart and more.
+[[nodiscard]] ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit);
+
+/// As readLengthAs() for the window, whose lengths read "\u00b5m".
 [[nodiscard]] ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit);
+[[nodiscard]] ReadAs onScreen(ReadAs as);
 
 /// How many of `unit` make one of `typed`, both names of length units (engine::lengthUnitFromName); nothing where one of them is
 /// none and they differ.

@@ -70,6 +70,10 @@ TEST(Features, AreATableLabelsAndOutlines) {
   const std::string table{std::istreambuf_iterator<char>(csv), {}};
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
   EXPECT_EQ(table.rfind("number,x [mm],y [mm],z [mm],height [mm],samples", 0), 0U) << table;
+  // Read at ease whatever unit the scan has.
+  const Outcome small = fettle({"features", scan, "--unit", "um", "--form", "none"});
+  EXPECT_NE(small.out.find("x mm"), std::string::npos) << small.out;
+  EXPECT_NE(small.out.find("area mm2"), std::string::npos) << small.out;
   const auto marked =
       fettleJson({"mark", scan, folder.file("m.png"), "--unit", "mm", "--add", folder.file("e.png")});
   EXPECT_GT(marked["marked"], 20) << "where segments meet";

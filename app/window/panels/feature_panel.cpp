@@ -50,19 +50,18 @@ void featureFields(FeatureTool::Options& options) {
   endFields();
 }
 
-struct FeatureUnits {
-  ReadAs height;
-  std::string length, volume;
+struct ShownFeatures {
+  ReadAs height, length;
+  double area;
+  std::string volume;
 };
-FeatureUnits unitsOf(const Report& report) {
-  FeatureUnits units{readOnScreenAs(report["sz"].get<double>(), report["unit_mm"].get<double>(),
-                                    report["unit"].get<std::string>()),
-                     report["lateral_unit"].get<std::string>(),
-                     {}};
-  units.volume = units.height.name == units.length
-                     ? units.length + "\u00b3"
-                     : fmt::format("{}\u00b2 {}", units.length, units.height.name);
-  return units;
+ShownFeatures shownFeatures(const Report& report) {
+  const FeatureUnits units = featureUnits(report);
+  const ReadAs height = onScreen(units.height), length = onScreen(units.length);
+  const std::string volume = height.name == length.name
+                                 ? length.name + "\u00b3"
+                                 : fmt::format("{}\u00b2 {}", length.name, height.name);
+  return {height, length, length.size * length.size, volume};
 }
 
 // Numbers as short as the panel is narrow: what is exact is in the exported table.
@@ -70,7 +69,7 @@ std::string shortNumber(double value) {
   return std::abs(value) >= 1e4 ? fmt::format("{:.2e}", value) : fmt::format("{:.4g}", value);
 }
 
-void featureTable(const Report& rows, const FeatureUnits& units) {
+void featureTable(const Report& rows, const ShownFeatures& units) {
   constexpr int kFeatureColumns = 6;
   constexpr ImGuiTableFlags kLook = ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
   if (!ImGui::BeginTable("features", kFeatureColumns, kLook)) return;
@@ -86,10 +85,11 @@ void featureTable(const Report& rows, const FeatureUnits& units) {
       ImGui::TableNextRow();
       for (const std::string& text :
            {fmt::format("{}{}", row["number"].get<int>(), row["open"].get<bool>() ? "*" : ""),
-            shortNumber(row["x"].get<double>()), shortNumber(row["y"].get<double>()),
+            shortNumber(row["x"].get<double>() / units.length.size),
+            shortNumber(row["y"].get<double>() / units.length.size),
             shortNumber(row["height"].get<double>() / units.height.size),
-            shortNumber(row["area"].get<double>()),
-            shortNumber(row["volume"].get<double>() / units.height.size)}) {
+            shortNumber(row["area"].get<double>() / units.area),
+            shortNumber(row["volume"].get<double>() / units.height.size / units.area)}) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(text.c_str());
       }
@@ -99,7 +99,7 @@ void featureTable(const Report& rows, const FeatureUnits& units) {
 
 void outcome(const FeatureTool& features) {
   const Report& report = *features.found();
-  const FeatureUnits units = unitsOf(report);
+  const ShownFeatures units = shownFeatures(report);
   if (features.outdated()) writeWrapped("the field has changed since: Find");
   writeWrapped(trFormat("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
                         tr(std::string_view(report["kind"].get_ref<const std::string&>())),
@@ -107,14 +107,15 @@ void outcome(const FeatureTool& features) {
   if (!report["mean_volume"].is_null())
     writeWrapped(trFormat("closed ones in the mean: height {:.4g} {}, volume {:.4g} {}",
                           report["mean_height"].get<double>() / units.height.size, units.height.name,
-                          report["mean_volume"].get<double>() / units.height.size, units.volume));
+                          report["mean_volume"].get<double>() / units.height.size / units.area,
+                          units.volume));
   if (!report["mean_area"].is_null())
     writeWrapped(trFormat("those that nothing cuts in the mean: area {:.4g} {}",
-                          report["mean_area"].get<double>(), units.length + "\u00b2"));
+                          report["mean_area"].get<double>() / units.area, units.length.name + "\u00b2"));
   featureTable(report["features"], units);
   writeIn(render::PanelColour::kMuted,
           trFormat("places in {}, areas in {}; * open: above its saddle it reaches the border or a hole",
-                   units.length, units.length + "\u00b2"));
+                   units.length.name, units.length.name + "\u00b2"));
 }
 
 }  // namespace
