@@ -157,17 +157,17 @@ Report describedSection(std::size_t index, const Section& section) {
           {"high_mm", high}};
 }
 
-// How many places of a section have heights of samples that were filled: without these they have fewer lanes, or none.
-engine::Result<std::int64_t> filledPlaces(const engine::Version& measured, const Points& points,
-                                          const engine::SectionOptions& of, const Section& section,
-                                          engine::JobControl& job) {
+// Which places of a section have heights of samples that were filled: without these they have fewer lanes, or none.
+engine::Result<std::vector<bool>> filledPlaces(const engine::Version& measured, const Points& points,
+                                               const engine::SectionOptions& of, const Section& section,
+                                               engine::JobControl& job) {
   const auto without = engine::sectionAlong(measured, points, of, job);
   if (!without && without.error().kind != engine::ErrorKind::kInput) return tl::unexpected(without.error());
-  std::int64_t places = 0;
+  std::vector<bool> filled(section.size());
   for (std::size_t i = 0; i < section.size(); ++i)
-    places += !std::isnan(section.height[i]) &&
-              (!without || std::isnan(without->height[i]) || without->share[i] < section.share[i]);
-  return places;
+    filled[i] = !std::isnan(section.height[i]) &&
+                (!without || std::isnan(without->height[i]) || without->share[i] < section.share[i]);
+  return filled;
 }
 
 engine::Result<Report> probed(const SectionArguments& options, const ReadScan& scan) {
@@ -272,9 +272,10 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     DrawnSection& last = drawn.back();
     Report one = describedSection(i, last.section);
     if (scan->measured) {
-      const auto filled = filledPlaces(*scan->measured, plan.points, of, last.section, job);
+      auto filled = filledPlaces(*scan->measured, plan.points, of, last.section, job);
       if (!filled) return tl::unexpected(filled.error());
-      one["filled"] = *filled;
+      one["filled"] = std::ranges::count(*filled, true);
+      last.filled = *std::move(filled);
     }
     std::vector<FailedFigure> failed;
     Report figures = sectionFigures(plan.wants, last.section, scan->noise, last.marks, failed);

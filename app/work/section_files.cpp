@@ -76,7 +76,10 @@ std::string takingText(const SectionTaking& taking) {
 
 std::string sectionCsv(const std::vector<DrawnSection>& sections, const SectionTaking& taking) {
   const bool both = !sections.empty() && sections.front().other.size() > 0;
+  const bool filled =
+      std::ranges::any_of(sections, [](const DrawnSection& drawn) { return !drawn.filled.empty(); });
   std::string text = "section,along_mm,x_mm,y_mm,height_mm,share";
+  if (filled) text += ",filled";
   if (both) text += ",other_mm";
   text += ",interpolation,layer";
   text += both ? ",other_layer\n" : "\n";
@@ -88,6 +91,7 @@ std::string sectionCsv(const std::vector<DrawnSection>& sections, const SectionT
       fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{},{:.4g}", s, section.along(i),
                      section.position[i].x, section.position[i].y, cellOf(section.height[i]),
                      section.share[i]);
+      if (filled) text += !sections[s].filled.empty() && sections[s].filled[i] ? ",yes" : ",no";
       if (both) fmt::format_to(std::back_inserter(text), ",{}", cellOf(sections[s].other.height[i]));
       text += ending;
     }

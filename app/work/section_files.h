@@ -16,6 +16,8 @@ struct DrawnSection {
   engine::Section other;           ///< no places: there is none
   std::string other_name;          ///< empty: "NAME, other"
   std::vector<SectionMark> marks;  ///< at which a thin line stands, with its name
+  /// Places whose height has samples that were filled; none: the scan has no such sample.
+  std::vector<bool> filled = {};
 };
 
 /// How sections were taken, as their files state it.
@@ -27,8 +29,8 @@ struct SectionTaking {
 /// "bilinear between samples, without the form poly2 that lies over the scan".
 [[nodiscard]] std::string takingText(const SectionTaking& taking);
 
-/// A row per place: section, length, position, height, share of the lanes, height of the other, all in millimetres; how they
-/// were taken. Cells without a height are empty.
+/// A row per place: section, length, position, height, share of the lanes, of a scan with filled samples whether there are any in
+/// the height, height of the other, all in millimetres; how they were taken. Cells without a height are empty.
 [[nodiscard]] std::string sectionCsv(const std::vector<DrawnSection>& sections, const SectionTaking& taking);
 
 /// DXF R12: length and height in millimetres as polylines, one for each run of heights, on a layer for each section, its

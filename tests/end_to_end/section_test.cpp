@@ -218,6 +218,17 @@ TEST(SectionCommand, NamesPlacesThatWereFilled) {
   EXPECT_EQ(at("0,1.05:7.9,1.05", {})["filled"], 1) << "between two rows one of which is filled";
   EXPECT_EQ(at("0,1:7.9,1", {"--width", "1"})["filled"], 1) << "one lane of eleven";
   EXPECT_EQ(at("0,2:7.9,2", {})["filled"], 0);
+  const Outcome table = fettle({"section", filled, "--line", "0,1:7.9,1", "--csv", "-"});
+  EXPECT_EQ(table.out.rfind("section,along_mm,x_mm,y_mm,height_mm,share,filled,interpolation,layer\n", 0), 0U)
+      << table.out;
+  const auto lines = [&](const char* with) {
+    std::size_t count = 0;
+    for (std::size_t i = table.out.find(with); i != std::string::npos; i = table.out.find(with, i + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(lines(",yes,bilinear"), 1U);
+  EXPECT_EQ(lines(",no,bilinear"), 79U);
   const auto measured = at("0,1:7.9,1", {"--region", "measured"});
   EXPECT_EQ(measured["without_height"], 1);
   EXPECT_FALSE(measured.contains("filled"));
