@@ -125,7 +125,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   wanted.fitted = limited->fit.numbers;
   const auto measured = engine::measureAreal(limited->field, limited->form, wanted, job);
   if (!measured) return tl::unexpected(measured.error());
-  if (auto status = writeCurves(options.curves, *measured, grid); !status)
+  if (auto status = writeCurves(options.curves, *measured, grid, job); !status)
     return tl::unexpected(status.error());
   if (auto status = writeSurface(options, *limited, imported->field, job); !status)
     return tl::unexpected(status.error());

@@ -12,6 +12,7 @@
 
 #include "app/commands/surface_plots.h"
 #include "app/plots/gnuplot.h"
+#include "app/work/streams.h"
 #include "app/work/surface_numbers.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/profile_spectrum.h"
@@ -20,8 +21,9 @@ namespace fettle::app {
 
 namespace {
 
+// Standard output takes the numbers: a drawing there would be of one of two kinds.
 bool isTable(const std::string& path) {
-  return withDot(std::filesystem::path(path).extension().string()) == ".csv";
+  return path == "-" || withDot(std::filesystem::path(path).extension().string()) == ".csv";
 }
 
 engine::Status drawTo(const std::string& path, const std::string& script) {
@@ -71,24 +73,27 @@ std::string spectrumTable(const engine::ArealParameters& measured, const engine:
 }  // namespace
 
 void addCurveOptions(Command command, CurveFiles& files) {
-  command.add({{.name = "--abbott",
-                .to = &files.abbott,
-                .text = "Material ratio (Abbott) curve of one scan: .svg or .png, or its numbers as .csv",
-                .kind = ValueKind::kOutput},
-               {.name = "--correlation",
-                .to = &files.correlation,
-                .text = "Autocorrelation in the directions of its fastest and slowest decay, the same",
-                .kind = ValueKind::kOutput},
-               {.name = "--spectrum",
-                .to = &files.spectrum,
-                .text = "Power spectral density of profiles along x and along y, the same",
-                .kind = ValueKind::kOutput}});
+  command.add(
+      {{.name = "--abbott",
+        .to = &files.abbott,
+        .text =
+            "Material ratio (Abbott) curve of one scan: .svg or .png, or its numbers as .csv, which - has",
+        .kind = ValueKind::kOutput},
+       {.name = "--correlation",
+        .to = &files.correlation,
+        .text = "Autocorrelation in the directions of its fastest and slowest decay, the same",
+        .kind = ValueKind::kOutput},
+       {.name = "--spectrum",
+        .to = &files.spectrum,
+        .text = "Power spectral density of profiles along x and along y, the same",
+        .kind = ValueKind::kOutput}});
 }
 
 std::vector<Output> outputsOf(const CurveFiles& files) {
   std::vector<Output> outputs;
   for (const std::string& path : {files.abbott, files.correlation, files.spectrum})
-    outputs.push_back({path, isTable(path) ? OutputKind::kText : OutputKind::kPlot});
+    outputs.push_back(isTable(path) ? Output{path, OutputKind::kText, ".csv"}
+                                    : Output{path, OutputKind::kPlot});
   return outputs;
 }
 
@@ -112,7 +117,7 @@ void addCurves(const CurveFiles& files, engine::ArealOptions& options) {
 }
 
 engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameters& measured,
-                           const engine::Grid& grid) {
+                           const engine::Grid& grid, engine::JobControl& job) {
   if (!files.abbott.empty() && std::isnan(measured.sq))
     return engine::inputError(
         fmt::format("the surface has no material ratio curve: {}", measured.not_stated.front().reason),
@@ -125,9 +130,11 @@ engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameter
                                                                             : measured.spatial.no_sal),
                                 option, "leave the option out");
   const PlottedState state[] = {{"", &measured}};
-  const auto write = [](const std::string& path, const auto& table, const auto& plot) -> engine::Status {
+  const auto write = [&job](const std::string& path, const auto& table, const auto& plot) -> engine::Status {
     if (path.empty()) return {};
-    return isTable(path) ? engine::writeFileAtomically(path, table()) : drawTo(path, plot());
+    if (!isTable(path)) return drawTo(path, plot());
+    return writeTo(path, ".csv", job,
+                   [&](const std::string& file) { return engine::writeFileAtomically(file, table()); });
   };
   if (auto status = write(
           files.abbott, [&] { return abbottTable(measured); }, [&] { return abbottPlot(state, grid); });

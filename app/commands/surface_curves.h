@@ -36,6 +36,6 @@ void addCurves(const CurveFiles& files, engine::ArealOptions& options);
 /// Writes them, each file whole or not at all. `measured` was measured with addCurves(). Errors (kInput): a curve that the
 /// samples do not determine, with the reason; those of drawing and writing.
 [[nodiscard]] engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameters& measured,
-                                         const engine::Grid& grid);
+                                         const engine::Grid& grid, engine::JobControl& job);
 
 }  // namespace fettle::app

@@ -496,6 +496,7 @@ TEST(Measure, DrawsTheCurvesOfTheWaveAndWritesTheirNumbers) {
   const auto abbott = numbersOf(file("a.csv"));
   ASSERT_EQ(abbott.size(), 401U);
   for (std::size_t i = 1; i < abbott.size(); ++i) EXPECT_LE(abbott[i][1], abbott[i - 1][1]);
+  EXPECT_EQ(fettle({"measure", scan, "--unit", "mm", "--abbott", "-"}).out, bytesOf(file("a.csv")));
   EXPECT_NEAR(abbott.front()[1], report["sp"].get<double>(), 1e-9);
   EXPECT_NEAR(abbott.back()[1], -report["sv"].get<double>(), 1e-9);
   EXPECT_NEAR(abbott[200][1], 0.0, 1e-4);
