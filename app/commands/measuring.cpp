@@ -16,18 +16,19 @@ PlannedOnPieces plannedMeasuring(const PlannedMeasuring& measuring) {
                                     engine::JobControl& job) -> engine::Result<engine::Version> {
     const KeptMessages said;  // of the scan the command itself says it
     const engine::Version piece = engine::pieceOf(measuring.counted, r.column, r.row, r.columns, r.rows);
-    const auto measure = [&](const engine::Version& field) -> engine::Result<engine::ArealParameters> {
+    const auto measure = [&](const engine::Version& field,
+                             engine::TrialNoise of) -> engine::Result<engine::ArealParameters> {
       const auto limited =
           scaleLimited(field, measuring.scan, measuring.imported, measuring.form, measuring.scale, job);
       if (!limited) return tl::unexpected(limited.error());
-      return engine::measureAreal(limited->field, limited->form, measuring.areal, job);
+      return engine::measureAreal(limited->field, limited->form, engine::optionsOf(measuring.areal, of), job);
     };
     // Of a piece of holes there is nothing to measure.
     const auto taken = [&](const engine::Error& error) -> engine::Result<engine::Version> {
       if (error.kind == engine::ErrorKind::kInput) return piece;
       return tl::unexpected(error);
     };
-    auto measured = measure(piece);
+    auto measured = measure(piece, engine::TrialNoise::kOwn);
     if (!measured) return taken(measured.error());
     if (trials == 0) return piece;
     const auto noise = arealNoise(piece, *measured, measure, trials, job);
@@ -49,10 +50,11 @@ engine::Result<std::optional<PartNoise>> noiseOfMeasured(const PlannedMeasuring&
   if (measuring.trials != kUsualTrials || noiseTrials(kUsualTrials, counted.grid().samples()) > 0) {
     auto noise = arealNoise(
         counted, stated,
-        [&](const engine::Version& noisy) -> engine::Result<engine::ArealParameters> {
+        [&](const engine::Version& noisy,
+            engine::TrialNoise noise_of) -> engine::Result<engine::ArealParameters> {
           const auto of = limitedOf(noisy, measuring.form);
           if (!of) return tl::unexpected(of.error());
-          return engine::measureAreal(of->field, of->form, areal, job);
+          return engine::measureAreal(of->field, of->form, engine::optionsOf(areal, noise_of), job);
         },
         measuring.trials, job);
     if (!noise) return tl::unexpected(noise.error());

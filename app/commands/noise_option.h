@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "engine/measure/areal.h"
+#include "engine/uncertainty/areal_figures.h"
 
 namespace fettle::app {
 
@@ -24,7 +25,7 @@ inline constexpr int kUsualTrials = -1;
 [[nodiscard]] int noiseTrials(int trials, std::int64_t samples) noexcept;
 
 /// Measures the parameters of a field as the command did, with all that it does before.
-using ArealOf = std::function<engine::Result<engine::ArealParameters>(const engine::Version& field)>;
+using ArealOf = engine::ArealTrialOf;
 
 /// What the noise of `field`, of which `measured` was measured by `measure`, does to the parameters; none where no trials are made, which a
 /// note on stderr says unless that was asked for, or where the field has no noise that can be measured. The field that the noise is measured of and added to is the

@@ -60,7 +60,7 @@ enum class Curves : std::uint8_t { kWithout, kWith };
 
 engine::Result<engine::ArealParameters> parametersOf(const engine::Version& field,
                                                      const MeasureTool::Options& options, Curves curves,
-                                                     engine::JobControl& job) {
+                                                     engine::TrialNoise noise, engine::JobControl& job) {
   const engine::Region region = regionOf(options.where);
   const engine::FormInfo& form =
       *std::ranges::find(engine::formInfos(), options.degree, &engine::FormInfo::degree);
@@ -74,7 +74,7 @@ engine::Result<engine::ArealParameters> parametersOf(const engine::Version& fiel
     areal.at_ratios = curveRatios();
     areal.analysis = true;
   }
-  return engine::measureAreal(field, fit->form, areal, job);
+  return engine::measureAreal(field, fit->form, engine::optionsOf(areal, noise), job);
 }
 
 struct MeasuredState {
@@ -84,7 +84,7 @@ struct MeasuredState {
 
 engine::Result<MeasuredState> measuredState(const engine::Version& field, const MeasureTool::Options& options,
                                             engine::JobControl& job) {
-  auto measured = parametersOf(field, options, Curves::kWith, job);
+  auto measured = parametersOf(field, options, Curves::kWith, engine::TrialNoise::kOwn, job);
   if (!measured) return tl::unexpected(measured.error());
   MeasuredState state{Report(), curvesOf(*measured, field.grid())};
   if (std::isnan(measured->sq)) state.curves.heights.clear();
@@ -98,7 +98,9 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
   if (!(noise->sigma >= 0.0)) return state;
   auto effects = engine::arealEffects(
       field, *noise, *measured,
-      [&](const engine::Version& noisy) { return parametersOf(noisy, options, Curves::kWithout, job); },
+      [&](const engine::Version& noisy, engine::TrialNoise of) {
+        return parametersOf(noisy, options, Curves::kWithout, of, job);
+      },
       {.pairs = kNoisePairs}, job);
   if (!effects) return tl::unexpected(effects.error());
   addNoise(state.report, {noise->sigma, 2 * kNoisePairs, *std::move(effects)}, field.grid());

@@ -39,6 +39,18 @@ constexpr double kNoDetail = 0.01;
 // finest detail counts. Of variances.
 constexpr double kMostOverFinest = 9.0;
 
+// Of the ratio of the finest detail to the variance that is found. In white noise its median over all windows is it to 0.37 over
+// the root of the windows that count; its mean over these is 4 % above, as they are chosen by other detail. What lacks beyond one and a half
+// of that scatter was 0.78 to 1.05 of what was found too much on thirteen simulated surfaces (docs/decisions/parameter-errors.md).
+constexpr double kRatioScatter = 0.55, kRatioOfCounted = 1.04, kLackFactor = 1.25;
+// A variance of n independent samples by squared fourth differences has 5.3 / n; the noise that is in the scan is known better than that of others
+// like it, by half.
+constexpr double kSquareScatter = 1.3;
+// What lines share is told from a surface by the difference of its detail along and across them, which a surface with edges along them has as well.
+// What is left of long waves in a window is a share of a few per cent: less of that is in doubt.
+constexpr double kSharedDoubt = 0.5, kShareOfWaves = 0.1;
+constexpr double kUnmeasured = 0.4;  // doubt of the finest detail alone
+
 struct Placed {
   std::int32_t column, row;
   double magnitude;  // largest |height|
@@ -160,6 +172,25 @@ void keepSmooth(const Grid& grid, std::vector<const Placed*>& windows) {
   });
 }
 
+// NoiseModel::doubt of noise whose `parts` were found in `counted` of `places` windows: `finest` is the variance that the finest detail says, over that which is
+// found.
+double doubtOf(const NoiseParts& parts, double finest, std::int64_t counted, std::size_t places,
+               double samples) {
+  const double variance = parts.variance(), windows = static_cast<double>(counted);
+  if (!(variance > 0.0)) return 0.0;
+  // Second differences along both directions, squared, over 36: offsets are in none, covariances of samples 1 and 2 apart by these weights.
+  const double expected = parts.uncorrelated - 4.0 / 3.0 * (parts.along_row[0] + parts.along_column[0]) +
+                          1.0 / 3.0 * (parts.along_row[1] + parts.along_column[1]);
+  const double lack = expected / variance - finest;
+  const double beyond = lack > 0.0 ? lack * lack - kRatioScatter * kRatioScatter / windows : 0.0;
+  const double missing = std::min(1.0, kLackFactor * std::sqrt(std::max(0.0, beyond)));
+  const double seen = std::min(windows * kNoiseSide * kNoiseSide,
+                               samples * windows / static_cast<double>(std::max<std::size_t>(places, 1)));
+  const double shared = std::clamp(1.0 - expected / variance, 0.0, 1.0),
+               of_shared = kSharedDoubt * shared * std::min(1.0, shared / kShareOfWaves);
+  return std::min(1.0, std::hypot(missing, of_shared, std::sqrt(kSquareScatter / seen)));
+}
+
 // Drops windows that are louder than noise that is the same all over their part of the map makes them.
 void keepEqual(const Grid& grid, std::vector<const Placed*>& windows) {
   std::array<std::vector<double>, kCells> details;
@@ -223,6 +254,7 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
     model.sigma = std::sqrt(variance);
     model.parts = {};
     model.parts.uncorrelated = variance;
+    model.doubt = kUnmeasured;
     model.map.assign(kCells, model.sigma);
     return model;
   };
@@ -236,25 +268,38 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
   model.parts = noiseOf(mean, model.windows);
   // In the direction of the whole field's.
   const bool by_rows = mean.column_detail >= mean.row_detail;
-  std::array<std::vector<double>, kCells> cells;
+  std::array<std::vector<double>, kCells> cells, finest_of_cells;
   std::vector<double> all;
   all.reserve(smooth.size());
   for (const Placed* p : smooth) {
     all.push_back(by_rows ? p->window.moments.column_detail : p->window.moments.row_detail);
     cells[partOf(field.grid(), *p)].push_back(all.back());
+    finest_of_cells[partOf(field.grid(), *p)].push_back(p->window.finest);
   }
   // Windows without edges are not equally frequent everywhere: parts of the field count equally. The loudest few are
   // bounded by rank: noise that is added to all raises all by as much, so that it raises sigma^2 by as much.
   const double middle = ranked(all, 0.5);
-  std::vector<double> counted;
-  counted.reserve(kCells);
-  for (const std::vector<double>& cell : cells) {
+  std::vector<double> all_finest;
+  for (const Placed* p : smooth) all_finest.push_back(p->window.finest);
+  const double middle_of_finest = ranked(all_finest, 0.5);
+  const auto drawnOf = [](const std::vector<double>& cell, double middle_of_all) {
     double sum = 0.0;
     for (const double detail : cell) sum += detail;
-    const double here = cell.empty() ? middle : sum / static_cast<double>(cell.size());
-    model.map.push_back(mean.detail() > 0.0 ? drawn(here, cell.size(), middle) / mean.detail() : 1.0);
-    if (cell.size() >= kFewWindows) counted.push_back(model.map.back());
+    const double here = cell.empty() ? middle_of_all : sum / static_cast<double>(cell.size());
+    return drawn(here, cell.size(), middle_of_all);
+  };
+  std::vector<double> counted;
+  counted.reserve(kCells);
+  double found = 0.0, finest = 0.0;  // sums over the map
+  for (std::size_t k = 0; k < kCells; ++k) {
+    found += drawnOf(cells[k], middle);
+    finest += drawnOf(finest_of_cells[k], middle_of_finest);
+    model.map.push_back(mean.detail() > 0.0 ? drawnOf(cells[k], middle) / mean.detail() : 1.0);
+    if (cells[k].size() >= kFewWindows) counted.push_back(model.map.back());
   }
+  if (found > 0.0)
+    model.doubt = doubtOf(model.parts, std::max(finest_of_all * kCells, finest / kRatioOfCounted) / found,
+                          model.windows, places.size(), static_cast<double>(field.grid().samples()));
   const double squares = meanUpTo(counted.empty() ? model.map : counted, kLoudestPart);
   model.parts.scale(squares);
   if (model.parts.uncorrelated > kMostOverFinest * finest_of_all) return uncorrelated(finest_of_all);

@@ -18,6 +18,11 @@ struct NoiseModel {
   /// What it consists of [height_unit^2]; their variance() is sigma^2.
   NoiseParts parts;
   std::int64_t windows = 0;  ///< that it was measured in; 0: from the finest detail alone
+  /// Share of the variance that is not sure, as a standard error: what few windows leave open, and what the finest detail in both
+  /// directions lacks of it beyond that, 0 .. 1. Kinks of a surface that are in every window, and roughness from sample to sample, have
+  /// it along rows and columns, but hardly in both directions at once: where they count as noise of twice its variance this is 0.5.
+  /// Of what lines share half is not sure.
+  double doubt = 0.0;
 
   /// Standard deviation in kMapSide x kMapSide equal parts of the field, row by row from its first sample; sigma
   /// where nothing could be measured, and drawn to it by what few windows leave open.

@@ -19,8 +19,8 @@ constexpr FigureRange kFromZero{.low = 0.0}, kShareRange{0.0, 1.0};
 
 constexpr ArealFigure kFigures[] = {
     {"sq", [](const P& p) { return p.sq; }, G::kSquare, kFromZero},
-    {"ssk", [](const P& p) { return p.ssk; }, G::kPlain, {}},
-    {"sku", [](const P& p) { return p.sku; }, G::kPlain, {.low = 1.0}},
+    {"ssk", [](const P& p) { return p.ssk; }, G::kCurved, {}},
+    {"sku", [](const P& p) { return p.sku; }, G::kCurved, {.low = 1.0}},
     {"sp", [](const P& p) { return p.sp; }, G::kExtreme, kFromZero},
     {"sv", [](const P& p) { return p.sv; }, G::kExtreme, kFromZero},
     {"sz", [](const P& p) { return p.sz; }, G::kExtreme, kFromZero},
@@ -30,7 +30,7 @@ constexpr ArealFigure kFigures[] = {
     {"std", [](const P& p) { return p.spatial.lay; }, G::kAxis, {0.0, 180.0}},
     {"ssw", [](const P& p) { return p.spatial.ssw; }, G::kPlain, kFromZero},
     {"sdq", [](const P& p) { return p.sdq; }, G::kSquare, kFromZero},
-    {"sdr", [](const P& p) { return p.sdr; }, G::kPlain, kFromZero},
+    {"sdr", [](const P& p) { return p.sdr; }, G::kCurved, kFromZero},
     {"sk", [](const P& p) { return p.ratio.sk; }, G::kRank, kFromZero},
     {"spk", [](const P& p) { return p.ratio.spk; }, G::kRank, kFromZero},
     {"svk", [](const P& p) { return p.ratio.svk; }, G::kRank, kFromZero},
@@ -100,21 +100,32 @@ void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& mea
       effects[indexOf(size)] = {kNone, kNone, "noise changes how many there are"};
 }
 
-Result<std::vector<NoiseEffect>> arealEffects(
-    const Version& field, const NoiseModel& noise, const ArealParameters& measured,
-    const std::function<Result<ArealParameters>(const Version&)>& measure, const NoiseTrialOptions& options,
-    JobControl& job) {
+void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
+                       const ArealParameters& measured) {
+  // The share's square in place of it: next to nothing of noise that is below a third of the surface.
+  const double share = noise.sigma / measured.sq;
+  if (measured.sq > 0.0) addRankDoubt(effects, growthsOf(measured), share * share);
+}
+
+ArealOptions optionsOf(ArealOptions options, TrialNoise noise) {
+  if (noise == TrialNoise::kLouder) options.spatial = options.feature = false;
+  return options;
+}
+
+Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseModel& noise,
+                                              const ArealParameters& measured, const ArealTrialOf& measure,
+                                              const NoiseTrialOptions& options, JobControl& job) {
   const std::vector<double> found = valuesOf(measured);
   const std::vector<NoiseGrowth> growths = growthsOf(measured);
   auto effects = noiseEffects(
       field, noise, found, growths,
-      [&](const Version& noisy) -> Result<std::vector<double>> {
-        const auto again = measure(noisy);
+      [&](const Version& noisy, TrialNoise of) -> Result<std::vector<double>> {
+        const auto again = measure(noisy, of);
         if (!again) return tl::unexpected(again.error());
         return valuesOf(*again);
       },
       options, job);
-  if (effects && measured.sq > 0.0) addRankDoubt(*effects, growths, noise.sigma / measured.sq);
+  if (effects) addDominanceDoubt(*effects, noise, measured);
   if (effects) keepWithinRanges(*effects, measured);
   return effects;
 }

@@ -29,10 +29,21 @@ struct ArealFigure {
 /// leaves open.
 void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured);
 
-/// noiseEffects() of the parameters of a field, with addRankDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
-[[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(
-    const Version& field, const NoiseModel& noise, const ArealParameters& measured,
-    const std::function<Result<ArealParameters>(const Version&)>& measure, const NoiseTrialOptions& options,
-    JobControl& job);
+/// Adds to the errors of ranks what nothing says of them where noise is as large as the surface.
+void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
+                       const ArealParameters& measured);
+
+/// Measures the parameters of a field; of TrialNoise::kLouder spatial and feature parameters do not count.
+using ArealTrialOf = std::function<Result<ArealParameters>(const Version& field, TrialNoise noise)>;
+
+/// `options` as far as such a trial needs them.
+[[nodiscard]] ArealOptions optionsOf(ArealOptions options, TrialNoise noise);
+
+/// noiseEffects() of the parameters of a field, with addDominanceDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
+[[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseModel& noise,
+                                                            const ArealParameters& measured,
+                                                            const ArealTrialOf& measure,
+                                                            const NoiseTrialOptions& options,
+                                                            JobControl& job);
 
 }  // namespace fettle::engine

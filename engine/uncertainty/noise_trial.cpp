@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <numbers>
 
 #include "engine/field/tile.h"
 #include "engine/measure/lowered.h"
@@ -21,22 +22,28 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // docs/decisions/parameter-errors.md.
 struct GrowthRule {
   bool by_square;
-  double doubt;    // share of the raise that is not sure
+  double doubt;    // share of the raise that is not sure where its bend is not known
   double scatter;  // that counts, over the scatter of the trials
   double most;     // raise over the figure, beyond which it is not decided
+  // Where the bend is known:
+  bool taken_out = false;                // it is extrapolated
+  double of_raise = 0.0, of_bend = 0.0;  // what extrapolation leaves open, over the raise and over the bend
 };
 constexpr double kMostError =
     0.5;  // over the figure, beyond which one with a limit of the raise is not decided either
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr GrowthRule kRules[] = {
-    {true, 0.2, 1.0, kAny},    // kSquare
-    {false, 0.2, 1.0, kAny},   // kPlain
-    {false, 0.2, 1.0, kAny},   // kAxis
-    {true, 0.5, 1.25, kAny},   // kRank
-    {false, 0.5, 1.25, kAny},  // kShare
-    {true, 0.7, 1.25, kAny},   // kExtreme
-    {true, 3.0, 1.25, 0.2},    // kPlaces
+    {true, 0.2, 1.0, kAny, true, 0.0, 0.6},     // kSquare
+    {false, 0.2, 1.0, kAny, true, 0.0, 0.6},    // kCurved
+    {false, 0.2, 1.0, kAny},                    // kPlain
+    {false, 0.2, 1.0, kAny},                    // kAxis
+    {true, 0.5, 1.4, kAny, false, 0.25, 2.5},   // kRank
+    {false, 0.5, 1.4, kAny, false, 0.25, 2.5},  // kShare
+    {true, 0.7, 1.25, kAny},                    // kExtreme
+    {true, 3.0, 1.25, 0.2},                     // kPlaces
 };
+// Ranks of a rough curve bend by chance, by about as much as noise scatters them: so many of its squares are none of the extrapolation.
+constexpr double kBendByChance = 2.0;
 const GrowthRule& ruleOf(NoiseGrowth growth) noexcept {
   return kRules[static_cast<std::size_t>(growth)];
 }
@@ -60,7 +67,7 @@ double grownBy(NoiseGrowth growth, double value, double near) noexcept {
 
 // Of trials on a part of the surface whose own figure is `of_part`, which has `share` of the samples: all of it is the whole.
 NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> pairs, NoiseGrowth growth,
-                       double share) {
+                       double share, const TrialKnowledge& known) {
   if (std::isnan(found) || std::isnan(of_part)) return {kNone, kNone};
   const GrowthRule& rule = ruleOf(growth);
   if (rule.by_square && found < 0.0) return {kNone, kNone, "it is below 0"};  // its square says not which
@@ -86,9 +93,23 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
   const double apart = growth == NoiseGrowth::kAxis ? nearestAxis(of_part, found) - found : part - whole;
   const double size = growth == NoiseGrowth::kAxis ? 90.0 : std::max(std::abs(part), std::abs(whole));
   const double unlike = size > 0.0 ? apart / size : 0.0;
-  const double doubt = std::hypot(rule.doubt, unlike) * raise, by_trials = widened * widened;
+  const double by_trials = widened * widened;
+  // By the same noise, once and with twice its variance: what its own draw makes of a smooth figure is in neither.
+  double bend = kNone;
+  if (rule.of_bend > 0.0 && !std::isnan(pairs.front().more + pairs.front().less)) {
+    const auto middleOf = [&](const TrialPair& pair) {
+      return 0.5 * (grownBy(growth, pair.more, of_part) + grownBy(growth, pair.less, of_part));
+    };
+    bend = middleOf(known.louder) - 2.0 * middleOf(pairs.front()) + part;
+  }
+  double doubt = std::hypot(std::max(rule.doubt, known.doubt), unlike) * raise, without = whole - raise;
+  if (!std::isnan(bend)) {
+    const double by_chance = rule.taken_out ? 0.0 : kBendByChance * (scatter + spread * (1.0 + 1.0 / n));
+    const double bends = rule.of_bend * std::sqrt(std::max(0.0, bend * bend - by_chance));
+    doubt = std::hypot(std::hypot(known.doubt, rule.of_raise, unlike) * raise, bends);
+    if (rule.taken_out) without += bend;
+  }
   const double error = std::sqrt(by_trials * (share * scatter + spread * (share + 1.0 / n)) + doubt * doubt);
-  double without = whole - raise;
   if (!rule.by_square) {
     if (growth == NoiseGrowth::kAxis) without -= 180.0 * std::floor(without / 180.0);
     return {without, error};
@@ -108,6 +129,10 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
 }
 
 }  // namespace
+
+double sizeOf(TrialNoise noise) noexcept {
+  return noise == TrialNoise::kLouder ? std::numbers::sqrt2 : 1.0;
+}
 
 Result<NoiseDraw> NoiseDraw::create(const Grid& grid, const NoiseModel& noise, std::uint64_t seed) try {
   NoiseDraw draw;
@@ -147,13 +172,14 @@ double errorOfErrors(int pairs) noexcept {
   return 1.0 / std::sqrt(2.0 * std::max(pairs, 1));
 }
 
-NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth) {
-  return effectFrom(found, found, pairs, growth, 1.0);
+NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth,
+                          const TrialKnowledge& known) {
+  return effectFrom(found, found, pairs, growth, 1.0, known);
 }
 
 NoiseEffect partEffectOf(double found, double of_part, std::span<const TrialPair> pairs, NoiseGrowth growth,
-                         double share) {
-  return effectFrom(found, of_part, pairs, growth, share);
+                         double share, const TrialKnowledge& known) {
+  return effectFrom(found, of_part, pairs, growth, share, known);
 }
 
 Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,
@@ -161,24 +187,34 @@ Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseM
                                               std::span<const NoiseGrowth> growth, const FiguresOf& measure,
                                               const NoiseTrialOptions& options, JobControl& job) {
   std::vector<std::vector<TrialPair>> pairs(found.size());
+  std::vector<TrialPair> louder;
   for (int k = 0; k < options.pairs; ++k) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
     const auto draw = NoiseDraw::create(field.grid(), noise, seed);
     if (!draw) return tl::unexpected(draw.error());
-    std::vector<double> sides[2];
-    for (int side = 0; side < 2; ++side) {
-      const auto noisy = draw->addedTo(field, noise, side == 0 ? 1.0 : -1.0, job);
+    const auto measured = [&](TrialNoise of, double sign) -> Result<std::vector<double>> {
+      const auto noisy = draw->addedTo(field, noise, sign * sizeOf(of), job);
       if (!noisy) return tl::unexpected(noisy.error());
-      auto figures = measure(*noisy);
-      if (!figures) return tl::unexpected(figures.error());
-      sides[side] = *std::move(figures);
+      return measure(*noisy, of);
+    };
+    for (const TrialNoise of : {TrialNoise::kOwn, TrialNoise::kLouder}) {
+      if (of == TrialNoise::kLouder && k > 0) continue;
+      const auto more = measured(of, 1.0), less = measured(of, -1.0);
+      if (!more) return tl::unexpected(more.error());
+      if (!less) return tl::unexpected(less.error());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const TrialPair pair{(*more)[i], (*less)[i]};
+        if (of == TrialNoise::kOwn)
+          pairs[i].push_back(pair);
+        else
+          louder.push_back(pair);
+      }
     }
-    for (std::size_t i = 0; i < found.size(); ++i) pairs[i].push_back({sides[0][i], sides[1][i]});
   }
   std::vector<NoiseEffect> effects;
   effects.reserve(found.size());
   for (std::size_t i = 0; i < found.size(); ++i)
-    effects.push_back(noiseEffectOf(found[i], pairs[i], growth[i]));
+    effects.push_back(noiseEffectOf(found[i], pairs[i], growth[i], {noise.doubt, louder[i]}));
   return effects;
 }
 

@@ -21,6 +21,7 @@ namespace fettle::engine {
 /// How a figure follows the variance of the noise, which is what is extrapolated from twice the noise to none.
 enum class NoiseGrowth : std::uint8_t {
   kSquare,   ///< its square rises with it: sizes of what is random, as heights and slopes
+  kCurved,   ///< the figure itself, smoothly but not in proportion: skewness, kurtosis, area
   kPlain,    ///< the figure itself: ratios, lengths
   kAxis,     ///< an angle of half a turn [degrees], 0 .. 180
   kRank,     ///< by square, of ranks of heights: heights and volumes of the material ratio curve
@@ -38,13 +39,19 @@ struct NoiseEffect {
       {};  ///< why there is none; empty where there is one, and of a figure that is not stated itself
 };
 
+/// The noise of a trial: the scan's own, or with twice its variance, which says how a figure bends on the way to no noise.
+enum class TrialNoise : std::uint8_t { kOwn, kLouder };
+/// Its standard deviation over that of the scan's own.
+[[nodiscard]] double sizeOf(TrialNoise noise) noexcept;
+
 struct NoiseTrialOptions {
   int pairs = 8;  ///< trials with a noise and with its opposite, at least 2
   std::uint64_t seed = 1;
 };
 
-/// Measures the figures of a field; as many each time, NaN for one that it does not determine.
-using FiguresOf = std::function<Result<std::vector<double>>(const Version& field)>;
+/// Measures the figures of a field; as many each time, NaN for one that it does not determine. Of kLouder only those of kSquare, kCurved, kRank
+/// and kShare count.
+using FiguresOf = std::function<Result<std::vector<double>>(const Version& field, TrialNoise noise)>;
 
 /// Noise of a model for each sample of a grid: drawn once, and added with both signs. Memory: 8 bytes per sample, 16 while it is drawn.
 class NoiseDraw {
@@ -72,14 +79,15 @@ class NoiseDraw {
 ///
 /// Each trial adds noise of the model to the field, which then has twice its variance; a noise and its opposite give the part that noise
 /// scatters (half their difference) and the part by which it raises the figure (their mean less that found), free of
-/// the former. The figure without noise is what is found less that raise. Its standard error is the root of the sum of squares of both
-/// scatters, of what a few trials leave open, and of a share of the raise, since neither the size of the noise nor the extrapolation is exact
-/// (doubtOf in the source). What depends on ranks of heights scatters less around a surface that has noise than without: 1.25 times
+/// the former. The figure without noise is what is found less that raise. Two more trials, with the first pair's noise of twice the variance, say how
+/// the raise bends: of kSquare and kCurved the bend is taken out, too. The standard error is the root of the sum of squares of both
+/// scatters, of what a few trials leave open, of NoiseModel::doubt times the raise, and of what the bend says of the extrapolation; of figures without
+/// a bend (kPlain and after it but ranks) of a share of the raise for both (kRules in the source). What depends on ranks of heights scatters less around a surface that has noise than without: 1.4 times
 /// the scatter counts, and studentFactor() times all. Where noise explains all of a figure by square it is 0 without noise, with the error that leaves.
 /// docs/decisions/parameter-errors.md has the shares of simulated scans in which it covers.
 ///
-/// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise changes by a fifth of it and more. Time: 2 pairs + 1 times that of
-/// measuring; noise that the model does not see (in filtered scans what neighbours share along both directions) is left
+/// A figure that is NaN, or in more than a quarter of the trials, has no effect, and of kPlaces one that noise changes by a fifth of it and more. Time: 2 pairs times that of
+/// measuring, and twice for the louder trials; noise that the model does not see (in filtered scans what neighbours share along both directions) is left
 /// out. Bit-identical for any number of threads if `measure` is. Errors: those of `measure` and withNoise.
 [[nodiscard]] Result<std::vector<NoiseEffect>> noiseEffects(const Version& field, const NoiseModel& noise,
                                                             std::span<const double> found,
@@ -92,7 +100,14 @@ class NoiseDraw {
 struct TrialPair {
   double more = 0.0, less = 0.0;
 };
-[[nodiscard]] NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth);
+/// And what is known beside them.
+struct TrialKnowledge {
+  double doubt = 0.0;  ///< NoiseModel::doubt
+  /// Values with the first pair's noise of twice the variance; NaN: not known.
+  TrialPair louder{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+};
+[[nodiscard]] NoiseEffect noiseEffectOf(double found, std::span<const TrialPair> pairs, NoiseGrowth growth,
+                                        const TrialKnowledge& known = {});
 
 /// The values that a figure can have.
 struct FigureRange {
@@ -103,7 +118,7 @@ struct FigureRange {
 /// range is the end of it where it is no more than two errors away, else it has no value.
 [[nodiscard]] NoiseEffect withinRange(const NoiseEffect& effect, double found, const FigureRange& range);
 
-/// Adds to the error of kRank and kShare figures what extrapolation leaves of them on surfaces with steps, twice the square of `share` of each:
+/// Adds to the error of kRank and kShare figures without a bend what extrapolation leaves of them on surfaces with steps, twice the square of `share` of each:
 /// the noise's standard deviation over the surface's.
 void addRankDoubt(std::span<NoiseEffect> effects, std::span<const NoiseGrowth> growth, double share);
 

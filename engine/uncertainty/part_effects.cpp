@@ -174,7 +174,7 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
   MeanSquare noise_left;
   NoiseModel here = noise;
   here.map.clear();  // that of the field
-  for (int k = 0; k < how.pairs; ++k) {
+  const auto trial = [&](int k, TrialNoise of) -> Result<std::vector<TrialPair>> {
     std::vector<Version> sides[2];
     for (std::size_t s = 0; s < squares.size(); ++s) {
       const StandingSquare& square = squares[s];
@@ -187,29 +187,39 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
           sides[side].push_back(square.surface);
           continue;
         }
-        const double size = (side == 0 ? 1.0 : -1.0) * shareIn(noise, field.grid(), square.rect);
+        const double size = (side == 0 ? 1.0 : -1.0) * shareIn(noise, field.grid(), square.rect) * sizeOf(of);
         const auto noisy = draw->addedTo(square.scan, here, size, job);
         if (!noisy) return tl::unexpected(noisy.error());
         const auto after = surface_of(*noisy);
         if (!after) return tl::unexpected(after.error());
-        noise_left.add(square.alone, *after);
+        if (of == TrialNoise::kOwn) noise_left.add(square.alone, *after);
         auto changed = changedBy(square.surface, square.alone, *after);
         if (!changed) return tl::unexpected(changed.error());
         sides[side].push_back(*std::move(changed));
       }
     }
-    const auto more = figuresOf(sides[0], across, of_part, job),
-               less = figuresOf(sides[1], across, of_part, job);
+    const auto more = figuresOf(sides[0], across, optionsOf(of_part, of), job),
+               less = figuresOf(sides[1], across, optionsOf(of_part, of), job);
     if (!more) return tl::unexpected(more.error());
     if (!less) return tl::unexpected(less.error());
-    for (std::size_t i = 0; i < found.size(); ++i) pairs[i].push_back({(*more)[i], (*less)[i]});
+    std::vector<TrialPair> both;
+    for (std::size_t i = 0; i < found.size(); ++i) both.push_back({(*more)[i], (*less)[i]});
+    return both;
+  };
+  for (int k = 0; k < how.pairs; ++k) {
+    const auto both = trial(k, TrialNoise::kOwn);
+    if (!both) return tl::unexpected(both.error());
+    for (std::size_t i = 0; i < found.size(); ++i) pairs[i].push_back((*both)[i]);
   }
+  const auto louder = trial(0, TrialNoise::kLouder);
+  if (!louder) return tl::unexpected(louder.error());
   const double share = std::min(1.0, static_cast<double>(result.samples) /
                                          static_cast<double>(std::max<std::int64_t>(measured.samples, 1)));
   for (std::size_t i = 0; i < found.size(); ++i)
     // Of few places among all noise scatters no less where there are more of these.
-    result.effects[i] = partEffectOf(found[i], (*own)[i], pairs[i], growths[i],
-                                     growths[i] == NoiseGrowth::kExtreme ? 1.0 : share);
+    result.effects[i] =
+        partEffectOf(found[i], (*own)[i], pairs[i], growths[i],
+                     growths[i] == NoiseGrowth::kExtreme ? 1.0 : share, {noise.doubt, (*louder)[i]});
 
   // Of the whole surface, and of the reach that the part has.
   const double sigma = noise_left.root();
@@ -244,7 +254,7 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
     if (key == "ssw")
       result.effects[i] = {kNoEffect, kNoEffect, "no wave goes on from one square of trials to the next"};
   }
-  if (measured.sq > 0.0) addRankDoubt(result.effects, growths, noise.sigma / measured.sq);
+  addDominanceDoubt(result.effects, noise, measured);
   keepWithinRanges(result.effects, measured);
   return result;
 } catch (const std::bad_alloc&) {

@@ -44,7 +44,7 @@ struct PartEffects {
 /// the raise is known from a few trials on the part alone, and by as much of it as the part's figure differs from the
 /// whole's.
 [[nodiscard]] NoiseEffect partEffectOf(double found, double of_part, std::span<const TrialPair> pairs,
-                                       NoiseGrowth growth, double share);
+                                       NoiseGrowth growth, double share, const TrialKnowledge& known = {});
 
 /// `field`: the scan; `noise`: its noise; `surface`: its surface about form and filters, with holes where no sample counts; `measured`: what
 /// measureAreal() of that, with `options`, gave. `surface_of`: makes the surface of a piece of the field as that of the whole was made; the

@@ -117,6 +117,30 @@ TEST(NoiseTrial, UndoesTheRaiseOfWhatGrowsAsStated) {
   EXPECT_LT(axis.error, 2.0);
 }
 
+// The same noise with twice its variance says how a figure bends: a parabola in the variance is undone exactly, and of what grows in
+// proportion no share is in doubt but the noise's own.
+TEST(NoiseTrial, UndoesTheBendThatLouderNoiseShows) {
+  const auto parabola = [](double variance) { return 2.0 + 0.5 * variance + 0.1 * variance * variance; };
+  const double found = parabola(1.0), twice = parabola(2.0), thrice = parabola(3.0);
+  const std::vector<TrialPair> pairs(4, {twice, twice});
+  const NoiseEffect curved =
+      noiseEffectOf(found, pairs, NoiseGrowth::kCurved, {.doubt = 0.01, .louder = {thrice, thrice}});
+  EXPECT_NEAR(curved.without, 2.0, 1e-12);
+  const double raise = twice - found, bend = thrice - 2.0 * twice + found;
+  EXPECT_NEAR(curved.error, std::hypot(0.01 * raise, 0.6 * bend), 1e-12);
+  // Heights whose squares grow with the noise's: no bend.
+  const std::vector<TrialPair> squares(4, {std::sqrt(11.0), std::sqrt(11.0)});
+  const NoiseEffect square = noiseEffectOf(std::sqrt(10.0), squares, NoiseGrowth::kSquare,
+                                           {.doubt = 0.01, .louder = {std::sqrt(12.0), std::sqrt(12.0)}});
+  EXPECT_NEAR(square.without, 3.0, 1e-12);
+  EXPECT_NEAR(square.error, 0.01 / 6.0, 1e-5);
+  // Ranks keep the straight line, and the bend counts as what that leaves open.
+  const NoiseEffect rank =
+      noiseEffectOf(found, pairs, NoiseGrowth::kShare, {.doubt = 0.0, .louder = {thrice, thrice}});
+  EXPECT_NEAR(rank.without, found - raise, 1e-12);
+  EXPECT_NEAR(rank.error, std::hypot(0.25 * raise, 2.5 * bend), 1e-12);
+}
+
 // Quantiles of Student's distribution at 68.27 %, of a table, and the standard deviation of the root of a mean of n squares by simulation.
 TEST(NoiseTrial, AFewPairsWidenTheirErrorAndSayHowSureItIs) {
   EXPECT_NEAR(studentFactor(2), 1.321, 0.01);
@@ -167,13 +191,13 @@ TEST(NoiseTrial, SaysNothingOfWhatItCannotDecide) {
 TEST(NoiseTrial, OfOneRowAFlatPlateAndSpikesIsFiniteOrNone) {
   JobControl job;
   for (const Version& field : {plateOf(40, 1), plateOf(1, 1), plateOf(30, 30, 0.9)}) {
-    const auto measure = [](const Version& of) -> Result<ArealParameters> {
+    const auto measure = [](const Version& of, TrialNoise) -> Result<ArealParameters> {
       JobControl own;
       const auto fit = fitForm(of, {}, own);
       if (!fit) return tl::unexpected(fit.error());
       return measureAreal(of, fit->form, {}, own);
     };
-    const auto measured = measure(field);
+    const auto measured = measure(field, TrialNoise::kOwn);
     ASSERT_TRUE(measured);
     const auto effects = arealEffects(field, whiteOf(0.5), *measured, measure, {.pairs = 2}, job);
     ASSERT_TRUE(effects) << effects.error().line();
@@ -225,7 +249,7 @@ TEST(NoiseTrial, ParametersUnderMuchNoiseStayWithinTheirRanges) {
     return makeField(grid, z, {});
   }();
   JobControl job;
-  const auto measure = [&](const Version& of) -> Result<ArealParameters> {
+  const auto measure = [&](const Version& of, TrialNoise = TrialNoise::kOwn) -> Result<ArealParameters> {
     return measureAreal(of, PolynomialForm{0, 64, 48, 0.0, {0.0}}, {.spatial = false}, job);
   };
   const auto measured = measure(field);

@@ -52,7 +52,7 @@ Result<Version> planeOut(const Version& field) {
   return withoutForm(field, fit->form, job);
 }
 
-Result<ArealParameters> parametersOf(const Version& field) {
+Result<ArealParameters> parametersOf(const Version& field, TrialNoise = TrialNoise::kOwn) {
   JobControl job;
   const auto fit = fitForm(field, {}, job);
   if (!fit) return tl::unexpected(fit.error());
