@@ -18,6 +18,11 @@ namespace {
 // (uncertainty_test --gtest_filter='RoughnessNoise.*', FETTLE_NOISE_SEEDS=1000).
 constexpr double kFewRanks = 1.3;
 
+// Noise that splits elements of the profile, or joins them, makes others of it, which trials around the scan do not undo: Rc without noise
+// was up to 26 % too large then, and half of the raise or less off where its elements stay (docs/decisions/parameter-errors.md). Shares of Rc, and of
+// RSm, up to which they stay.
+constexpr double kMostOfElements = 0.03, kMostOfWidths = 0.02;
+
 NoiseGrowth growthOf(const RoughnessInfo& info) {
   // The greatest of many, or what such a one decides.
   for (const auto figure :
@@ -118,6 +123,14 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
   // The noise in the profile over its heights: what the trials took off Rq by square, which lanes and filters have made smaller.
   const double less = effectOf(&Roughness::rq, result).without / found.rq;
   addRankDoubt(result, growth, std::isnan(less) ? 0.0 : std::sqrt(std::max(0.0, 1.0 - less * less)));
+  const auto rc = static_cast<std::size_t>(std::ranges::find(infos, &Roughness::rc, &RoughnessInfo::figure) -
+                                           infos.begin());
+  const NoiseEffect& widths = effectOf(&Roughness::rsm, result);
+  const bool same_elements = std::abs(widths.without - found.rsm) <= kMostOfWidths * found.rsm &&
+                             widths.error <= kMostOfWidths * found.rsm;
+  if (!std::isnan(result[rc].without) &&
+      !(same_elements && std::abs(result[rc].without - found.rc) <= kMostOfElements * found.rc))
+    result[rc] = {kNone, kNone, "noise changes the elements of the profile"};
   // A size with an error as large as itself, and a share with one larger than that of all shares alike, are not determined.
   for (std::size_t f = 0; f < infos.size(); ++f) {
     const double most = growth[f] == NoiseGrowth::kShare  ? 1.0 / std::sqrt(12.0)

@@ -9,7 +9,8 @@
 
 namespace fettle::engine {
 
-/// What noise does to the roughness of a section, a row for each of roughnessInfos(); NaN also where its error would be larger than what there
+/// What noise does to the roughness of a section, a row for each of roughnessInfos(); NaN also of Rc that noise changes by more than 3 %, or whose elements' width RSm it
+/// changes by more than 2 % or leaves open by as much, where its error would be larger than what there
 /// is of heights and shares of the material ratio curve, and all of these of waviness; all by withinRange().
 using RoughnessNoise = std::vector<NoiseEffect>;
 

@@ -114,7 +114,10 @@ void expectCoverage(ProfileKind kind, int few) {
       together.n += of.n;
       for (int k = 0; k < 3; ++k) together.within[k] += of.within[k];
       if (kind != ProfileKind::kRoughness) continue;
-      EXPECT_GE(of.n, 0.95 * seeds) << name;
+      // Not of scans in which noise happens to split elements.
+      if (infos[f].figure != &Roughness::rc) {
+        EXPECT_GE(of.n, 0.95 * seeds) << name;
+      }
       // Of 40 draws with a chance of 0.68, 0.95: 3.5 standard deviations below, and 1 in 1,000.
       EXPECT_GE(of.within[0], 0.42 * of.n) << name;
       EXPECT_GE(of.within[1], 0.80 * of.n) << name;
@@ -124,7 +127,7 @@ void expectCoverage(ProfileKind kind, int few) {
   fmt::print("{} together {}: {} {} {}\n", profileInfo(kind).word, together.n, together.within[0],
              together.within[1], together.within[2]);
   // Of few waves the mean width and height of elements jump where one of them falls below the threshold: figures are taken together.
-  EXPECT_GE(together.n, 0.95 * 4 * 11 * seeds) << "those of waviness that are stated";
+  EXPECT_GE(together.n, 0.95 * 4 * 10 * seeds) << "those of waviness that are stated, without Rc";
   EXPECT_GE(together.within[0], 0.60 * together.n);
   EXPECT_GE(together.within[1], 0.88 * together.n);
   EXPECT_GE(together.within[2], 0.95 * together.n);
@@ -187,6 +190,65 @@ TEST(RoughnessNoise, WithoutNoiseHasNoEffect) {
     const auto noise = roughnessNoise(section, all, {40.0}, *found, none, {});
     ASSERT_TRUE(noise);
     for (const NoiseEffect& effect : *noise) EXPECT_TRUE(std::isnan(effect.error));
+  }
+}
+
+// A random profile of smooth hills: noise splits them, so that Rc is that of others. What is stated is within three errors of the surface's, and of much noise
+// nothing is.
+TEST(RoughnessNoise, RcIsStatedWhereNoiseLeavesTheElementsAsTheyAre) {
+  constexpr int kPlaces = 600, kReach = 40;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> white, profile;
+  for (int c = 0; c < kPlaces + 2 * kReach; ++c) white.push_back(normal(random));
+  for (int c = 0; c < kPlaces; ++c) {
+    double sum = 0.0;
+    for (int k = 0; k <= 2 * kReach; ++k)
+      sum += std::exp(-0.005 * (k - kReach) * (k - kReach)) * white[static_cast<std::size_t>(c + k)];
+    profile.push_back(sum / std::sqrt(17.7));  // the sum of squared weights
+  }
+  const auto section = [&](double sigma, unsigned seed) {
+    Grid grid;
+    grid.width = kPlaces;
+    grid.height = 6;
+    std::mt19937_64 own(seed);
+    std::vector<float> z;
+    for (int r = 0; r < grid.height; ++r)
+      for (const double height : profile) z.push_back(static_cast<float>(height + sigma * normal(own)));
+    JobControl job;
+    const std::vector<glm::dvec2> line = {{2.0, 3.0}, {596.0, 3.0}};
+    return *sectionAlong(makeField(grid, z, {}), line, {}, job);
+  };
+  const Section clean = section(0.0, 1);
+  const Stretch all{0.0, clean.lengthMm()};
+  const ProfileFilters filters{100.0};
+  const Roughness truth = *roughnessOf(clean, all, filters);
+  const std::span<const RoughnessInfo> infos = roughnessInfos();
+  const auto rc = static_cast<std::size_t>(std::ranges::find(infos, &Roughness::rc, &RoughnessInfo::figure) -
+                                           infos.begin());
+  constexpr unsigned kSeeds = 20;
+  for (const double sigma : {0.005, 0.02, 0.05, 0.2}) {
+    int stated = 0, within = 0;
+    for (unsigned seed = 0; seed < kSeeds; ++seed) {
+      const Section noisy = section(sigma, 100 + seed);
+      const Roughness found = *roughnessOf(noisy, all, filters);
+      const NoiseEffect effect =
+          (*roughnessNoise(noisy, all, filters, found, sigma, {.pairs = 16, .seed = 70 + 100U * seed}))[rc];
+      if (std::isnan(effect.without)) {
+        EXPECT_FALSE(effect.why.empty());
+        continue;
+      }
+      ++stated;
+      within += std::abs(effect.without - truth.rc) <= 3.0 * effect.error ? 1 : 0;
+    }
+    fmt::print("noise {}: Rc stated of {}, {} within three errors\n", sigma, stated, within);
+    EXPECT_GE(within, 0.9 * stated) << sigma;
+    if (sigma < 0.01) {
+      EXPECT_GT(stated, 15);
+    }
+    if (sigma > 0.1) {
+      EXPECT_EQ(stated, 0);
+    }
   }
 }
 
