@@ -34,7 +34,7 @@ constexpr double kMostError =
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr GrowthRule kRules[] = {
     {true, 0.2, 1.0, kAny, true, 0.0, 0.6},     // kSquare
-    {false, 0.2, 1.0, kAny, true, 0.0, 0.6},    // kCurved
+    {false, 0.2, 1.0, kAny, true, 0.0, 0.3},    // kCurved
     {false, 0.2, 1.0, kAny},                    // kPlain
     {false, 0.2, 1.0, kAny},                    // kAxis
     {true, 0.5, 1.4, kAny, false, 0.25, 2.5},   // kRank

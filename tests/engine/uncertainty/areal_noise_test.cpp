@@ -477,9 +477,9 @@ TEST(ArealNoise, ErrorsOfWhiteNoiseAreTheSpreadOfWhatTheyAreOf) {
         sum.all += of.all;
         for (int k = 0; k < 3; ++k) sum.within[k] += of.within[k];
         ratios.push_back(of.ratio());
-        // The spread of eight is known to a quarter; before they were 5 to 17 times it.
+        // The spread of eight is known to a quarter, and the model sees the noise that raised the slopes; before they were 8 to 73 times it.
         if (key == "sdq" || key == "sdr") {
-          EXPECT_LT(of.ratio(), 2.2) << surface.name << ' ' << key << ' ' << share;
+          EXPECT_LT(of.ratio(), 3.6) << surface.name << ' ' << key << ' ' << share;
         }
       }
     }

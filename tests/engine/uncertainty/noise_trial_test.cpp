@@ -127,7 +127,7 @@ TEST(NoiseTrial, UndoesTheBendThatLouderNoiseShows) {
       noiseEffectOf(found, pairs, NoiseGrowth::kCurved, {.doubt = 0.01, .louder = {thrice, thrice}});
   EXPECT_NEAR(curved.without, 2.0, 1e-12);
   const double raise = twice - found, bend = thrice - 2.0 * twice + found;
-  EXPECT_NEAR(curved.error, std::hypot(0.01 * raise, 0.6 * bend), 1e-12);
+  EXPECT_NEAR(curved.error, std::hypot(0.01 * raise, 0.3 * bend), 1e-12);
   // Heights whose squares grow with the noise's: no bend.
   const std::vector<TrialPair> squares(4, {std::sqrt(11.0), std::sqrt(11.0)});
   const NoiseEffect square = noiseEffectOf(std::sqrt(10.0), squares, NoiseGrowth::kSquare,
