@@ -19,6 +19,14 @@ std::string shownStretch(const Report& stretch, const ReadAs& unit) {
   return fmt::format("{:.6g} to {}", stretch[0].get<double>() / unit.size, shownLength(stretch[1], unit));
 }
 
+// Why a profile does not determine a parameter.
+const char* reasonWithout(const engine::RoughnessInfo& info) {
+  if (info.unit == engine::RoughnessInfo::Unit::kRatio) return "the core has no height";
+  return info.figure == &engine::Roughness::rsm || info.figure == &engine::Roughness::rc
+             ? "it has no element from one crossing of the mean line to the next but one"
+             : "the profile is flat";
+}
+
 }  // namespace
 
 SectionUnits sectionUnits(double longest_mm, double span_mm) {
@@ -87,10 +95,10 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
     const std::string smooth =
         r.contains("lambda_s_mm") ? fmt::format(", lambda s {}", shownLength(r["lambda_s_mm"], along)) : "";
     const std::string over = profile.kind == engine::ProfileKind::kRoughness
-                                 ? fmt::format("over {} cut-offs of {}", r["lengths"].get<int>(),
+                                 ? fmt::format("over {} Gaussian cut-offs of {}", r["lengths"].get<int>(),
                                                shownLength(r["cutoff_mm"], along))
                              : profile.by_cutoff
-                                 ? fmt::format("cut-off {}", shownLength(r["cutoff_mm"], along))
+                                 ? fmt::format("Gaussian cut-off {}", shownLength(r["cutoff_mm"], along))
                                  : std::string("without a cut-off");
     // Of a session of before it was kept there is none.
     const std::string where =
@@ -104,9 +112,8 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                         : info.unit == Unit::kAlong ? along
                         : info.unit == Unit::kRatio ? ReadAs{"%", 0.01}
                                                     : ReadAs{"", 1.0};
-      std::string text = r[keys.value].is_null() && info.unit == Unit::kRatio
-                             ? "not stated: the core has no height"
-                             : shownLength(r[keys.value], in);
+      std::string text = r[keys.value].is_null() ? fmt::format("not stated: {}", reasonWithout(info))
+                                                 : shownLength(r[keys.value], in);
       if (const Report& without = r[keys.without], &error = r[keys.error]; !without.is_null()) {
         const double by = error.get<double>() / in.size;
         text += fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);
