@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/inspect/noise.h"
+#include "engine/inspect/noise_lines.h"
 
 namespace fettle::engine {
 
@@ -203,43 +204,47 @@ void keepEqual(const Grid& grid, std::vector<const Placed*>& windows) {
                 [&](const Placed* p) { return p->window.moments.detail() > most[partOf(grid, *p)]; });
 }
 
-}  // namespace
+// What the lines are off that the windows of a field lie in.
+struct WindowLines {
+  std::vector<std::int32_t> lines;  // rising
+  LineNoise noise;
 
-double NoiseModel::uncorrelatedShare() const noexcept {
-  double correlated = parts.row_offset + parts.column_offset;
-  // At lag 0 short correlation has at least what it has at lag 1.
-  correlated += std::max(0.0, parts.along_row[0]) + std::max(0.0, parts.along_column[0]);
-  return parts.variance() > 0.0 ? std::clamp(1.0 - correlated / parts.variance(), 0.0, 1.0) : 1.0;
+  // Of the lines of a window from its first on.
+  [[nodiscard]] const double* from(std::int32_t line) const noexcept {
+    return noise.offsets.data() + (std::lower_bound(lines.begin(), lines.end(), line) - lines.begin());
+  }
+};
+
+// Takes what lines are off from a window's heights.
+void withoutOffsets(std::array<float, kNoiseSide * kNoiseSide>& heights, const Placed& place,
+                    const WindowLines& rows, const WindowLines& columns) {
+  constexpr std::array<double, kNoiseSide> kNone{};
+  const double* of_row = rows.noise.variance > 0.0 ? rows.from(place.row) : kNone.data();
+  const double* of_column = columns.noise.variance > 0.0 ? columns.from(place.column) : kNone.data();
+  for (std::size_t r = 0; r < kNoiseSide; ++r)
+    for (std::size_t c = 0; c < kNoiseSide; ++c) {
+      float& z = heights[r * kNoiseSide + c];
+      // Less those of the first, so that heights are as near to 0 as they were.
+      z = static_cast<float>(double{z} - (of_row[r] - of_row[0]) - (of_column[c] - of_column[0]));
+    }
 }
 
-double NoiseModel::sigmaAt(const Grid& grid, std::int32_t column, std::int32_t row) const noexcept {
-  const auto along = [](std::int32_t at, std::int32_t side) {
-    return std::clamp((at + 0.5) * kMapSide / side - 0.5, 0.0, kMapSide - 1.0);
-  };
-  const double x = along(column, grid.width), y = along(row, grid.height);
-  const int left = std::min(static_cast<int>(x), kMapSide - 2),
-            low = std::min(static_cast<int>(y), kMapSide - 2);
-  const auto part = [&](int across, int up) {
-    return map[static_cast<std::size_t>((low + up) * kMapSide + left + across)];
-  };
-  return std::lerp(std::lerp(part(0, 0), part(1, 0), x - left), std::lerp(part(0, 1), part(1, 1), x - left),
-                   y - low);
+WindowLines linesOf(const FieldReader& reader, LineDirection direction, const std::vector<Placed>& places) {
+  WindowLines of;
+  std::vector<std::int32_t> firsts;
+  for (const Placed& p : places) firsts.push_back(direction == LineDirection::kRows ? p.row : p.column);
+  std::sort(firsts.begin(), firsts.end());
+  firsts.erase(std::unique(firsts.begin(), firsts.end()), firsts.end());
+  for (const std::int32_t first : firsts)
+    for (std::int32_t i = of.lines.empty() ? first : std::max(first, of.lines.back() + 1);
+         i < first + kNoiseSide; ++i)
+      of.lines.push_back(i);
+  of.noise = noiseOfLines(reader, direction, of.lines);
+  return of;
 }
 
-Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
-  const FieldReader reader = field.reader();
-  std::vector<Placed> places = placesIn(field.grid());
-  job.begin("measuring noise", places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    if (job.cancelled()) return;
-    Placed& place = places[i];
-    std::array<float, kNoiseSide * kNoiseSide> heights;
-    reader.readHeights(place.column, place.row, kNoiseSide, kNoiseSide, heights.data(), kNoiseSide);
-    place.window = noiseWindow(heights);
-    for (const float z : heights) place.magnitude = std::max(place.magnitude, std::abs(double{z}));
-    job.advance();
-  });
-  if (job.cancelled()) return cancelled();
+// The noise that windows show.
+Result<NoiseModel> noiseOfWindows(const Version& field, const std::vector<Placed>& places, JobControl& job) {
   std::vector<const Placed*> smooth;
   for (const Placed& place : places)
     if (place.shows()) smooth.push_back(&place);
@@ -265,7 +270,10 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
   }
   NoiseMoments mean;
   for (const Placed* p : smooth) mean.add(p->window.moments, 1.0 / static_cast<double>(smooth.size()));
-  model.parts = noiseOf(mean, model.windows);
+  // Windows overlap in small fields, and all have no more samples than there are.
+  const Grid& grid = field.grid();
+  const std::int64_t apart = std::int64_t{grid.width} * grid.height / (kNoiseSide * kNoiseSide);
+  model.parts = noiseOf(mean, std::min(model.windows, apart));
   // In the direction of the whole field's.
   const bool by_rows = mean.column_detail >= mean.row_detail;
   std::array<std::vector<double>, kCells> cells, finest_of_cells;
@@ -305,6 +313,62 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
   if (model.parts.uncorrelated > kMostOverFinest * finest_of_all) return uncorrelated(finest_of_all);
   model.sigma = std::sqrt(model.parts.variance());
   for (double& part : model.map) part = model.sigma * std::sqrt(part / squares);
+  return model;
+}
+
+// Adds what whole lines are off to the noise of windows without it.
+void addLines(NoiseModel& model, double rows, double columns) {
+  model.whole_rows = rows;
+  model.whole_columns = columns;
+  model.parts.row_offset += rows;
+  model.parts.column_offset += columns;
+  model.sigma = std::sqrt(model.parts.variance());
+  for (double& part : model.map) part = std::sqrt(part * part + rows + columns);
+}
+
+}  // namespace
+
+double NoiseModel::uncorrelatedShare() const noexcept {
+  double correlated = parts.row_offset + parts.column_offset;
+  // At lag 0 short correlation has at least what it has at lag 1.
+  correlated += std::max(0.0, parts.along_row[0]) + std::max(0.0, parts.along_column[0]);
+  return parts.variance() > 0.0 ? std::clamp(1.0 - correlated / parts.variance(), 0.0, 1.0) : 1.0;
+}
+
+double NoiseModel::sigmaAt(const Grid& grid, std::int32_t column, std::int32_t row) const noexcept {
+  const auto along = [](std::int32_t at, std::int32_t side) {
+    return std::clamp((at + 0.5) * kMapSide / side - 0.5, 0.0, kMapSide - 1.0);
+  };
+  const double x = along(column, grid.width), y = along(row, grid.height);
+  const int left = std::min(static_cast<int>(x), kMapSide - 2),
+            low = std::min(static_cast<int>(y), kMapSide - 2);
+  const auto part = [&](int across, int up) {
+    return map[static_cast<std::size_t>((low + up) * kMapSide + left + across)];
+  };
+  return std::lerp(std::lerp(part(0, 0), part(1, 0), x - left), std::lerp(part(0, 1), part(1, 1), x - left),
+                   y - low);
+}
+
+Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
+  const FieldReader reader = field.reader();
+  std::vector<Placed> places = placesIn(field.grid());
+  job.begin("measuring noise", places.size());
+  const WindowLines rows = linesOf(reader, LineDirection::kRows, places);
+  const WindowLines columns = linesOf(reader, LineDirection::kColumns, places);
+  const bool off = rows.noise.variance > 0.0 || columns.noise.variance > 0.0;
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    if (job.cancelled()) return;
+    Placed& place = places[i];
+    std::array<float, kNoiseSide * kNoiseSide> heights;
+    reader.readHeights(place.column, place.row, kNoiseSide, kNoiseSide, heights.data(), kNoiseSide);
+    for (const float z : heights) place.magnitude = std::max(place.magnitude, std::abs(double{z}));
+    if (off) withoutOffsets(heights, place, rows, columns);
+    place.window = noiseWindow(heights);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  auto model = noiseOfWindows(field, places, job);
+  if (model && off) addLines(*model, rows.noise.variance, columns.noise.variance);
   return model;
 }
 

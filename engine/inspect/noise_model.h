@@ -17,6 +17,8 @@ struct NoiseModel {
   double sigma = 0.0;
   /// What it consists of [height_unit^2]; their variance() is sigma^2.
   NoiseParts parts;
+  /// Of the variances of offsets in `parts` what holds in whole rows and columns [height_unit^2], not only in a window.
+  double whole_rows = 0.0, whole_columns = 0.0;
   std::int64_t windows = 0;  ///< that it was measured in; 0: from the finest detail alone
   /// Share of the variance that is not sure, as a standard error: what few windows leave open, and what the finest detail in both
   /// directions lacks of it beyond that, 0 .. 1. Kinks of a surface that are in every window, and roughness from sample to sample, have

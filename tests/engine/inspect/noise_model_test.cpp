@@ -1,5 +1,6 @@
 #include "engine/inspect/noise_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -95,6 +96,87 @@ TEST(NoiseModel, FindsTheOffsetsOfRowsAndOfColumns) {
     EXPECT_LT(std::sqrt(rows ? model.parts.column_offset : model.parts.row_offset), 0.001);
     EXPECT_NEAR(std::sqrt(model.parts.uncorrelated), 0.02, 0.02 * kFourModelErrors);
   }
+}
+
+// What a part has under its scanner: edges in all directions, faces, holes.
+std::vector<float> truthOf(const std::string& part, int side) {
+  ScannerSpec spec;
+  spec.part = part;
+  spec.width = spec.height = side;
+  JobControl job;
+  std::vector<float> z(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  simulateScan(spec, job)->truth.reader().readHeights(0, 0, side, side, z.data(), side);
+  return z;
+}
+
+struct Surface {
+  std::string name;
+  Height height;
+};
+// In samples' noise of 1. The waves are 126 samples long along rows, 63 along columns.
+std::vector<Surface> surfaces() {
+  std::vector<Surface> all{{"plane", [](int c, int r) { return 0.3 * c - 0.2 * r; }},
+                           {"curved", [](int c, int r) { return 50.0 * curved(c, r); }},
+                           {"waves", [](int c, int r) { return 50.0 * std::sin(0.05 * c + 0.1 * r); }}};
+  // In um, of which a scanner has some 20 of noise.
+  for (const char* part : {"bracket", "housing", "steps"})
+    all.push_back({part, [z = truthOf(part, kModelSide)](int c, int r) {
+                     return 50.0 * static_cast<double>(z[static_cast<std::size_t>(r * kModelSide + c)]);
+                   }});
+  return all;
+}
+
+// The error of an offset's size is 1.15 / sqrt(384) of itself, of samples' noise in a mean of a line another 2.6 % where offsets
+// are a tenth of it; three of both.
+TEST(NoiseModel, FindsOffsetsOfLinesFromATenthToAThousandTimesTheNoise) {
+  constexpr int kSeeds = 4;
+  for (const Surface& surface : surfaces())
+    for (const double size : {0.1, 1.0, 10.0, 1000.0})
+      for (const bool rows : {true, false}) {
+        double sum = 0.0;
+        for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+          const auto heights = [&](int c, int r) {
+            return surface.height(c, r) + white(910 + seed, c, r) +
+                   size * white(950 + seed, rows ? 0 : c, rows ? r : 0);
+          };
+          const auto model = modelOf(fieldOf(kModelSide, kModelSide, heights));
+          const double found = std::sqrt(rows ? model.whole_rows : model.whole_columns) / size;
+          EXPECT_NEAR(found, 1.0, 3.0 * (size < 1.0 ? 0.085 : 0.059)) << surface.name << ' ' << size;
+          EXPECT_EQ(rows ? model.whole_columns : model.whole_rows, 0.0) << surface.name << ' ' << size;
+          EXPECT_NEAR(std::sqrt(model.parts.uncorrelated), 1.0, 0.06) << surface.name << ' ' << size;
+          sum += found / kSeeds;
+        }
+        fmt::print("{} {} {}: {:.3f}\n", surface.name, rows ? "rows" : "columns", size, sum);
+        EXPECT_NEAR(sum, 1.0, 0.1) << surface.name << ' ' << size;
+      }
+}
+
+// Of 1,000 fields of white noise of 32 to 96 samples a side 11 to 17 have offsets of rows or of columns, none of more than 0.32 of
+// the noise.
+TEST(NoiseModel, FindsNoOffsetsWhereThereAreNone) {
+  constexpr int kFields = 300;
+  for (const int side : {32, 96}) {
+    int found = 0;
+    double largest = 0.0;
+    for (std::uint64_t seed = 0; seed < kFields; ++seed) {
+      const auto model =
+          modelOf(fieldOf(side, side, [&](int c, int r) { return white(7000 + seed, c, r) + 0.1 * c; }));
+      const double off = std::sqrt(std::max(model.parts.row_offset, model.parts.column_offset));
+      found += off > 0.0 ? 1 : 0;
+      largest = std::max(largest, off);
+    }
+    fmt::print("{} x {}: {} of {}, the largest {:.3f}\n", side, side, found, kFields, largest);
+    // 2.6 % and 1.2 %, and three standard deviations of such counts.
+    EXPECT_LE(found, side == 32 ? 16 : 10);
+    EXPECT_LT(largest, side == 32 ? 0.4 : 0.16);
+  }
+  for (const Surface& surface : surfaces())
+    for (const std::uint64_t seed : {61, 62}) {
+      const auto model = modelOf(fieldOf(
+          kModelSide, kModelSide, [&](int c, int r) { return surface.height(c, r) + white(seed, c, r); }));
+      EXPECT_EQ(model.whole_rows, 0.0) << surface.name;
+      EXPECT_EQ(model.whole_columns, 0.0) << surface.name;
+    }
 }
 
 TEST(NoiseModel, FindsWhatNeighboursOfARowShare) {
