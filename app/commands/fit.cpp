@@ -18,12 +18,12 @@
 #include "app/commands/section_options.h"
 #include "app/terminal.h"
 #include "app/work/field_fits.h"
+#include "app/work/fit_noise.h"
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
 #include "engine/formats/formats.h"
-#include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
@@ -172,12 +172,10 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
         fmt::format("{}: in a camera's perspective a shape is another one: convert the scan to points and "
                     "grid them first",
                     shownInput(options.scan)));
-  const auto noise = engine::estimateNoise(*field, job);
-  if (!noise) return tl::unexpected(noise.error());
   engine::FitOptions how;
   how.vertical = options.distance == "vertical";
   how.robust = options.robust;
-  how.noise_mm = noise->sigma * field->grid().height_unit.mm;
+  if (auto status = setNoise(how, *field, job); !status) return tl::unexpected(status.error());
   auto regions = regionsOf(options, *field, job);
   if (!regions) return tl::unexpected(regions.error());
 

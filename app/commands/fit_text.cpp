@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/noise_text.h"
 #include "app/work/fit_files.h"
 #include "app/work/layer_over.h"
-#include "app/work/read_units.h"
 
 namespace fettle::app {
 
@@ -21,11 +21,7 @@ void printFitLines(const std::vector<FitLine>& lines) {
 
 void printFits(const Report& report) {
   if (report.contains("text")) return printReport(report);
-  if (!report["noise_mm"].is_null()) {
-    const double noise = report["noise_mm"].get<double>();
-    const ReadAs as = readLengthAs(noise, 1.0, "mm");
-    fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise / as.size, as.name);
-  }
+  printNoise(report);
   printLayer(report);
   for (const Report& fit : report["fits"]) {
     fmt::print("{}\n", fitTitle(fit));

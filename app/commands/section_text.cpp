@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/noise_text.h"
 #include "app/commands/section_options.h"
 #include "app/work/estimate_text.h"
 #include "app/work/interpolation_words.h"
@@ -39,17 +40,7 @@ void printFigures(const Report& of, const std::string& before, const SectionUnit
 void printSections(const Report& report) {
   const SectionUnits units = unitsOf(report);
   const ReadAs &along = units.along, &height = units.height;
-  if (!report["noise_mm"].is_null()) {
-    const double noise_mm = report["noise_mm"].get<double>();
-    const ReadAs as = readLengthAs(noise_mm, 1.0, "mm");
-    std::string shared;
-    for (const auto& [key, name] : {std::pair("noise_rows_mm", "rows"), {"noise_columns_mm", "columns"}})
-      if (const double mm = report[key].get<double>(); mm > 0.0) {
-        const ReadAs of = readLengthAs(mm, 1.0, "mm");
-        shared += fmt::format(", of whole {} {:.4g} {}", name, mm / of.size, of.name);
-      }
-    fmt::print("noise of a sample {:.4g} {}{}; +- standard error\n", noise_mm / as.size, as.name, shared);
-  }
+  printNoise(report);
   if (!report["sections"].empty())
     fmt::print("heights {}\n", takingText({interpolationNamed(report["interpolation"].get<std::string>()),
                                            layerOf(report), layerOf(report, kOtherLayerKey)}));

@@ -39,7 +39,10 @@ engine::Result<FieldFits> fitEach(const engine::Version& field, std::vector<engi
                                   const std::vector<engine::ShapeKind>& kinds, const engine::FitOptions& how,
                                   engine::JobControl& job) {
   FieldFits fits;
+  const double noise_mm = std::hypot(how.noise_mm, how.rows_mm, how.columns_mm);
   fits.report = {{"noise_mm", numberOrNull(how.noise_mm)},
+                 {"noise_rows_mm", how.rows_mm},
+                 {"noise_columns_mm", how.columns_mm},
                  {"distance", how.vertical ? "vertical" : "orthogonal"},
                  {"robust", how.robust},
                  {"fits", Report::array()},
@@ -53,7 +56,7 @@ engine::Result<FieldFits> fitEach(const engine::Version& field, std::vector<engi
     if (chosen) {
       fits.fitted.push_back({number, std::move(region), *std::move(chosen)});
       fits.report["fits"].push_back(fitReport(fits.fitted.back()));
-      if (std::string warning = otherShape(fits.fitted.back(), how.noise_mm); !warning.empty())
+      if (std::string warning = otherShape(fits.fitted.back(), noise_mm); !warning.empty())
         fits.warnings.push_back(std::move(warning));
       continue;
     }

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "app/work/fit_noise.h"
 #include "app/work/less_distances.h"
-#include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/input_file.h"
 
@@ -45,14 +45,12 @@ engine::Result<std::vector<engine::FitRegion>> fittedRegions(const engine::Versi
 
 void FitTool::fit(const LoopClient& client) {
   work_.begin([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-    const auto noise = engine::estimateNoise(field, job);
-    if (!noise) return tl::unexpected(noise.error());
     auto regions = fittedRegions(field, what, job);
     if (!regions) return tl::unexpected(regions.error());
     engine::FitOptions how;
     how.vertical = what.vertical;
     how.robust = what.robust;
-    how.noise_mm = noise->sigma * field.grid().height_unit.mm;
+    if (auto status = setNoise(how, field, job); !status) return tl::unexpected(status.error());
     auto fits = fitEach(field, *std::move(regions), kindsOf(what), how, job);
     if (!fits) return tl::unexpected(fits.error());
     const auto distances = residualField(field, fits->fitted, what.vertical, job);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -72,7 +73,11 @@ Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOp
   fit.left_out = sums.left_out;
   fit.rms_mm = sums.used > 0 ? fit.scale * std::sqrt(sums.squares / static_cast<double>(sums.used)) : 0.0;
   fit.largest_mm = fit.scale * sums.largest;
-  if (auto status = setCovariance(fit, *model, sums, options, samples.rounding()); !status)
+  std::optional<FitLineSums> lines;
+  if ((options.rows_mm > 0.0 || options.columns_mm > 0.0) && samples.lattice().rows > 0)
+    lines.emplace(points, weights, *model);
+  if (auto status = setCovariance(fit, *model, sums, lines ? &*lines : nullptr, options, samples.rounding());
+      !status)
     return tl::unexpected(status.error());
   if (auto status = checkDetermined(fit, *model); !status) return tl::unexpected(status.error());
   return fit;

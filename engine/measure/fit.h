@@ -21,6 +21,11 @@ struct FitOptions {
   bool robust = false;
   /// Noise of a sample's height, a standard deviation [mm]; NaN: not known.
   double noise_mm = 0.0;
+  /// Besides, what a whole row of samples is off, and a whole column, standard deviations [mm].
+  double rows_mm = 0.0, columns_mm = 0.0;
+  /// Variance of means of many neighbours over that of independent noise, at least 1: what samples of a line have in common
+  /// over a few of them.
+  double shared = 1.0;
 };
 
 /// A fitted shape, in field coordinates [mm].
@@ -33,7 +38,8 @@ struct ShapeFit {
   std::int64_t left_out = 0;  ///< with `robust`: those that do not count
   double rms_mm = 0.0;        ///< of the distances of those that count, as they were made small
   double largest_mm = 0.0;    ///< distance of a sample that counts, its size
-  /// By how much the variance of the stated errors exceeds that of noise that is independent from sample to sample.
+  /// The variance of the stated errors over that by noise of the same size that is independent from sample to sample: the
+  /// mean over the numbers, of which noise of rows or columns makes some more uncertain and others less.
   double correlation = 1.0;
 
   // What the errors of figures are computed from: the numbers that were fitted, in parts of `scale` from `middle`, and
@@ -55,9 +61,11 @@ struct ShapeFit {
 
 /// Fits one kind of shape to the samples by Levenberg and Marquardt (Eigen's port of MINPACK) from start values by normals.
 ///
-/// Errors of the figures: those that noise in height of independent samples gives, of the size `noise_mm`, or of what is
-/// left where that is more by three standard errors of it; NaN where the noise is not known and the samples are no more than the numbers; and more where sums over parts of the region scatter by more,
-/// as noise does that neighbours share. Not counted: noise or deviations of form as long as the region.
+/// Errors of the figures: those that noise in height gives, (J^T J)^-1 J^T C J (J^T J)^-1 with the derivatives J of distances and
+/// the covariance C of the noise: of independent samples, of the size `noise_mm`, or of what is left where that is more by three
+/// standard errors of it, and of whole rows and columns; NaN where the noise is not known and the samples are no more than the
+/// numbers; and more where sums over parts of the region scatter by more than this noise makes them, as noise does that
+/// neighbours share in both directions. Not counted: noise or deviations of form as long as the region.
 ///
 /// What the samples do not determine is refused (kInput): fewer samples than numbers; a radius, an apex or a ring that does
 /// not differ by three standard errors from a plane, a cylinder, a sphere; a direction that is known to 10 degrees or worse.

@@ -17,20 +17,68 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr double kFitSigmas = 3.0;
-constexpr int kParts = 12;  // of the region along each side
 
-// The variance of Tukey's psi under Gaussian noise of variance 1.
-double psiVariance() {
-  static const double variance = [] {
-    double sum = 0.0;
+// Of Tukey's psi under Gaussian noise of variance 1: its variance, and the square of its mean slope.
+struct PsiMoments {
+  double variance = 0.0, slope_squared = 0.0;
+
+  // The covariance of two psi of noise of variance 1 and this covariance: a series in its odd powers (Hermite polynomials), of
+  // which the first is known and the others are at most as large as if all were the third.
+  [[nodiscard]] double shared(double covariance) const noexcept {
+    return slope_squared * covariance + (variance - slope_squared) * covariance * covariance * covariance;
+  }
+};
+PsiMoments psiMoments() {
+  static const PsiMoments moments = [] {
+    PsiMoments sum;
+    double slope = 0.0;
     constexpr double kStep = 0.01;
     for (double x = -FitWeights::kTukey; x < FitWeights::kTukey; x += kStep) {
       const double u = x / FitWeights::kTukey, psi = x * (1.0 - u * u) * (1.0 - u * u);
-      sum += kStep * psi * psi * std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+      const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+      sum.variance += kStep * psi * psi * density;
+      slope += kStep * psi * x * density;  // the mean of psi' by parts
     }
+    sum.slope_squared = slope * slope;
     return sum;
   }();
-  return variance;
+  return moments;
+}
+
+// The noise that counts [scale^2]: of the options, or more where the samples scatter by more.
+FitNoise noiseThatCounts(const FitSums& sums, const FitLineSums* lines, const FitOptions& options,
+                         double scale, int numbers) {
+  const PsiMoments psi = options.robust ? psiMoments() : PsiMoments{1.0, 1.0};
+  const double unit = 1.0 / (scale * scale);
+  FitNoise noise{options.noise_mm * options.noise_mm * unit};
+  if (lines != nullptr) {
+    noise.rows = options.rows_mm * options.rows_mm * unit;
+    noise.columns = options.columns_mm * options.columns_mm * unit;
+  }
+  const double of_lines = noise.rows + noise.columns;
+  if (sums.used > numbers) {
+    const double free = std::max(1.0, static_cast<double>(sums.used - numbers));
+    const double scatter = sums.psi_squares / std::max(sums.cosines, 1e-300) *
+                           static_cast<double>(sums.used) / free / psi.variance;
+    // Lines are few, and their offsets' size is known from as many (noise_lines.h): what that leaves open is no noise of samples.
+    double open = 0.0;
+    if (lines != nullptr) {
+      constexpr double kKnown = 1.0 + 2.63;
+      const double rows = noise.rows * noise.rows / lines->rows(),
+                   columns = noise.columns * noise.columns / lines->columns();
+      open = kFitSigmas * std::sqrt(2.0 * kKnown * (rows + columns));
+    }
+    const double of_samples = scatter - of_lines - open;
+    if (std::isnan(noise.sample) || of_samples > noise.sample * (1.0 + kFitSigmas * std::sqrt(2.0 / free)))
+      noise.sample = std::max(0.0, of_samples);
+  }
+  // Of what counts of robust distances: lines share less of it than of the noise.
+  const double whole = noise.sample + of_lines;
+  if (!options.robust || !(whole > 0.0)) return noise;
+  noise.rows = whole * psi.shared(noise.rows / whole);
+  noise.columns = whole * psi.shared(noise.columns / whole);
+  noise.sample = std::max(0.0, whole * psi.variance - noise.rows - noise.columns);
+  return noise;
 }
 
 // Which number a direction of least information is about.
@@ -49,12 +97,12 @@ tl::unexpected<Error> undetermined(ShapeKind kind, const std::string& what, cons
 
 FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitModel& model) {
   const int n = model.size();
-  const FitModel::Rows rows(model, Vector::Zero(n));
+  constexpr std::size_t kParts = FitParts::kSide * FitParts::kSide;
   const auto make = [n] {
     FitSums sums;
     sums.information = sums.noise = Matrix::Zero(n, n);
-    sums.scores.assign(kParts * kParts, Vector::Zero(n));
-    sums.in_part.assign(kParts * kParts, 0);
+    sums.scores.assign(kParts, Vector::Zero(n));
+    sums.in_part.assign(kParts, 0);
     return sums;
   };
   const auto merge = [](FitSums& into, const FitSums& from) {
@@ -71,14 +119,7 @@ FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitMod
     into.used += from.used;
     into.left_out += from.left_out;
   };
-  const glm::dvec2 low = points.samples->low(), size = points.samples->high() - low;
-  const auto partOf = [&](const glm::dvec3& p) {
-    const auto place = [](double from, double whole) {
-      return whole > 0.0 ? std::clamp(static_cast<int>(from / whole * kParts), 0, kParts - 1) : 0;
-    };
-    return static_cast<std::size_t>(kParts * place(p.y * points.scale - low.y, size.y) +
-                                    place(p.x * points.scale - low.x, size.x));
-  };
+  const FitParts parts(points);
   // At most so many sums at once: the rest is added one after the other.
   constexpr std::size_t kTogether = 64;
   FitSums all = make();
@@ -87,37 +128,25 @@ FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitMod
     tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t k) {
       FitSums& sums = some[k] = make();
       FitSamples::Block block;
-      Vector row(n);
+      FitTerms terms(model, weights);
       for (std::size_t b = points.begin(first + k); b < points.begin(first + k + 1); ++b) {
         points.samples->read(b, block);
         for (int i = 0; i < block.count; ++i) {
           const glm::dvec3 p = block.points[static_cast<std::size_t>(i)] / points.scale;
-          const FitSurface::At at = rows.surface().at(p);
-          const double factor = weights.factor(at.gradient.z), residual = factor * at.distance;
-          const double share = weights.share(residual);
-          if (share == 0.0) {
+          if (!terms.take(p)) {
             ++sums.left_out;
             continue;
           }
-          rows.derivatives(at, p, row.data());
-          row *= factor;
-          double slope = 1.0;
-          if (weights.robust_scale > 0.0) {
-            const double x2 = std::pow(residual / (FitWeights::kTukey * weights.robust_scale), 2);
-            slope = (1.0 - x2) * (1.0 - 5.0 * x2);
-          }
-          // What noise in height is of a distance.
-          const double cosine = factor * std::max(std::abs(at.gradient.z), FitWeights::kSteepest);
-          const double psi = share * residual;
-          sums.information.noalias() += slope * row * row.transpose();
-          sums.noise.noalias() += cosine * cosine * row * row.transpose();
-          const std::size_t part = partOf(p);
-          sums.scores[part] += psi * row;
+          const double psi = terms.share * terms.residual, cosine = terms.cosine;
+          sums.information.noalias() += terms.slope * terms.row * terms.row.transpose();
+          sums.noise.noalias() += cosine * cosine * terms.row * terms.row.transpose();
+          const std::size_t part = parts.of(p);
+          sums.scores[part] += psi * terms.row;
           ++sums.in_part[part];
-          sums.squares += residual * residual;
+          sums.squares += terms.residual * terms.residual;
           sums.psi_squares += psi * psi;
           sums.cosines += cosine * cosine;
-          sums.largest = std::max(sums.largest, std::abs(residual));
+          sums.largest = std::max(sums.largest, std::abs(terms.residual));
           ++sums.used;
         }
       }
@@ -127,8 +156,8 @@ FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitMod
   return all;
 }
 
-Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, const FitOptions& options,
-                     double rounding) {
+Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, const FitLineSums* lines,
+                     const FitOptions& options, double rounding) {
   const int n = model.size();
   Vector sizes(n);
   for (int k = 0; k < n; ++k) sizes[k] = std::sqrt(std::max(sums.noise(k, k), 1e-300));
@@ -145,19 +174,16 @@ Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, 
                         "take a larger region or a simpler shape");
   }
   const Matrix inverse = scaled.completeOrthogonalDecomposition().pseudoInverse();
-  const double free = std::max(1.0, static_cast<double>(sums.used - n));
   // In parts of the scale.
-  const double of_psi = options.robust ? psiVariance() : 1.0;
-  double variance = options.noise_mm * options.noise_mm / (fit.scale * fit.scale) * of_psi;
-  if (sums.used > n) {
-    const double scatter =
-        sums.psi_squares / std::max(sums.cosines, 1e-300) * static_cast<double>(sums.used) / free;
-    if (std::isnan(variance) || scatter > variance * (1.0 + kFitSigmas * std::sqrt(2.0 / free)))
-      variance = scatter;
-  }
+  FitNoise counts = noiseThatCounts(sums, lines, options, fit.scale, n);
   // As many samples as numbers say nothing of their noise: where it is not known, no error is.
-  if (!std::isnan(variance)) variance = std::max(variance, rounding * rounding / (fit.scale * fit.scale));
-  // Sums over parts: what independent noise makes of them, and what they are.
+  if (!std::isnan(counts.sample))
+    counts.sample = std::max(counts.sample, rounding * rounding / (fit.scale * fit.scale));
+  const double independent = counts.sample + counts.rows + counts.columns;
+  counts.sample *= std::max(1.0, options.shared);
+  Matrix squares = counts.sample * noise;  // J^T C J
+  if (lines != nullptr) squares = by * lines->covariance(counts) * by;
+  // Sums over parts: what this noise makes of them, and what they are.
   double parts = 0.0;
   Matrix seen = Matrix::Zero(n, n);
   for (std::size_t k = 0; k < sums.scores.size(); ++k) {
@@ -166,12 +192,22 @@ Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, 
     const Vector score = by * sums.scores[k];
     seen += score * score.transpose();
   }
-  if (parts > 2.0 * n + 4.0 && static_cast<double>(sums.used) > 8.0 * parts && variance > 0.0) {
-    seen *= parts / (parts - n);
-    const double excess = (variance * noise).ldlt().solve(seen).trace() / n;
-    if (excess > 1.0 + kFitSigmas * std::sqrt(2.0 / (n * (parts - n)))) fit.correlation = excess;
+  double excess = 1.0;
+  if (parts > 2.0 * n + 4.0 && static_cast<double>(sums.used) > 8.0 * parts && independent > 0.0) {
+    // Of independent noise the fit takes the same share of all.
+    FitLineSums::Expected expected{squares * ((parts - n) / parts), std::sqrt(2.0 / (n * (parts - n)))};
+    if (lines != nullptr) {
+      expected = lines->expected(counts, by * inverse * by);
+      expected.squares = by * expected.squares * by;
+    }
+    const double ratio = expected.squares.ldlt().solve(seen).trace() / n;
+    if (ratio > 1.0 + kFitSigmas * expected.scatter) excess = ratio;
   }
-  const Matrix covariance = by * (inverse * (fit.correlation * variance * noise) * inverse) * by;
+  squares *= excess;
+  fit.correlation = excess;
+  if (lines != nullptr || options.shared > 1.0)
+    fit.correlation = independent > 0.0 ? (independent * noise).ldlt().solve(squares).trace() / n : 1.0;
+  const Matrix covariance = by * (inverse * squares * inverse) * by;
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b)
       fit.covariance[static_cast<std::size_t>(a * ShapeFit::kMost + b)] = covariance(a, b);

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/measure/fit.h"
+#include "engine/measure/fit_lines.h"
 #include "engine/measure/fit_solve.h"
 
 namespace fettle::engine {
@@ -17,7 +18,7 @@ namespace fettle::engine {
 /// What the samples say about a solution, summed over them.
 struct FitSums {
   Eigen::MatrixXd information, noise;  ///< of derivatives: by psi's, by what independent noise in height does
-  std::vector<Eigen::VectorXd> scores;  ///< of each part of the region
+  std::vector<Eigen::VectorXd> scores;  ///< of each part of the region (FitParts)
   std::vector<std::int64_t> in_part;
   double squares = 0.0, psi_squares = 0.0, cosines = 0.0, largest = 0.0;
   std::int64_t used = 0, left_out = 0;
@@ -25,10 +26,10 @@ struct FitSums {
 /// In an order that does not depend on the number of threads.
 [[nodiscard]] FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitModel& model);
 
-/// The covariance of the fitted numbers and ShapeFit::correlation from the sums; `rounding` of heights [mm]. Errors: numbers
-/// that the samples do not determine.
+/// The covariance of the fitted numbers and ShapeFit::correlation from the sums, with `lines` where the options' noise has rows
+/// or columns, else null; `rounding` of heights [mm]. Errors: numbers that the samples do not determine.
 [[nodiscard]] Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums,
-                                   const FitOptions& options, double rounding);
+                                   const FitLineSums* lines, const FitOptions& options, double rounding);
 
 /// Refuses a fit, its covariance known, of which a radius, an apex, a ring or a direction is not determined (fitShape).
 [[nodiscard]] Status checkDetermined(const ShapeFit& fit, const FitModel& model);

@@ -56,6 +56,7 @@ FitSamples::FitSamples(const Version& field, const FitRegion& region, std::int32
   const double middle = middleOfHeights(sorted);
   const auto n = static_cast<double>(size_);
   middle_ = {columns / n * spacing_x_, rows / n * spacing_y_, middle * unit_};
+  lattice_ = {low / stride, left / stride, (high - low) / stride + 1, (right - left) / stride + 1};
   low_ = glm::dvec2(left * spacing_x_ - middle_.x, low * spacing_y_ - middle_.y);
   high_ = glm::dvec2(right * spacing_x_ - middle_.x, high * spacing_y_ - middle_.y);
   // Of nine in ten heights: a spike is no part of the region's extent.
@@ -82,6 +83,8 @@ FitSamples::FitSamples(std::vector<glm::dvec3> points, const glm::dvec3& middle)
 void FitSamples::read(std::size_t block, Block& out) const noexcept {
   const Place& place = blocks_[block];
   out.count = place.count;
+  out.row = place.row / stride_;
+  out.column = place.column / stride_;
   for (std::int32_t i = 0; i < place.count; ++i) {
     const std::size_t at = place.first + static_cast<std::size_t>(i);
     out.points[static_cast<std::size_t>(i)] =
@@ -90,6 +93,16 @@ void FitSamples::read(std::size_t block, Block& out) const noexcept {
                          place.row * spacing_y_ - middle_.y, double{heights_[at]} * unit_ - middle_.z)
             : points_[at];
   }
+}
+
+glm::dvec2 FitSamples::along(std::size_t block) const noexcept {
+  const Place& place = blocks_[block];
+  if (!points_.empty()) return points_[place.first];
+  return {place.column * spacing_x_ - middle_.x, place.row * spacing_y_ - middle_.y};
+}
+
+double FitSamples::xOf(std::int32_t column) const noexcept {
+  return (lattice_.column + column) * stride_ * spacing_x_ - middle_.x;
 }
 
 FitSamples::Coarse FitSamples::coarse(std::size_t most) const {

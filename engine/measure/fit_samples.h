@@ -21,6 +21,9 @@ class FitSamples {
   struct Block {
     std::array<glm::dvec3, kBlock> points;
     int count = 0;
+    std::int32_t row = 0,
+                 column =
+                     0;  ///< of the first, in every stride()-th row and column; the others follow in its row
   };
 
   FitSamples() = default;
@@ -41,6 +44,14 @@ class FitSamples {
   /// Corners of the region's rectangle, from the middle [mm].
   [[nodiscard]] const glm::dvec2& low() const noexcept { return low_; }
   [[nodiscard]] const glm::dvec2& high() const noexcept { return high_; }
+  /// The rows and columns of Block that there are, from the first; none of points as they are.
+  struct Lattice {
+    std::int32_t row = 0, column = 0, rows = 0, columns = 0;
+  };
+  [[nodiscard]] const Lattice& lattice() const noexcept { return lattice_; }
+  /// From the middle [mm]: the first point of a block, and a column by its number in lattice().
+  [[nodiscard]] glm::dvec2 along(std::size_t block) const noexcept;
+  [[nodiscard]] double xOf(std::int32_t column) const noexcept;
   /// Samples of the field from one to the next.
   [[nodiscard]] std::int32_t stride() const noexcept { return stride_; }
   /// What rounding to float makes of a height, as a standard deviation [mm].
@@ -68,6 +79,7 @@ class FitSamples {
   glm::dvec2 low_{0.0}, high_{0.0};
   double spacing_x_ = 1.0, spacing_y_ = 1.0, unit_ = 1.0, reach_ = 0.0, rounding_ = 0.0;
   std::int32_t stride_ = 1;
+  Lattice lattice_;
 };
 
 }  // namespace fettle::engine

@@ -19,6 +19,7 @@
 
 #include "engine/field/builder.h"
 #include "engine/measure/fit_choice.h"
+#include "engine/measure/fit_lines.h"
 #include "engine/measure/fit_relation.h"
 #include "tests/support/coverage.h"
 
@@ -247,6 +248,142 @@ TEST(FitUncertainty, CoversAtOneTwoAndThreeTimes) {
   }
 }
 
+// What a whole row or column is off, besides noise of each sample.
+struct OffLines {
+  double rows = 0.0, columns = 0.0;
+};
+
+Version withOffsets(const SeenShape& seen, const FitField& of, double noise, const OffLines& off,
+                    std::uint64_t seed) {
+  std::mt19937_64 random(seed + 1000);
+  std::normal_distribution<double> normal;
+  std::vector<double> rows(static_cast<std::size_t>(of.height)), columns(static_cast<std::size_t>(of.width));
+  for (double& each : rows) each = off.rows * normal(random);
+  for (double& each : columns) each = off.columns * normal(random);
+  return fieldWith(
+      of,
+      [&](double x, double y) {
+        return heightOn(seen.shape, x, y, seen.low, seen.high) +
+               rows[static_cast<std::size_t>(std::lround(y / of.spacing_y))] +
+               columns[static_cast<std::size_t>(std::lround(x / of.spacing_x))];
+      },
+      noise, seed);
+}
+
+// Each shape under noise of rows, of columns and of both: along the lines and across them errors differ by the root of the
+// samples of a line.
+TEST(FitUncertainty, CoversUnderNoiseOfRowsAndColumns) {
+  struct Figure {
+    const char* name;
+    std::function<double(const Shape&)> value;
+    std::function<double(const ShapeFit::Errors&)> error;
+  };
+  const Figure axis_x{"direction x", [](const Shape& s) { return s.direction.x; },
+                      [](const auto& e) { return e.direction.x; }};
+  const Figure axis_y{"direction y", [](const Shape& s) { return s.direction.y; },
+                      [](const auto& e) { return e.direction.y; }};
+  const Figure point_x{"point x", [](const Shape& s) { return s.point.x; },
+                       [](const auto& e) { return e.point.x; }};
+  const Figure point_y{"point y", [](const Shape& s) { return s.point.y; },
+                       [](const auto& e) { return e.point.y; }};
+  const Figure radius{"radius", [](const Shape& s) { return s.radius; },
+                      [](const auto& e) { return e.radius; }};
+  const Figure angle{"half angle", [](const Shape& s) { return s.half_angle; },
+                     [](const auto& e) { return e.half_angle; }};
+  const Figure tube{"tube radius", [](const Shape& s) { return s.tube_radius; },
+                    [](const auto& e) { return e.tube_radius; }};
+  struct Case {
+    std::size_t shape;
+    OffLines off;
+    std::vector<Figure> figures;
+    FitOptions options;
+  };
+  const OffLines rows{5e-4, 0.0}, columns{0.0, 5e-4}, both{2e-4, 5e-4}, loud{5e-3, 0.0};
+  const std::vector<Case> cases{{0, rows, {axis_x, axis_y}, {}},
+                                {0, columns, {axis_x, axis_y}, {}},
+                                {0, both, {axis_x, axis_y}, {}},
+                                {0, loud, {axis_x, axis_y}, {.vertical = true}},
+                                {0, rows, {axis_x, axis_y}, {.robust = true}},
+                                {0, loud, {axis_x, axis_y}, {.vertical = true, .robust = true}},
+                                {1, rows, {radius, point_x, point_y}, {}},
+                                {1, columns, {radius, point_x, point_y}, {.vertical = true}},
+                                {3, both, {radius, axis_y}, {}},
+                                {6, rows, {angle, point_x, point_y}, {}},
+                                {7, rows, {radius, tube, axis_x, axis_y}, {}}};
+  // Of 41 rows: the size of their offsets is known, what they are is not.
+  const FitField field{51, 41, 6.0 / 50.0, 5.0 / 40.0};
+  constexpr double kWhite = 1e-4;
+  const std::vector<SeenShape> seen = seenShapes();
+  for (const Case& one : cases) {
+    const SeenShape& of = seen[one.shape];
+    std::vector<Coverage> covered(one.figures.size());
+    for (int seed = 0; seed < coverageSeeds(); ++seed) {
+      const Version scan = withOffsets(of, field, kWhite, one.off, static_cast<std::uint64_t>(seed) + 1);
+      FitOptions options = one.options;
+      options.noise_mm = kWhite;
+      options.rows_mm = one.off.rows;
+      options.columns_mm = one.off.columns;
+      const auto fit = fitOf(scan, of.shape.kind, options);
+      ASSERT_TRUE(fit) << of.name << ' ' << seed << ' ' << fit.error().line();
+      const ShapeFit::Errors errors = fit->errors();
+      for (std::size_t f = 0; f < one.figures.size(); ++f)
+        covered[f].add(one.figures[f].value(fit->shape) - one.figures[f].value(of.shape),
+                       one.figures[f].error(errors));
+    }
+    for (std::size_t f = 0; f < one.figures.size(); ++f) {
+      std::printf("%-10s rows %.0f columns %.0f %-7s %-12s %s  error %.3g, stated %.3g\n", of.name.c_str(),
+                  one.off.rows / kWhite, one.off.columns / kWhite, one.options.robust ? "robust" : "",
+                  one.figures[f].name, covered[f].counts().c_str(), covered[f].rms(), covered[f].stated());
+      if (!countsCoverage()) continue;
+      EXPECT_EQ(covered[f].complaint(), "") << of.name << ' ' << one.figures[f].name;
+      EXPECT_LE(covered[f].stated(), 1.5 * covered[f].rms()) << of.name << ' ' << one.figures[f].name;
+    }
+  }
+}
+
+// Sums by rows and columns against the covariance matrix of all samples, and the fit itself, which no noise changes.
+TEST(Fit, NoiseOfLinesIsSummedAsItsMatrixHasIt) {
+  const SeenShape seen = seenShapes()[7];
+  const FitField of{23, 19, 6.0 / 22.0, 5.0 / 18.0};
+  const Version field = withOffsets(seen, of, 0.002, {0.004, 0.003}, 5);
+  const auto fit = fitOf(field, ShapeKind::kTorus, {.noise_mm = 0.002});
+  const auto with =
+      fitOf(field, ShapeKind::kTorus, {.noise_mm = 0.002, .rows_mm = 0.004, .columns_mm = 0.003});
+  ASSERT_TRUE(fit && with);
+  EXPECT_EQ(fit->shape.radius, with->shape.radius);
+  EXPECT_EQ(fit->shape.point, with->shape.point);
+  EXPECT_EQ(fit->rms_mm, with->rms_mm);
+  EXPECT_NE(fit->covariance, with->covariance);
+
+  const FitSamples samples(field, wholeOf(field));
+  const FitPoints points{&samples, fit->scale};
+  const FitModel model{ShapeKind::kTorus, fit->surface};
+  const FitNoise noise{1.0, 3.0, 2.0};
+  const FitLineSums sums(points, {}, model);
+  FitTerms terms(model, {});
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<std::pair<int, int>> places;
+  FitSamples::Block block;
+  for (std::size_t b = 0; b < samples.blocks(); ++b) {
+    samples.read(b, block);
+    for (int i = 0; i < block.count; ++i) {
+      ASSERT_TRUE(terms.take(block.points[static_cast<std::size_t>(i)] / fit->scale));
+      rows.emplace_back(terms.cosine * terms.row);
+      places.emplace_back(block.column + i, block.row);
+    }
+  }
+  ASSERT_GT(rows.size(), 300U);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(7, 7);
+  for (std::size_t a = 0; a < rows.size(); ++a)
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      const double covariance = (a == b ? noise.sample : 0.0) +
+                                (places[a].second == places[b].second ? noise.rows : 0.0) +
+                                (places[a].first == places[b].first ? noise.columns : 0.0);
+      expected += covariance * rows[a] * rows[b].transpose();
+    }
+  EXPECT_LT((sums.covariance(noise) - expected).norm(), 1e-11 * expected.norm());
+}
+
 // Two planes: the angle and the distance between them under the same noise.
 TEST(FitUncertainty, CoversOfAngleAndDistance) {
   Coverage of_angle, of_distance;
@@ -310,7 +447,8 @@ TEST(Fit, IsTheSameForAnyNumberOfThreads) {
     std::vector<double> numbers;
     for (const std::size_t threads : {1, 2, 5}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      const auto fit = fitOf(field, ShapeKind::kTorus, {.robust = robust});
+      const auto fit =
+          fitOf(field, ShapeKind::kTorus, {.robust = robust, .rows_mm = 0.001, .columns_mm = 0.002});
       ASSERT_TRUE(fit) << fit.error().line();
       const std::vector<double> these{fit->shape.radius, fit->shape.point.x, fit->covariance[0],
                                       fit->correlation};

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "app/report.h"
+
+namespace fettle::app {
+
+/// Prints the noise that standard errors are by: of a sample, of whole rows and of whole columns (`noise_mm`, `noise_rows_mm`,
+/// `noise_columns_mm`); nothing where that of a sample is not known.
+void printNoise(const Report& report);
+
+}  // namespace fettle::app
