@@ -13,8 +13,8 @@ engine::Result<engine::SectionNoise> sectionNoiseOf(const engine::Version& field
   const auto model = engine::measureNoise(field, job);
   if (!model) return tl::unexpected(model.error());
   const double mm = field.grid().height_unit.mm;
-  return engine::SectionNoise{finest->sigma * mm, std::sqrt(model->parts.row_offset) * mm,
-                              std::sqrt(model->parts.column_offset) * mm};
+  return engine::SectionNoise{finest->sigma * mm, std::sqrt(model->whole_rows) * mm,
+                              std::sqrt(model->whole_columns) * mm};
 }
 
 engine::SectionNoise louderOf(const engine::SectionNoise& a, const engine::SectionNoise& b) noexcept {

@@ -87,7 +87,7 @@ class SectionMeasurement {
     return report;
   }
   engine::Result<Report> line(const Section& section, std::vector<SectionMark>& marks) const {
-    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_.sample_mm);
+    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.line, "line", marks);
     return lineReport(*figures);
@@ -97,7 +97,7 @@ class SectionMeasurement {
     if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
     if (std::isnan(edge))
       return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
-    const auto figures = engine::stepFigures(section, edge, within(section), noise_.sample_mm);
+    const auto figures = engine::stepFigures(section, edge, within(section), noise_);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.step == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no step stands out from the noise of the section", "--step",
@@ -121,7 +121,7 @@ class SectionMeasurement {
     if (std::isnan(edges.from_mm))
       return engine::inputError("no groove or ridge stands out in the section", "--groove",
                                 "give a longer line, or the lengths of both edges");
-    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_.sample_mm);
+    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
@@ -139,7 +139,7 @@ class SectionMeasurement {
   }
   engine::Result<Report> angle(const Section& section, std::vector<SectionMark>& marks) const {
     const auto figures = engine::angleFigures(section, {options_.angle[0], options_.angle[1]},
-                                              {options_.angle[2], options_.angle[3]}, noise_.sample_mm);
+                                              {options_.angle[2], options_.angle[3]}, noise_);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.angle, "angle", marks);
     Report report;
@@ -152,7 +152,7 @@ class SectionMeasurement {
     return report;
   }
   engine::Result<Report> arc(const Section& section, std::vector<SectionMark>& marks) const {
-    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_.sample_mm);
+    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_);
     if (!figures) return tl::unexpected(figures.error());
     addMarks(options_.arc, "arc", marks);
     Report report;

@@ -234,24 +234,67 @@ double Section::covarianceOf(std::span<const double> a, std::span<const double> 
 }
 
 Section::LineVariance Section::lineVariance(std::span<const double> weights) const {
-  LineVariance variance;
-  if (source.field.empty()) return variance;
+  const std::vector<double> sum(weights.begin(), weights.end());
+  const LineCovariance of = lineCovariance({&sum, 1});
+  return {of.rows.front(), of.columns.front()};
+}
+
+Section::LineCovariance Section::lineCovariance(std::span<const std::vector<double>> sums) const {
+  const std::size_t n = sums.size();
+  LineCovariance result;
+  result.rows.resize(n * n);
+  result.columns.resize(n * n);
+  if (source.field.empty()) return result;
   const Grid& grid = source.field.grid();
   const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
   const PlaceReader reader(source.field, source.options);
   const Lanes side_by_side = lanesOf(source);
-  std::vector<double> rows(static_cast<std::size_t>(grid.height)),
-      columns(static_cast<std::size_t>(grid.width));
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (weights[i] == 0.0) continue;
-    for (const Share& part : takenAt(reader, side_by_side, spacing, along(i)).shares) {
-      rows[static_cast<std::size_t>(part.sample / grid.width)] += weights[i] * part.weight;
-      columns[static_cast<std::size_t>(part.sample % grid.width)] += weights[i] * part.weight;
+  // What each sum has of each line, and what a place has.
+  struct Lines {
+    std::vector<double> sums, place;
+    std::vector<bool> met;
+    std::vector<std::size_t> of_place;
+
+    Lines(std::int32_t side, std::size_t of)
+        : sums(static_cast<std::size_t>(side) * of),
+          place(static_cast<std::size_t>(side)),
+          met(place.size()) {}
+    void add(std::size_t line, double weight) {
+      if (place[line] == 0.0) of_place.push_back(line);
+      place[line] += weight;
     }
+    double finishPlace(std::span<const std::vector<double>> of, std::size_t i) {
+      double squares = 0.0;
+      for (const std::size_t line : of_place) {
+        for (std::size_t k = 0; k < of.size(); ++k) sums[line * of.size() + k] += of[k][i] * place[line];
+        squares += place[line] * place[line];
+        place[line] = 0.0;
+        met[line] = true;
+      }
+      of_place.clear();
+      return squares;
+    }
+    void covariance(std::vector<double>& out, std::size_t of) const {
+      for (std::size_t at = 0; at < sums.size(); at += of)
+        for (std::size_t a = 0; a < of; ++a)
+          for (std::size_t b = 0; b < of; ++b) out[a * of + b] += sums[at + a] * sums[at + b];
+    }
+  };
+  Lines rows(grid.height, n), columns(grid.width, n);
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (std::ranges::all_of(sums, [i](const std::vector<double>& sum) { return sum[i] == 0.0; })) continue;
+    for (const Share& part : takenAt(reader, side_by_side, spacing, along(i)).shares) {
+      rows.add(static_cast<std::size_t>(part.sample / grid.width), part.weight);
+      columns.add(static_cast<std::size_t>(part.sample % grid.width), part.weight);
+    }
+    result.heights.rows += rows.finishPlace(sums, i);
+    result.heights.columns += columns.finishPlace(sums, i);
   }
-  for (const double weight : rows) variance.rows += weight * weight;
-  for (const double weight : columns) variance.columns += weight * weight;
-  return variance;
+  rows.covariance(result.rows, n);
+  columns.covariance(result.columns, n);
+  result.rows_met = static_cast<int>(std::ranges::count(rows.met, true));
+  result.columns_met = static_cast<int>(std::ranges::count(columns.met, true));
+  return result;
 }
 
 Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> points,

@@ -67,6 +67,14 @@ struct Section {
     double rows = 0.0, columns = 0.0;
   };
   [[nodiscard]] LineVariance lineVariance(std::span<const double> weights) const;
+  /// Of several such sums, each with each (sum x sum, row-major), and of the heights themselves of the
+  /// places that have a weight in any: the sum of their variances, and how many rows and columns they are made of.
+  struct LineCovariance {
+    std::vector<double> rows, columns;
+    LineVariance heights;
+    int rows_met = 0, columns_met = 0;
+  };
+  [[nodiscard]] LineCovariance lineCovariance(std::span<const std::vector<double>> sums) const;
 };
 
 /// The section along the polyline through `points` (field coordinates [mm], at least two), signs applied. The places are

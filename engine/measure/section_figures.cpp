@@ -47,7 +47,7 @@ struct LinearModel {
   Eigen::VectorXd gain;
 };
 
-Solved solved(const Section& section, const LinearModel& model, double noise_mm) {
+Solved solved(const Section& section, const LinearModel& model, const SectionNoise& noise) {
   const Eigen::Index n = model.rows.rows(), p = model.rows.cols();
   const Eigen::VectorXd root = model.gain.cwiseInverse();
   // Columns of one size: their units say nothing about what is determined.
@@ -95,14 +95,31 @@ Solved solved(const Section& section, const LinearModel& model, double noise_mm)
   const Eigen::MatrixXd whole = sizes.asDiagonal() * normal * sizes.asDiagonal();
   const double left = trace - (whole * result.covariance).trace();
   const double freedom = std::max(1.0, trace * trace / pairs - static_cast<double>(p));
-  double variance = noise_mm * noise_mm;
+  // The same of noise of whole rows and columns. What all heights have in common no fit leaves.
+  Eigen::MatrixXd by_lines = Eigen::MatrixXd::Zero(p, p);
+  double lines_left = 0.0, lines_scatter = 0.0;
+  if (noise.rows_mm > 0.0 || noise.columns_mm > 0.0) {
+    const Section::LineCovariance lines = section.lineCovariance(sums);
+    const auto add = [&](const std::vector<double>& of, double heights, int met, double mm) {
+      const Eigen::MatrixXd part =
+          mm * mm * Eigen::Map<const Eigen::MatrixXd>(of.data(), p, p);  // symmetrical
+      by_lines += part;
+      const double rest = std::max(0.0, mm * mm * heights - (whole * part).trace());
+      lines_left += rest;
+      lines_scatter += 2.0 * rest * rest / std::max(1.0, met - static_cast<double>(p));
+    };
+    add(lines.rows, lines.heights.rows, lines.rows_met, noise.rows_mm);
+    add(lines.columns, lines.heights.columns, lines.columns_met, noise.columns_mm);
+  }
+  double variance = noise.sample_mm * noise.sample_mm;
   // A fit through as many heights as it has numbers leaves nothing that could be compared.
   if (left > 1e-9 * trace) {
-    const double scatter = squares / left;
-    if (std::isnan(variance) || scatter > variance * (1.0 + 3.0 * std::sqrt(2.0 / freedom)))
-      variance = scatter;
+    const double of_samples = variance * left;
+    const double scatter = std::sqrt(2.0 * of_samples * of_samples / freedom + lines_scatter);
+    if (std::isnan(variance) || squares > of_samples + lines_left + 3.0 * scatter)
+      variance = std::max(0.0, squares - lines_left) / left;
   }
-  result.covariance *= variance;
+  result.covariance = variance * result.covariance + by_lines;
   return result;
 }
 
@@ -171,7 +188,7 @@ LineFigures figuresOf(const Solved& fit, Eigen::Index first, const Stretch& stre
 
 // Lines of several stretches as one model: what their heights have in common counts once.
 Result<Solved> linesThrough(const Section& section, const std::vector<Stretch>& stretches,
-                            std::vector<LinePart>& parts, double noise_mm) {
+                            std::vector<LinePart>& parts, const SectionNoise& noise) {
   constexpr int kLeast = 3;
   std::vector<std::size_t> all;
   for (const Stretch& stretch : stretches) {
@@ -192,12 +209,12 @@ Result<Solved> linesThrough(const Section& section, const std::vector<Stretch>& 
     }
     column += 2;
   }
-  return solved(section, model, noise_mm);
+  return solved(section, model, noise);
 }
 
 // Two parallel lines: z = a + b x + h d, d = 1 on the far stretch.
 Result<StepFigures> parallelLines(const Section& section, const std::vector<Stretch>& outside,
-                                  const Stretch& inside, double noise_mm) {
+                                  const Stretch& inside, const SectionNoise& noise) {
   constexpr int kLeast = 2;
   std::vector<std::size_t> all;
   std::size_t far_from = 0;
@@ -220,7 +237,7 @@ Result<StepFigures> parallelLines(const Section& section, const std::vector<Stre
     model.rows(i, 1) = section.along(all[at]) - middle;
     model.rows(i, 2) = at < far_from ? 0.0 : 1.0;
   }
-  const Solved fit = solved(section, model, noise_mm);
+  const Solved fit = solved(section, model, noise);
   const double slope = fit.x[1], cosine = 1.0 / std::hypot(1.0, slope);
   // Across the lines: h cos(atan b), with both errors.
   const double by_slope = -fit.x[2] * slope * cosine * cosine * cosine;
@@ -285,17 +302,17 @@ class OffsetSearch {
 
 }  // namespace
 
-Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch, double noise_mm) {
+Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch, const SectionNoise& noise) {
   std::vector<LinePart> parts;
-  const auto fit = linesThrough(section, {stretch}, parts, noise_mm);
+  const auto fit = linesThrough(section, {stretch}, parts, noise);
   if (!fit) return tl::unexpected(fit.error());
   return figuresOf(*fit, 0, onSection(section, stretch), parts.front());
 }
 
 Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, const Stretch& second,
-                                  double noise_mm) {
+                                  const SectionNoise& noise) {
   std::vector<LinePart> parts;
-  const auto fit = linesThrough(section, {first, second}, parts, noise_mm);
+  const auto fit = linesThrough(section, {first, second}, parts, noise);
   if (!fit) return tl::unexpected(fit.error());
   AngleFigures figures;
   figures.first = figuresOf(*fit, 0, onSection(section, first), parts[0]);
@@ -316,14 +333,14 @@ Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, 
 }
 
 Result<StepFigures> stepFigures(const Section& section, double edge_mm, const Stretch& within,
-                                double noise_mm) {
+                                const SectionNoise& noise) {
   const double low = std::max(0.0, within.from_mm), high = std::min(section.lengthMm(), within.to_mm);
   const double width = std::min(edge_mm - low, high - edge_mm);
   if (!(width > 0.0))
     return inputError(fmt::format("an edge at {:.6g} mm has no surface on both sides", edge_mm), "section",
                       fmt::format("give one between {:.6g} and {:.6g}", low, high));
   const Stretch before{edge_mm - width, edge_mm - width / 3.0}, after{edge_mm + width / 3.0, edge_mm + width};
-  auto figures = parallelLines(section, {before}, after, noise_mm);
+  auto figures = parallelLines(section, {before}, after, noise);
   if (!figures) return figures;
   figures->before = before;
   figures->edge_after = after;
@@ -331,7 +348,7 @@ Result<StepFigures> stepFigures(const Section& section, double edge_mm, const St
 }
 
 Result<StepFigures> grooveFigures(const Section& section, double first_mm, double second_mm,
-                                  double noise_mm) {
+                                  const SectionNoise& noise) {
   const double width = second_mm - first_mm;
   if (!(width > 0.0))
     return inputError("the edges of a groove are not in order", "section", "give the nearer one first");
@@ -339,7 +356,7 @@ Result<StepFigures> grooveFigures(const Section& section, double first_mm, doubl
   const Stretch before{std::max(0.0, first_mm - width), first_mm - width / 3.0};
   const Stretch inside{first_mm + width / 3.0, second_mm - width / 3.0};
   const Stretch behind{second_mm + width / 3.0, std::min(section.lengthMm(), second_mm + width)};
-  auto figures = parallelLines(section, {before, behind}, inside, noise_mm);
+  auto figures = parallelLines(section, {before, behind}, inside, noise);
   if (!figures) return figures;
   figures->step_mm.value = -figures->step_mm.value;
   figures->before = before;
@@ -435,7 +452,7 @@ Result<CursorFigures> cursorFigures(const Section& section, double first_mm, dou
 // The circle by its height p, direction f and curvature k at the middle of the stretch: with q = (x, z - p) and the normal
 // n = (-sin f, cos f), the distance of a point from it is d = A / (1 + sqrt(1 + k A)), A = k |q|^2 - 2 q n, without the
 // cancellation of |q - n / k| - 1 / |k| (the form of N. Chernov, Circular and linear regression, 2010, section 3).
-Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, double noise_mm) {
+Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, const SectionNoise& noise) {
   constexpr int kLeast = 4;
   const std::vector<std::size_t> places = placesIn(section, stretch);
   if (places.size() < kLeast) return tooFew(stretch, places.size(), kLeast);
@@ -513,7 +530,7 @@ Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, do
     if (!moved || size <= 1e-12 * std::sqrt(cost) + 1e-300) break;
   }
   evaluate(at);
-  const Solved fit = solved(section, {places, rows, -distance, gain}, noise_mm);
+  const Solved fit = solved(section, {places, rows, -distance, gain}, noise);
   const double error = errorOf(fit, 2), curvature = at[2];
   if (!(std::abs(curvature) > 3.0 * error) || !std::isfinite(1.0 / curvature))
     return inputError(

@@ -6,14 +6,14 @@
 
 namespace fettle::engine {
 
-// What is measured in a section, each with the standard error that the noise of the scan gives it. Lengths in
-// millimetres, `noise_mm` the standard deviation of the noise of a sample, independent from sample to sample
-// (estimateNoise()); NaN where it is not known.
+// What is measured in a section, each with the standard error that the noise of the scan gives it. Lengths in millimetres;
+// `noise`: of samples, independent from sample to sample (estimateNoise(); NaN where it is not known), and of whole rows and
+// columns (measureNoise()).
 //
-// The errors are those of the fit, propagated from the samples through interpolation and averaging (Section::covariance).
-// Where the heights scatter about the fit by more than the noise explains, at three standard errors of that scatter,
-// the scatter counts instead, as it does where the noise is not known. What whole rows or columns are off shows in this
-// scatter along a section that crosses them; between two cursors, where there is none, it counts by the rows and columns of both.
+// The errors are those of the fit, propagated from the samples through interpolation and averaging (Section::covariance), and
+// from the rows and columns that they lie in: a section along a row has one offset, which no difference of its heights has;
+// one across the rows has another at each place. Where the heights scatter about the fit by more than this noise explains, at
+// three standard errors of that scatter, the rest counts as noise of samples, as it does where that is not known.
 // Noise that neighbours share otherwise, as filters leave it, is neither measured nor known: the error is too small then.
 
 /// Part of a section, from one length along it to another [mm].
@@ -36,7 +36,7 @@ struct LineFigures {
 };
 /// Errors (kInput): fewer than 3 heights.
 [[nodiscard]] Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch,
-                                              double noise_mm);
+                                              const SectionNoise& noise);
 
 struct AngleFigures {
   LineFigures first, second;
@@ -47,7 +47,7 @@ struct AngleFigures {
 };
 /// The angle between the lines fitted to two stretches, with what their heights have in common.
 [[nodiscard]] Result<AngleFigures> angleFigures(const Section& section, const Stretch& first,
-                                                const Stretch& second, double noise_mm);
+                                                const Stretch& second, const SectionNoise& noise);
 
 struct StepFigures {
   Estimate
@@ -63,14 +63,14 @@ struct StepFigures {
 /// width next to the edge is left out, and as much is taken on both sides: the width is what the shorter side has.
 /// Errors (kInput): fewer than 2 heights on a side.
 [[nodiscard]] Result<StepFigures> stepFigures(const Section& section, double edge_mm, const Stretch& within,
-                                              double noise_mm);
+                                              const SectionNoise& noise);
 
 /// Depth of a groove, or height of a ridge, between two edges after ISO 5436-1:2000, type A1: with its width W, lines
 /// of a length of 3 W, of which the third of W next to each edge is left out outside, and all but the central third
 /// inside. z = a x + b + h d by least squares, the depth across the lines.
 /// Errors (kInput): edges out of order, fewer than 2 heights in any of the three stretches.
 [[nodiscard]] Result<StepFigures> grooveFigures(const Section& section, double first_mm, double second_mm,
-                                                double noise_mm);
+                                                const SectionNoise& noise);
 
 /// The place in a stretch at which two parallel lines fit best: an edge for stepFigures(). NaN with fewer than 4
 /// heights. Linear time.
@@ -91,7 +91,8 @@ struct ArcFigures {
 /// Levenberg and Marquardt in height, direction and curvature at the middle, which stay well determined for a short arc.
 /// Where the arc is steeper than 84 degrees heights count as there. Errors (kInput): fewer than 4 heights; a
 /// curvature that does not differ from 0 by three standard errors.
-[[nodiscard]] Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, double noise_mm);
+[[nodiscard]] Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch,
+                                            const SectionNoise& noise);
 
 struct CursorFigures {
   double dx_mm = 0.0;                      ///< along the line

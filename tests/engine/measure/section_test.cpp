@@ -149,7 +149,7 @@ TEST(Section, RefusesWhatIsNone) {
 TEST(SectionFigures, OfLinesAreThoseOfTheLines) {
   const auto roof = [](double x, double) { return x < 5.0 ? 0.5 * x : 2.5 - 0.25 * (x - 5.0); };
   const Section section = taken(sectionField(101, 5, 0.1, 0.1, roof), {{0.0, 0.2}, {10.0, 0.2}});
-  const auto angle = angleFigures(section, {0.5, 4.5}, {5.5, 9.5}, 0.0);
+  const auto angle = angleFigures(section, {0.5, 4.5}, {5.5, 9.5}, {0.0});
   ASSERT_TRUE(angle) << angle.error().line();
   constexpr double kDegree = 180.0 / 3.14159265358979323846;
   const double turn = (std::atan(-0.25) - std::atan(0.5)) * kDegree;
@@ -161,7 +161,7 @@ TEST(SectionFigures, OfLinesAreThoseOfTheLines) {
   EXPECT_NEAR(angle->first.slope.value, 0.5, 1e-7);
   EXPECT_NEAR(angle->first.height_mm.value, 1.25, 1e-6);
   EXPECT_NEAR(angle->second.inclination_deg.value, std::atan(-0.25) * kDegree, 1e-5);
-  EXPECT_FALSE(lineFigures(section, {3.0, 3.1}, 0.0));
+  EXPECT_FALSE(lineFigures(section, {3.0, 3.1}, {0.0}));
 }
 
 TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
@@ -170,7 +170,7 @@ TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
       sectionField(101, 5, 0.1, 0.1, [&](double x, double) { return slope * x + (x > 4.05 ? 0.05 : 0.0); });
   const Section section = taken(step, {{0.0, 0.2}, {10.0, 0.2}});
   EXPECT_NEAR(edgeIn(section, {0.0, 10.0}), 4.05, 1e-9);
-  const auto figures = stepFigures(section, 4.05, {0.0, 10.0}, 0.0);
+  const auto figures = stepFigures(section, 4.05, {0.0, 10.0}, {0.0});
   ASSERT_TRUE(figures) << figures.error().line();
   EXPECT_NEAR(figures->step_mm.value, 0.05 * cosine, 1e-7);
   EXPECT_NEAR(figures->inclination_deg.value, std::atan(slope) * 180.0 / 3.14159265358979, 1e-5);
@@ -183,21 +183,21 @@ TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
   const Stretch found = grooveIn(across, {0.0, 20.0});
   EXPECT_NEAR(found.from_mm, 8.05, 1e-9);
   EXPECT_NEAR(found.to_mm, 12.05, 1e-9);
-  const auto depth = grooveFigures(across, 8.05, 12.05, 0.0);
+  const auto depth = grooveFigures(across, 8.05, 12.05, {0.0});
   ASSERT_TRUE(depth) << depth.error().line();
   EXPECT_NEAR(depth->step_mm.value, 0.02 * cosine, 3e-7);
   EXPECT_NEAR(depth->before.from_mm, 4.05, 1e-12);
   EXPECT_NEAR(depth->edge_after.from_mm, 8.05 + 4.0 / 3.0, 1e-12);
   EXPECT_NEAR(depth->behind.to_mm, 16.05, 1e-12);
-  EXPECT_FALSE(grooveFigures(across, 12.0, 8.0, 0.0));
+  EXPECT_FALSE(grooveFigures(across, 12.0, 8.0, {0.0}));
   // Of a line that ends sooner than a width beside the groove it is what there is.
   const Section near_ends = taken(groove, {{6.0, 0.2}, {15.0, 0.2}});
-  const auto cut = grooveFigures(near_ends, 2.05, 6.05, 0.0);
+  const auto cut = grooveFigures(near_ends, 2.05, 6.05, {0.0});
   ASSERT_TRUE(cut) << cut.error().line();
   EXPECT_NEAR(cut->step_mm.value, 0.02 * cosine, 3e-7);
   EXPECT_EQ(cut->before.from_mm, 0.0);
   EXPECT_EQ(cut->behind.to_mm, near_ends.lengthMm());
-  EXPECT_FALSE(stepFigures(across, 0.0, {0.0, 20.0}, 0.0));
+  EXPECT_FALSE(stepFigures(across, 0.0, {0.0, 20.0}, {0.0}));
 }
 
 // Short and long arcs, hollow and raised, beside the middle of the circle too.
@@ -212,7 +212,7 @@ TEST(SectionFigures, ArcIsTheCircle) {
         const Section section = taken(field, {{0.0, 0.01}, {6.0, 0.01}});
         const double middle = centre == 3.0 ? 3.0 : centre - 0.05;
         const Stretch stretch{middle - half, std::min(middle + half, centre + 1.9)};
-        const auto arc = arcFigures(section, stretch, std::nan(""));
+        const auto arc = arcFigures(section, stretch, {std::nan("")});
         ASSERT_TRUE(arc) << arc.error().line();
         // Heights are floats of up to 2: 6e-8 rms over an arc of 2 half; its sagitta is half^2 / 2 R.
         const double allowed = 6.0 * 6e-8 * 2.0 * 4.0 * 3.4 / (half * half * std::sqrt(half / 0.1));
@@ -223,8 +223,8 @@ TEST(SectionFigures, ArcIsTheCircle) {
       }
   const Section flat = taken(sectionField(50, 3, 1.0, 1.0, [](double x, double) { return 0.1 * x; }),
                              {{0.0, 1.0}, {49.0, 1.0}});
-  EXPECT_FALSE(arcFigures(flat, {0.0, 49.0}, 0.001));
-  EXPECT_FALSE(arcFigures(flat, {0.0, 2.0}, 0.001));
+  EXPECT_FALSE(arcFigures(flat, {0.0, 49.0}, {0.001}));
+  EXPECT_FALSE(arcFigures(flat, {0.0, 2.0}, {0.001}));
 }
 
 TEST(SectionFigures, CursorsReadWhatLiesBetween) {
@@ -255,7 +255,7 @@ TEST(SectionFigures, HardCases) {
   const std::vector<glm::dvec2> line{{0.0, 0.0}, {39.0, 0.0}};
   const auto section = sectionAlong(makeField(grid, heights), line, {}, job);
   ASSERT_TRUE(section) << section.error().line();
-  const auto step = stepFigures(*section, 19.5, {0.0, 39.0}, 0.001);
+  const auto step = stepFigures(*section, 19.5, {0.0, 39.0}, {0.001});
   ASSERT_TRUE(step);
   // The spike is far more than the noise, and the error says so.
   EXPECT_GT(step->step_mm.error, std::abs(step->step_mm.value - 0.05) / 5.0);

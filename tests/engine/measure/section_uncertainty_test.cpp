@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -128,7 +129,7 @@ Part step() {
   return {
       "step of 50 um", 0.05, [](double u) { return u > 0.9 ? 0.05 : 0.0; },
       [](const Section& s, double noise) {
-        const auto figures = stepFigures(s, 0.9, {0.0, 1.8}, noise);
+        const auto figures = stepFigures(s, 0.9, {0.0, 1.8}, {noise});
         return figures ? figures->step_mm : Estimate{};
       },
       [outside](double u) {
@@ -141,7 +142,7 @@ Part radius() {
   return {"radius of 2 mm", kRadius,
           [](double u) { return std::sqrt(kRadius * kRadius - (u - 0.9) * (u - 0.9)); },
           [](const Section& s, double noise) {
-            const auto figures = arcFigures(s, {0.0, 1.8}, noise);
+            const auto figures = arcFigures(s, {0.0, 1.8}, {noise});
             return figures ? figures->radius_mm : Estimate{};
           },
           [](double u) {
@@ -156,7 +157,7 @@ Part angle() {
   const double slope = std::tan(15.0 * 3.14159265358979323846 / 180.0);
   return {"angle of 30 degrees", -30.0, [slope](double u) { return -slope * std::abs(u - 0.9); },
           [](const Section& s, double noise) {
-            const auto figures = angleFigures(s, {0.0, 0.85}, {0.95, 1.8}, noise);
+            const auto figures = angleFigures(s, {0.0, 0.85}, {0.95, 1.8}, {noise});
             return figures ? figures->turn_deg : Estimate{};
           },
           [slope](double u) {
@@ -180,6 +181,106 @@ TEST(SectionUncertainty, CoversAtOneTwoAndThreeTimesAndIsNearTheBound) {
       EXPECT_EQ(c.complaint(), "") << part.name << degrees << width;
       EXPECT_LE(c.rms(), 1.5 * c.bound) << part.name << degrees << width;
       EXPECT_GE(c.rms(), (1.0 - scatterOfRms()) * c.bound) << part.name << degrees << width;
+    }
+}
+
+Part groove() {
+  // From 0.6 to 1.2 mm, so that the stretches are 0 to 0.4, 0.8 to 1 and 1.4 to 1.8 mm.
+  return {"groove of 50 um", 0.05, [](double u) { return u > 0.6 && u < 1.2 ? -0.05 : 0.0; }, {}, {}};
+}
+
+// The same with offsets of rows or columns of 5 times the noise: along a row it has one, which no difference of heights has,
+// across the rows there is another at each place, and aslant some places share one.
+TEST(SectionUncertainty, CoversWhereRowsOrColumnsAreOff) {
+  using Measured = std::function<Estimate(const Section&, const SectionNoise&)>;
+  const auto valueOf = [](const auto& figures, auto member) {
+    return figures ? (*figures).*member : Estimate{};
+  };
+  struct Case {
+    Part part;
+    Measured measured;
+  };
+  Part line = angle();
+  line.name = "line's height";
+  line.truth = 0.0;
+  line.height = [](double) { return 0.0; };
+  Part slope = line;
+  slope.name = "line's slope";
+  const std::vector<Case> cases{
+      {step(),
+       [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(stepFigures(s, 0.9, {0.0, 1.8}, noise), &StepFigures::step_mm);
+       }},
+      {groove(),
+       [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(grooveFigures(s, 0.6, 1.2, noise), &StepFigures::step_mm);
+       }},
+      {radius(),
+       [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(arcFigures(s, {0.0, 1.8}, noise), &ArcFigures::radius_mm);
+       }},
+      {angle(),
+       [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(angleFigures(s, {0.0, 0.85}, {0.95, 1.8}, noise), &AngleFigures::turn_deg);
+       }},
+      {line,
+       [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(lineFigures(s, {0.0, 1.8}, noise), &LineFigures::height_mm);
+       }},
+      {slope, [&](const Section& s, const SectionNoise& noise) {
+         return valueOf(lineFigures(s, {0.0, 1.8}, noise), &LineFigures::slope);
+       }}};
+  constexpr int kSide = 201;
+  constexpr double kOff = 5.0 * kNoise;
+  struct Line {
+    const char* name;
+    double degrees, width_mm;
+    bool rows;  // are off, else columns
+  };
+  Grid grid;
+  grid.width = grid.height = kSide;
+  grid.spacing_x = grid.spacing_y = kSpacing;
+  for (const Case& one : cases)
+    for (const Line& of : {Line{"along a row", 0.0, 0.0, true},
+                           {"along a row, wide", 0.0, 0.1, true},
+                           {"across the rows", 90.0, 0.0, true},
+                           {"across the rows, wide", 90.0, 0.1, true},
+                           {"at 5 degrees", 5.0, 0.0, true},
+                           {"at 30 degrees, wide", 30.0, 0.1, true},
+                           {"across the columns", 0.0, 0.0, false},
+                           {"along a column", 90.0, 0.0, false}}) {
+      const double turn = of.degrees * 3.14159265358979323846 / 180.0;
+      const glm::dvec2 direction(std::cos(turn), std::sin(turn)), from = glm::dvec2(1.0) - 0.9 * direction;
+      const std::vector<glm::dvec2> points{from, from + 1.8 * direction};
+      Coverage covered;
+      for (int seed = 0; seed < coverageSeeds(); ++seed) {
+        std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+        std::normal_distribution<double> normal;
+        std::vector<double> off(kSide);
+        for (double& each : off) each = kOff * normal(random);
+        std::vector<float> heights(static_cast<std::size_t>(grid.samples()),
+                                   std::numeric_limits<float>::quiet_NaN());
+        for (int r = 0; r < kSide; ++r)
+          for (int c = 0; c < kSide; ++c) {
+            const glm::dvec2 at = glm::dvec2(c, r) * kSpacing - from;
+            // What the section does not reach is not drawn.
+            if (std::abs(at.x * direction.y - at.y * direction.x) > 0.5 * of.width_mm + 3.0 * kSpacing)
+              continue;
+            heights[static_cast<std::size_t>(r * kSide + c)] =
+                static_cast<float>(one.part.height(at.x * direction.x + at.y * direction.y) +
+                                   off[static_cast<std::size_t>(of.rows ? r : c)] + kNoise * normal(random));
+          }
+        JobControl job;
+        const auto section = sectionAlong(makeField(grid, heights), points, {.width_mm = of.width_mm}, job);
+        ASSERT_TRUE(section) << section.error().line();
+        const Estimate figure = one.measured(*section, {kNoise, of.rows ? kOff : 0.0, of.rows ? 0.0 : kOff});
+        covered.add(figure.value - one.part.truth, figure.error);
+      }
+      std::printf("%-20s %-22s %s  error %.3e stated %.3e\n", one.part.name.c_str(), of.name,
+                  covered.counts().c_str(), covered.rms(), covered.stated());
+      if (!countsCoverage()) continue;
+      EXPECT_EQ(covered.complaint(), "") << one.part.name << ' ' << of.name;
+      EXPECT_LE(covered.stated(), 1.5 * covered.rms()) << one.part.name << ' ' << of.name;
     }
 }
 
