@@ -21,14 +21,10 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                                                             : "mark samples, or fit by all of them";
     return tl::unexpected(error);
   }
-  return FormTool::Fit{options,
-                       std::make_shared<const engine::NominalForm>(fit->form),
-                       fit->samples,
-                       fit->rms,
-                       fit->open,
-                       fit->leaves,
-                       fit->beyond,
-                       engine::tiltOf(*fit, field.grid())};
+  return FormTool::Fit{options,      std::make_shared<const engine::NominalForm>(fit->form),
+                       fit->samples, fit->rms,
+                       fit->open,    fit->leaves,
+                       fit->beyond,  engine::tiltOf(*fit, field.grid())};
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ TEST(AsciiGrid, DigitsThatAFloatLosesBesideTheRangeAreWarnedOf) {
   };
   // Steps of floats at 5,000 are 0.0005: half of the range is lost.
   EXPECT_TRUE(warnedOf("5000.0001 5000.0003\n5000.0007 5000.0011"));
-  EXPECT_TRUE(warnedOf("5000.0001 5000.0002\n5000.0001 5000.0002"));  // all the same as floats, a range before
+  EXPECT_TRUE(
+      warnedOf("5000.0001 5000.0002\n5000.0001 5000.0002"));  // all the same as floats, a range before
   EXPECT_FALSE(warnedOf("0.1 0.3\n0.7 -9999"));
   EXPECT_FALSE(warnedOf("5000.1 5000.1\n5000.1 5000.1"));  // no range that could be lost
 }
