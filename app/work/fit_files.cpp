@@ -99,15 +99,9 @@ Report fitReport(const FittedRegion& fitted) {
     report["direction_error"] = errorsOf(e.direction);
   }
   if (s.kind == ShapeKind::kPlane) {
-    const auto tilt = [&](double along, double error) {
-      const double slope = -along / s.direction.z;
-      return std::pair(std::atan(slope) * kFitDegrees,
-                       error / (1.0 + slope * slope) / s.direction.z * kFitDegrees);
-    };
-    const auto [x, x_error] = tilt(s.direction.x, e.direction.x);
-    const auto [y, y_error] = tilt(s.direction.y, e.direction.y);
-    addFigure(report, "tilt_x", "deg", x, x_error);
-    addFigure(report, "tilt_y", "deg", y, y_error);
+    const auto degrees = [&](double along) { return std::atan(-along / s.direction.z) * kFitDegrees; };
+    addFigure(report, "tilt_x", "deg", degrees(s.direction.x), e.tilt_x * kFitDegrees);
+    addFigure(report, "tilt_y", "deg", degrees(s.direction.y), e.tilt_y * kFitDegrees);
   } else {
     report["hollow"] = s.hollow;
   }

@@ -27,13 +27,23 @@ Shape ShapeFit::moved(const std::array<double, kMost>& by) const noexcept {
 }
 
 ShapeFit::Errors ShapeFit::errors() const noexcept {
-  const auto variance = figureVariances<9>(*this, [](const Shape& s) {
-    return std::array<double, 9>{s.point.x,     s.point.y, s.point.z,     s.direction.x, s.direction.y,
-                                 s.direction.z, s.radius,  s.tube_radius, s.half_angle};
+  const auto variance = figureVariances<11>(*this, [](const Shape& s) {
+    const bool plane = s.kind == ShapeKind::kPlane;
+    return std::array<double, 11>{s.point.x,
+                                  s.point.y,
+                                  s.point.z,
+                                  s.direction.x,
+                                  s.direction.y,
+                                  s.direction.z,
+                                  s.radius,
+                                  s.tube_radius,
+                                  s.half_angle,
+                                  plane ? std::atan(-s.direction.x / s.direction.z) : 0.0,
+                                  plane ? std::atan(-s.direction.y / s.direction.z) : 0.0};
   });
-  std::array<double, 9> e{};
+  std::array<double, 11> e{};
   for (std::size_t f = 0; f < e.size(); ++f) e[f] = std::sqrt(variance[f]);
-  return {{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6], e[7], e[8]};
+  return {{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6], e[7], e[8], e[9], e[10]};
 }
 
 Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOptions& options,

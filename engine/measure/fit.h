@@ -55,6 +55,8 @@ struct ShapeFit {
   struct Errors {
     glm::dvec3 point{0.0}, direction{0.0};
     double radius = 0.0, tube_radius = 0.0, half_angle = 0.0;
+    double tilt_x = 0.0,
+           tilt_y = 0.0;  ///< of a plane: of the angles at which it rises along x and y [radians]
   };
   [[nodiscard]] Errors errors() const noexcept;
 };

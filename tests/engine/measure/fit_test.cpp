@@ -409,6 +409,28 @@ TEST(FitUncertainty, CoversOfAngleAndDistance) {
   }
 }
 
+// Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
+TEST(FitUncertainty, CoversTiltsOfSteepPlanes) {
+  Coverage of_x, of_y;
+  for (int seed = 0; seed < coverageSeeds(); ++seed) {
+    const auto plane = fitOf(fieldWith(
+                                 {20, 20, 0.25, 0.25}, [](double x, double y) { return 1.5 * x - 0.5 * y; },
+                                 0.005, static_cast<std::uint64_t>(seed)),
+                             ShapeKind::kPlane, {.noise_mm = 0.005});
+    ASSERT_TRUE(plane);
+    const glm::dvec3 n = plane->shape.direction;
+    const ShapeFit::Errors e = plane->errors();
+    of_x.add(std::atan(-n.x / n.z) - std::atan(1.5), e.tilt_x);
+    of_y.add(std::atan(-n.y / n.z) + std::atan(0.5), e.tilt_y);
+  }
+  for (const auto& [name, covered] : {std::pair("tilt x", of_x), std::pair("tilt y", of_y)}) {
+    std::printf("%-10s %s\n", name, covered.counts().c_str());
+    if (countsCoverage()) {
+      EXPECT_EQ(covered.complaint(), "") << name;
+    }
+  }
+}
+
 // Noise that 3 x 3 neighbours share: the scatter of sums over parts of the region says so.
 TEST(FitUncertainty, CountsNoiseThatNeighboursShare) {
   const SeenShape of = seenShapes()[3];
