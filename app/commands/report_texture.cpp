@@ -166,15 +166,22 @@ engine::Status addCurves(ReportDraft& draft, const MeasuredStates& found) {
                  correlationPlot(analysed));
         !status)
       return status;
-    if (auto status =
-            draw("Power spectral density of profiles along x and along y", spectrumPlot(analysed, grid));
-        !status)
-      return status;
   }
   if (analysed.size() < draft.states.size())
     draft.page.parts.emplace_back(ReportPage::Paragraph{
         fmt::format("No autocorrelation and no spectrum{}: {}.", analysed.empty() ? "" : " of one state",
                     none.empty() ? "there was no memory for it" : none)});
+  const auto beside =
+      std::erase_if(analysed, [](const PlottedState& state) { return !hasSpectrum(*state.measured); });
+  if (beside > 0)
+    draft.page.parts.emplace_back(
+        ReportPage::Paragraph{fmt::format("No spectrum{}: no samples of a line lie beside each other.",
+                                          analysed.empty() ? "" : " of one state")});
+  if (!analysed.empty())
+    if (auto status =
+            draw("Power spectral density of profiles along x and along y", spectrumPlot(analysed, grid));
+        !status)
+      return status;
   draft.report["curves"] = drawn;
   return {};
 }

@@ -129,6 +129,9 @@ engine::Status writeCurves(const CurveFiles& files, const engine::ArealParameter
                                             measured.spatial.no_sal.empty() ? "there was no memory for it"
                                                                             : measured.spatial.no_sal),
                                 option, "leave the option out");
+  if (!files.spectrum.empty() && !hasSpectrum(measured))
+    return engine::inputError("the surface has no power spectrum: no samples of a line lie beside each other",
+                              "--spectrum", "leave the option out");
   const PlottedState state[] = {{"", &measured}};
   const auto write = [&job](const std::string& path, const auto& table, const auto& plot) -> engine::Status {
     if (path.empty()) return {};

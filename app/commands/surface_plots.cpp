@@ -1,10 +1,12 @@
 #include "app/commands/surface_plots.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -133,6 +135,14 @@ std::string correlationPlot(std::span<const PlottedState> states) {
     }
   }
   return script + curves.script();
+}
+
+bool hasSpectrum(const engine::ArealParameters& measured) {
+  return std::ranges::any_of(
+      std::array{engine::ProfileAxis::kX, engine::ProfileAxis::kY}, [&](engine::ProfileAxis axis) {
+        const auto spectrum = engine::profileSpectrum(measured.analysis->correlation, axis, 1.0);
+        return std::ranges::any_of(spectrum.density | std::views::drop(1), [](double d) { return d > 0.0; });
+      });
 }
 
 std::string spectrumPlot(std::span<const PlottedState> states, const engine::Grid& grid) {

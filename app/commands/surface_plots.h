@@ -20,7 +20,9 @@ struct PlottedState {
 [[nodiscard]] std::string abbottPlot(std::span<const PlottedState> states, const engine::Grid& grid);
 /// Autocorrelation in the directions of its fastest and slowest decay; of states that have an analysis.
 [[nodiscard]] std::string correlationPlot(std::span<const PlottedState> states);
-/// Power spectral density of profiles along x and along y; of states that have an analysis.
+/// Whether samples of lines lie so near to each other that their profiles have a spectrum; of a state that has an analysis.
+[[nodiscard]] bool hasSpectrum(const engine::ArealParameters& measured);
+/// Power spectral density of profiles along x and along y; of states that have one.
 [[nodiscard]] std::string spectrumPlot(std::span<const PlottedState> states, const engine::Grid& grid);
 
 }  // namespace fettle::app

@@ -307,6 +307,22 @@ TEST(ReportPage, OfAScanAloneHasOneStateAndNoNumberThatIsNone) {
   }
 }
 
+TEST(ReportPage, OfSamplesThatNeverLieBesideEachOtherHasNoSpectrum) {
+  const TempFolder folder;
+  const std::string scan = folder.file("checker.asc"), page = folder.file("page.html");
+  {
+    std::ofstream out(scan);
+    out << "ncols 40\nnrows 40\nxllcenter 0\nyllcenter 0\ncellsize 0.1\nNODATA_value -9999\n";
+    for (int r = 0; r < 40; ++r)
+      for (int c = 0; c < 40; ++c)
+        out << ((r + c) % 2 == 0 ? -9999.0 : 0.001 * (c * 37 % 11 + r * 13 % 7)) << (c == 39 ? '\n' : ' ');
+  }
+  const Outcome made = fettle({"report", scan, page, "--unit", "mm"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(bytesOf(page).find("no samples of a line lie beside each other"), std::string::npos);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--spectrum", "-"}), "no power spectrum");
+}
+
 TEST(ReportPage, RefusesWhatItCannotCompareOrMeasure) {
   const TempFolder folder;
   const std::string a = folder.file("a.tif"), b = folder.file("b.tif"), page = folder.file("r.html");
