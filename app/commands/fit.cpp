@@ -246,7 +246,7 @@ void addFit(Command root, Chosen& chosen) {
         .text = "The distances whose squares are made small",
         .words = {{"orthogonal",
                    "the shortest to the shape, as the standards of coordinate metrology have it"},
-                  {"vertical", "along z, in which a scanner has its noise; to first order"}}},
+                  {"vertical", "along z, in which a scanner has its noise"}}},
        {.name = "--robust",
         .to = &options->robust,
         .text = "Samples far from the shape do not count; half of them must be near to it"},

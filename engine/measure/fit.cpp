@@ -94,8 +94,7 @@ Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOp
 }
 
 double residualAt(const ShapeFit& fit, const glm::dvec3& point, bool vertical) noexcept {
-  const FitSurface::At at = fit.surface.at((point - fit.middle) / fit.scale);
-  return fit.scale * at.distance * FitWeights{vertical, 0.0}.factor(at.gradient.z);
+  return fit.scale * placeOf(fit.surface, {vertical, 0.0}, (point - fit.middle) / fit.scale).residual;
 }
 
 }  // namespace fettle::engine

@@ -13,8 +13,8 @@ namespace fettle::engine {
 
 struct FitOptions {
   /// What is made small: the squares of orthogonal distances, as ISO 10360-6 and the Gaussian association of ISO 14405-1
-  /// have it; or of heights, distances over the cosine of the inclination, which noise in height asks for. Steeper than
-  /// 84 degrees both count as there.
+  /// have it; or of distances along z, which noise in height asks for. Where the surface is steeper than 84 degrees, or has no place
+  /// above or below a sample, the distance over the cosine of that inclination stands for that along z.
   bool vertical = false;
   /// Samples far from the shape do not count: Tukey's biweight at 4.685 times the normalised median distance. Half of the
   /// samples must be nearer than the others are.
@@ -77,7 +77,7 @@ struct ShapeFit {
 [[nodiscard]] Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOptions& options,
                                         JobControl& job);
 
-/// The distance of a point [mm, field coordinates] from a fit, above 0 above it; along z to first order with `vertical`.
+/// The distance of a point [mm, field coordinates] from a fit, above 0 above it; along z with `vertical`.
 [[nodiscard]] double residualAt(const ShapeFit& fit, const glm::dvec3& point, bool vertical) noexcept;
 
 }  // namespace fettle::engine

@@ -103,7 +103,7 @@ double robustScale(const FitPoints& points, const FitWeights& weights, const Fit
 
 bool fitInRounds(const FitPoints& points, FitWeights weights, bool robust, double least, FitModel& model,
                  JobControl& job) {
-  const int rounds = robust ? 20 : weights.vertical ? 4 : 1;
+  const int rounds = robust ? 20 : 1;
   double before = 0.0;
   for (int round = 0; round < rounds; ++round) {
     if (robust) {

@@ -109,11 +109,10 @@ struct FitFunctor {
         points.samples->read(b, block);
         for (int i = 0; i < block.count; ++i) {
           const glm::dvec3 p = block.points[static_cast<std::size_t>(i)] / points.scale;
-          const FitSurface::At on = rows.surface().at(p);
+          const FitPlace on = placeOf(rows.surface(), weights, p);
           double* row = part.next();
-          rows.derivatives(on, p, row);
-          double factor = weights.vertical ? weights.factor(model.base.at(p).gradient.z) : 1.0;
-          double residual = factor * on.distance;
+          rows.derivatives(on.at, on.point, row);
+          double factor = on.factor, residual = on.residual;
           if (weights.robust_scale > 0.0) {
             // Squares of f = sqrt(2 rho) are twice Tukey's function.
             const double c = FitWeights::kTukey * weights.robust_scale, x2 = std::pow(residual / c, 2);
@@ -198,6 +197,27 @@ double FitWeights::factor(double gradient_z) const noexcept {
   return vertical ? 1.0 / std::max(std::abs(gradient_z), kSteepest) : 1.0;
 }
 
+FitPlace placeOf(const FitSurface& surface, const FitWeights& weights, const glm::dvec3& p) noexcept {
+  FitPlace place{surface.at(p), p};
+  place.factor = weights.factor(place.at.gradient.z);
+  place.residual = place.factor * place.at.distance;
+  if (!weights.vertical) return place;
+  constexpr int kMostSteps = 30;
+  glm::dvec3 q = p;
+  FitSurface::At at = place.at;
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!(at.gradient.z >= FitWeights::kSteepest)) return place;
+    const double by = at.distance / at.gradient.z;
+    q.z -= by;
+    at = surface.at(q);
+    // Rounding of z, in which steps end.
+    if (!(std::abs(by) > 1e-15 * (1.0 + std::abs(q.z)))) break;
+  }
+  if (!(at.gradient.z >= FitWeights::kSteepest) || !(std::abs(at.distance) < 1e-12 * (1.0 + std::abs(q.z))))
+    return place;
+  return {at, q, 1.0 / at.gradient.z, p.z - q.z};
+}
+
 double FitWeights::share(double residual) const noexcept {
   if (!(robust_scale > 0.0)) return 1.0;
   const double x = residual / (kTukey * robust_scale), rest = 1.0 - x * x;
@@ -236,9 +256,9 @@ std::vector<float> residualsOf(const FitPoints& points, const FitWeights& weight
     for (std::size_t b = points.begin(group); b < points.begin(group + 1); ++b) {
       points.samples->read(b, block);
       for (int i = 0; i < block.count; ++i) {
-        const FitSurface::At at = surface.at(block.points[static_cast<std::size_t>(i)] / points.scale);
+        const glm::dvec3 p = block.points[static_cast<std::size_t>(i)] / points.scale;
         residuals[points.samples->first(b) + static_cast<std::size_t>(i)] =
-            static_cast<float>(weights.factor(at.gradient.z) * at.distance);
+            static_cast<float>(placeOf(surface, weights, p).residual);
       }
     }
   });

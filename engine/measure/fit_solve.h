@@ -54,6 +54,19 @@ struct FitWeights {
   [[nodiscard]] double share(double residual) const noexcept;
 };
 
+/// Where a sample counts on a surface: nearest to it, or with vertical distances above or below it.
+struct FitPlace {
+  FitSurface::At at;
+  glm::dvec3 point{
+      0.0};  ///< at which the derivatives of the distance are those of the residual, times `factor`
+  double factor = 1.0;
+  double residual = 0.0;
+};
+/// The place for a point. Vertical: by Newton's steps along z, exact; where none is found on which the surface is flatter than 84
+/// degrees, the distance over the cosine of that inclination.
+[[nodiscard]] FitPlace placeOf(const FitSurface& surface, const FitWeights& weights,
+                               const glm::dvec3& p) noexcept;
+
 /// Points in parts of `scale`.
 struct FitPoints {
   const FitSamples* samples = nullptr;
@@ -64,7 +77,7 @@ struct FitPoints {
 };
 
 /// The surface of the model at which the sum of squares, or of Tukey's function, of weighted distances is least, near the
-/// base; the weights of vertical distances are those at the base. False where no finite one was found. Throws std::bad_alloc.
+/// base. False where no finite one was found. Throws std::bad_alloc.
 [[nodiscard]] bool solveFit(const FitPoints& points, const FitWeights& weights, FitModel& model,
                             JobControl& job);
 

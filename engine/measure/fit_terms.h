@@ -21,19 +21,18 @@ class FitTerms {
 
   /// Takes the sample at a point in parts of the scale; false: it does not count.
   bool take(const glm::dvec3& p) {
-    const FitSurface::At at = rows_.surface().at(p);
-    const double factor = weights_.factor(at.gradient.z);
-    residual = factor * at.distance;
+    const FitPlace on = placeOf(rows_.surface(), weights_, p);
+    residual = on.residual;
     share = weights_.share(residual);
     if (share == 0.0) return false;
-    rows_.derivatives(at, p, row.data());
-    row *= factor;
+    rows_.derivatives(on.at, on.point, row.data());
+    row *= on.factor;
     slope = 1.0;
     if (weights_.robust_scale > 0.0) {
       const double x2 = std::pow(residual / (FitWeights::kTukey * weights_.robust_scale), 2);
       slope = (1.0 - x2) * (1.0 - 5.0 * x2);
     }
-    cosine = factor * std::max(std::abs(at.gradient.z), FitWeights::kSteepest);
+    cosine = on.factor * std::max(std::abs(on.at.gradient.z), FitWeights::kSteepest);
     return true;
   }
 

@@ -409,6 +409,63 @@ TEST(FitUncertainty, CoversOfAngleAndDistance) {
   }
 }
 
+// The least squares of heights themselves, of a plane as by its own normal equations, of a ball by a look around it.
+TEST(Fit, VerticalDistancesAreThoseAlongZ) {
+  const Version steep = fieldWith(
+      {30, 20, 0.1, 0.1}, [](double x, double y) { return x - 0.3 * y; }, 0.05);
+  const auto plane = fitOf(steep, ShapeKind::kPlane, {.vertical = true, .noise_mm = 0.05});
+  ASSERT_TRUE(plane);
+  Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d with_z = Eigen::Vector3d::Zero();
+  const auto everySample = [](const Version& field, const auto& use) {
+    for (int r = 0; r < field.grid().height; ++r)
+      for (int c = 0; c < field.grid().width; ++c) {
+        float z = 0.0F;
+        field.reader().readHeights(c, r, 1, 1, &z, 1);
+        use(glm::dvec3(c * field.grid().spacing_x, r * field.grid().spacing_y, double{z}));
+      }
+  };
+  everySample(steep, [&](const glm::dvec3& p) {
+    const Eigen::Vector3d row(1.0, p.x, p.y);
+    sums += row * row.transpose();
+    with_z += p.z * row;
+  });
+  const Eigen::Vector3d own = sums.ldlt().solve(with_z);
+  const glm::dvec3 n = plane->shape.direction;
+  EXPECT_NEAR(-n.x / n.z, own[1], 1e-9);
+  EXPECT_NEAR(-n.y / n.z, own[2], 1e-9);
+  // Orthogonal distances make the slope larger: by 12 times the square of noise over length, times what it rises.
+  const auto nearest = fitOf(steep, ShapeKind::kPlane, {.noise_mm = 0.05});
+  ASSERT_TRUE(nearest);
+  EXPECT_GT(-nearest->shape.direction.x / nearest->shape.direction.z, own[1] + 1e-3);
+
+  const Version cap = fieldWith(
+      {40, 40, 0.1, 0.1},
+      [](double x, double y) { return std::sqrt(6.25 - (x - 2) * (x - 2) / 1.6 - (y - 2) * (y - 2) / 1.6); },
+      0.02);
+  const auto ball = fitOf(cap, ShapeKind::kSphere, {.vertical = true, .noise_mm = 0.02});
+  ASSERT_TRUE(ball);
+  const auto squares = [&](const glm::dvec3& centre, double radius) {
+    double sum = 0.0;
+    everySample(cap, [&](const glm::dvec3& p) {
+      const double across = (p.x - centre.x) * (p.x - centre.x) + (p.y - centre.y) * (p.y - centre.y);
+      sum += std::pow(p.z - centre.z - std::sqrt(radius * radius - across), 2);
+    });
+    return sum;
+  };
+  const glm::dvec3 centre = ball->shape.point;
+  const double least = squares(centre, ball->shape.radius);
+  EXPECT_NEAR(std::sqrt(least / 1600.0), ball->rms_mm, 1e-9);
+  for (const double by : {-1e-5, 1e-5}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 moved = centre;
+      moved[axis] += by;
+      EXPECT_GT(squares(moved, ball->shape.radius), least) << axis;
+    }
+    EXPECT_GT(squares(centre, ball->shape.radius + by), least);
+  }
+}
+
 // Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
 TEST(FitUncertainty, CoversTiltsOfSteepPlanes) {
   Coverage of_x, of_y;
