@@ -1,12 +1,10 @@
 #include "app/commands/surface_plots.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -138,11 +136,12 @@ std::string correlationPlot(std::span<const PlottedState> states) {
 }
 
 bool hasSpectrum(const engine::ArealParameters& measured) {
-  return std::ranges::any_of(
-      std::array{engine::ProfileAxis::kX, engine::ProfileAxis::kY}, [&](engine::ProfileAxis axis) {
-        const auto spectrum = engine::profileSpectrum(measured.analysis->correlation, axis, 1.0);
-        return std::ranges::any_of(spectrum.density | std::views::drop(1), [](double d) { return d > 0.0; });
-      });
+  for (const engine::ProfileAxis axis : {engine::ProfileAxis::kX, engine::ProfileAxis::kY}) {
+    const auto spectrum = engine::profileSpectrum(measured.analysis->correlation, axis, 1.0);
+    for (std::size_t i = 1; i < spectrum.density.size(); ++i)
+      if (spectrum.density[i] > 0.0) return true;
+  }
+  return false;
 }
 
 std::string spectrumPlot(std::span<const PlottedState> states, const engine::Grid& grid) {
