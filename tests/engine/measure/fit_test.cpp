@@ -21,60 +21,10 @@
 #include "engine/measure/fit_choice.h"
 #include "engine/measure/fit_lines.h"
 #include "engine/measure/fit_relation.h"
-#include "tests/support/coverage.h"
+#include "tests/engine/measure/seen_shapes.h"
 
 namespace fettle::engine {
 namespace {
-
-using tests::countsCoverage;
-using tests::Coverage;
-using tests::coverageSeeds;
-
-constexpr double kFitHole = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFitDegree = std::numbers::pi / 180.0;
-
-// Heights of a shape over (x, y), by bisection along z between two bounds: a plain twin of what is fitted.
-double heightOn(const Shape& shape, double x, double y, double low, double high) {
-  const auto at = [&](double z) { return distanceFrom(shape, {x, y, z}); };
-  if (!(at(low) <= 0.0 && at(high) >= 0.0)) return kFitHole;
-  for (int k = 0; k < 80; ++k) {
-    const double middle = 0.5 * (low + high);
-    (at(middle) < 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-struct FitField {
-  int width = 60, height = 50;
-  double spacing_x = 0.1, spacing_y = 0.1;
-};
-
-Version fieldWith(const FitField& of, const std::function<double(double, double)>& z, double noise = 0.0,
-                  std::uint64_t seed = 1) {
-  Grid grid;
-  grid.width = of.width;
-  grid.height = of.height;
-  grid.spacing_x = of.spacing_x;
-  grid.spacing_y = of.spacing_y;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  std::vector<float> heights;
-  for (int r = 0; r < of.height; ++r)
-    for (int c = 0; c < of.width; ++c)
-      heights.push_back(static_cast<float>(z(c * of.spacing_x, r * of.spacing_y) + noise * normal(random)));
-  return makeField(grid, heights);
-}
-
-FitRegion wholeOf(const Version& field) {
-  JobControl job;
-  auto region = wholeRegion(field, Region::kAll, job);
-  return region ? *std::move(region) : FitRegion{};
-}
-
-Result<ShapeFit> fitOf(const Version& field, ShapeKind kind, const FitOptions& options = {}) {
-  JobControl job;
-  return fitShape(FitSamples(field, wholeOf(field)), kind, options, job);
-}
 
 TEST(Fit, SaysWhatItIsDoing) {
   const Version field = fieldWith({}, [](double x, double y) { return 0.1 * x - 0.2 * y; });
@@ -82,42 +32,6 @@ TEST(Fit, SaysWhatItIsDoing) {
   JobControl job;
   ASSERT_TRUE(fitShape(FitSamples(field, region), ShapeKind::kPlane, {}, job));
   EXPECT_STREQ(job.stage(), "fitting");
-}
-
-// A part of each shape as seen from above, 6 x 5 mm around (3, 2.5); the bounds of z for heightOn.
-struct SeenShape {
-  std::string name;
-  Shape shape;
-  double low = -50.0, high = 50.0;
-};
-std::vector<SeenShape> seenShapes() {
-  const auto axis = [](double x, double y, double z) { return glm::normalize(glm::dvec3(x, y, z)); };
-  return {
-      {"plane", {ShapeKind::kPlane, {3.0, 2.5, 0.2}, axis(0.2, -0.1, 1.0)}, -9, 9},
-      {"ball", {ShapeKind::kSphere, {2.7, 2.9, -3.0}, {0, 0, 1}, 6.0}, -3, 9},
-      {"hollow ball", {ShapeKind::kSphere, {2.7, 2.9, 7.0}, {0, 0, 1}, 6.0, 0, 0, true}, -9, 7},
-      {"cylinder", {ShapeKind::kCylinder, {3.0, 2.5, -4.0}, axis(1.0, 0.4, 0.1), 6.0}, -3, 9},
-      {"hollow cylinder",
-       {ShapeKind::kCylinder, {3.0, 2.5, 8.0}, axis(0.1, 1.0, -0.2), 6.0, 0, 0, true},
-       -9,
-       7},
-      {"cone", {ShapeKind::kCone, {-9.0, 2.0, -2.0}, axis(1.0, 0.1, -0.1), 0, 0, 20.0 * kFitDegree}, -2.2, 9},
-      {"countersink",
-       {ShapeKind::kCone, {3.1, 2.4, -2.0}, axis(0.02, 0.01, 1.0), 0, 0, 45.0 * kFitDegree, true},
-       -9,
-       9},
-      {"ring", {ShapeKind::kTorus, {3.0, 2.5, 0.0}, axis(0.03, 0.02, 1.0), 4.0, 3.0}, 0.05, 4},
-      {"hollow ring",
-       {ShapeKind::kTorus, {3.0, -4.0, 5.0}, axis(1.0, 0.1, 0.05), 8.0, 3.5, 0, true},
-       -9,
-       -2.0},
-  };
-}
-
-Version seenField(const SeenShape& seen, double noise = 0.0, std::uint64_t seed = 1,
-                  const FitField& of = {}) {
-  return fieldWith(
-      of, [&](double x, double y) { return heightOn(seen.shape, x, y, seen.low, seen.high); }, noise, seed);
 }
 
 double directionOff(const Shape& a, const Shape& b) {
@@ -188,159 +102,6 @@ TEST(Fit, DistancesAndTheirSlopesAreThoseOfThePlainTwin) {
     }
 }
 
-// Simulated scans of each shape under 5 um of noise: how often the truth lies within one, two and three standard errors.
-// The table of 1,000 is printed: FETTLE_TRIALS=1000 build/release/tests/engine/measure/measure_test
-// --gtest_filter='FitUncertainty*'
-TEST(FitUncertainty, CoversAtOneTwoAndThreeTimes) {
-  struct Figure {
-    const char* name;
-    std::function<double(const Shape&)> value;
-    std::function<double(const ShapeFit::Errors&)> error;
-  };
-  const Figure radius{"radius", [](const Shape& s) { return s.radius; },
-                      [](const auto& e) { return e.radius; }};
-  const Figure point_z{"point z", [](const Shape& s) { return s.point.z; },
-                       [](const auto& e) { return e.point.z; }};
-  const Figure point_x{"point x", [](const Shape& s) { return s.point.x; },
-                       [](const auto& e) { return e.point.x; }};
-  const Figure axis_z{"direction z", [](const Shape& s) { return s.direction.z; },
-                      [](const auto& e) { return e.direction.z; }};
-  const Figure tube{"tube radius", [](const Shape& s) { return s.tube_radius; },
-                    [](const auto& e) { return e.tube_radius; }};
-  const Figure angle{"half angle", [](const Shape& s) { return s.half_angle; },
-                     [](const auto& e) { return e.half_angle; }};
-  struct Case {
-    std::size_t shape;
-    std::vector<Figure> figures;
-    FitOptions options;
-  };
-  const std::vector<SeenShape> seen = seenShapes();
-  const std::vector<Case> cases{{0, {axis_z}, {}},
-                                {1, {radius, point_z, point_x}, {}},
-                                {1, {radius}, {.vertical = true}},
-                                {1, {radius}, {.robust = true}},
-                                {3, {radius, axis_z}, {}},
-                                {3, {radius, axis_z}, {.vertical = true}},
-                                {6, {angle, point_z, axis_z}, {}},
-                                {7, {radius, tube, axis_z}, {}}};
-  for (const Case& one : cases) {
-    const SeenShape& of = seen[one.shape];
-    std::vector<Coverage> covered(one.figures.size());
-    for (int seed = 0; seed < coverageSeeds(); ++seed) {
-      const Version field = seenField(of, 0.005, static_cast<std::uint64_t>(seed) + 1, {24, 20, 0.25, 0.25});
-      FitOptions options = one.options;
-      options.noise_mm = 0.005;
-      const auto fit = fitOf(field, of.shape.kind, options);
-      ASSERT_TRUE(fit) << of.name << ' ' << seed << ' ' << fit.error().line();
-      const ShapeFit::Errors errors = fit->errors();
-      for (std::size_t f = 0; f < one.figures.size(); ++f)
-        covered[f].add(one.figures[f].value(fit->shape) - one.figures[f].value(of.shape),
-                       one.figures[f].error(errors));
-    }
-    for (std::size_t f = 0; f < one.figures.size(); ++f) {
-      std::printf("%-10s %-10s %-7s %-12s %s  error %.3g, stated %.3g\n", of.name.c_str(),
-                  one.options.vertical ? "vertical" : "orthogonal", one.options.robust ? "robust" : "",
-                  one.figures[f].name, covered[f].counts().c_str(), covered[f].rms(), covered[f].stated());
-      if (countsCoverage()) {
-        EXPECT_EQ(covered[f].complaint(), "") << of.name << ' ' << one.figures[f].name;
-      }
-    }
-  }
-}
-
-// What a whole row or column is off, besides noise of each sample.
-struct OffLines {
-  double rows = 0.0, columns = 0.0;
-};
-
-Version withOffsets(const SeenShape& seen, const FitField& of, double noise, const OffLines& off,
-                    std::uint64_t seed) {
-  std::mt19937_64 random(seed + 1000);
-  std::normal_distribution<double> normal;
-  std::vector<double> rows(static_cast<std::size_t>(of.height)), columns(static_cast<std::size_t>(of.width));
-  for (double& each : rows) each = off.rows * normal(random);
-  for (double& each : columns) each = off.columns * normal(random);
-  return fieldWith(
-      of,
-      [&](double x, double y) {
-        return heightOn(seen.shape, x, y, seen.low, seen.high) +
-               rows[static_cast<std::size_t>(std::lround(y / of.spacing_y))] +
-               columns[static_cast<std::size_t>(std::lround(x / of.spacing_x))];
-      },
-      noise, seed);
-}
-
-// Each shape under noise of rows, of columns and of both: along the lines and across them errors differ by the root of the
-// samples of a line.
-TEST(FitUncertainty, CoversUnderNoiseOfRowsAndColumns) {
-  struct Figure {
-    const char* name;
-    std::function<double(const Shape&)> value;
-    std::function<double(const ShapeFit::Errors&)> error;
-  };
-  const Figure axis_x{"direction x", [](const Shape& s) { return s.direction.x; },
-                      [](const auto& e) { return e.direction.x; }};
-  const Figure axis_y{"direction y", [](const Shape& s) { return s.direction.y; },
-                      [](const auto& e) { return e.direction.y; }};
-  const Figure point_x{"point x", [](const Shape& s) { return s.point.x; },
-                       [](const auto& e) { return e.point.x; }};
-  const Figure point_y{"point y", [](const Shape& s) { return s.point.y; },
-                       [](const auto& e) { return e.point.y; }};
-  const Figure radius{"radius", [](const Shape& s) { return s.radius; },
-                      [](const auto& e) { return e.radius; }};
-  const Figure angle{"half angle", [](const Shape& s) { return s.half_angle; },
-                     [](const auto& e) { return e.half_angle; }};
-  const Figure tube{"tube radius", [](const Shape& s) { return s.tube_radius; },
-                    [](const auto& e) { return e.tube_radius; }};
-  struct Case {
-    std::size_t shape;
-    OffLines off;
-    std::vector<Figure> figures;
-    FitOptions options;
-  };
-  const OffLines rows{5e-4, 0.0}, columns{0.0, 5e-4}, both{2e-4, 5e-4}, loud{5e-3, 0.0};
-  const std::vector<Case> cases{{0, rows, {axis_x, axis_y}, {}},
-                                {0, columns, {axis_x, axis_y}, {}},
-                                {0, both, {axis_x, axis_y}, {}},
-                                {0, loud, {axis_x, axis_y}, {.vertical = true}},
-                                {0, rows, {axis_x, axis_y}, {.robust = true}},
-                                {0, loud, {axis_x, axis_y}, {.vertical = true, .robust = true}},
-                                {1, rows, {radius, point_x, point_y}, {}},
-                                {1, columns, {radius, point_x, point_y}, {.vertical = true}},
-                                {3, both, {radius, axis_y}, {}},
-                                {6, rows, {angle, point_x, point_y}, {}},
-                                {7, rows, {radius, tube, axis_x, axis_y}, {}}};
-  // Of 41 rows: the size of their offsets is known, what they are is not.
-  const FitField field{51, 41, 6.0 / 50.0, 5.0 / 40.0};
-  constexpr double kWhite = 1e-4;
-  const std::vector<SeenShape> seen = seenShapes();
-  for (const Case& one : cases) {
-    const SeenShape& of = seen[one.shape];
-    std::vector<Coverage> covered(one.figures.size());
-    for (int seed = 0; seed < coverageSeeds(); ++seed) {
-      const Version scan = withOffsets(of, field, kWhite, one.off, static_cast<std::uint64_t>(seed) + 1);
-      FitOptions options = one.options;
-      options.noise_mm = kWhite;
-      options.rows_mm = one.off.rows;
-      options.columns_mm = one.off.columns;
-      const auto fit = fitOf(scan, of.shape.kind, options);
-      ASSERT_TRUE(fit) << of.name << ' ' << seed << ' ' << fit.error().line();
-      const ShapeFit::Errors errors = fit->errors();
-      for (std::size_t f = 0; f < one.figures.size(); ++f)
-        covered[f].add(one.figures[f].value(fit->shape) - one.figures[f].value(of.shape),
-                       one.figures[f].error(errors));
-    }
-    for (std::size_t f = 0; f < one.figures.size(); ++f) {
-      std::printf("%-10s rows %.0f columns %.0f %-7s %-12s %s  error %.3g, stated %.3g\n", of.name.c_str(),
-                  one.off.rows / kWhite, one.off.columns / kWhite, one.options.robust ? "robust" : "",
-                  one.figures[f].name, covered[f].counts().c_str(), covered[f].rms(), covered[f].stated());
-      if (!countsCoverage()) continue;
-      EXPECT_EQ(covered[f].complaint(), "") << of.name << ' ' << one.figures[f].name;
-      EXPECT_LE(covered[f].stated(), 1.5 * covered[f].rms()) << of.name << ' ' << one.figures[f].name;
-    }
-  }
-}
-
 // Sums by rows and columns against the covariance matrix of all samples, and the fit itself, which no noise changes.
 TEST(Fit, NoiseOfLinesIsSummedAsItsMatrixHasIt) {
   const SeenShape seen = seenShapes()[7];
@@ -382,31 +143,6 @@ TEST(Fit, NoiseOfLinesIsSummedAsItsMatrixHasIt) {
       expected += covariance * rows[a] * rows[b].transpose();
     }
   EXPECT_LT((sums.covariance(noise) - expected).norm(), 1e-11 * expected.norm());
-}
-
-// Two planes: the angle and the distance between them under the same noise.
-TEST(FitUncertainty, CoversOfAngleAndDistance) {
-  Coverage of_angle, of_distance;
-  const double slope = std::tan(30.0 * kFitDegree);
-  for (int seed = 0; seed < coverageSeeds(); ++seed) {
-    const auto plane = [&](double rise, double up, int which) {
-      return fitOf(fieldWith(
-                       {20, 20, 0.25, 0.25}, [&](double x, double) { return rise * x + up; }, 0.005,
-                       static_cast<std::uint64_t>(2 * seed + which)),
-                   ShapeKind::kPlane, {.noise_mm = 0.005});
-    };
-    const auto level = plane(0.0, 0.0, 0), tilted = plane(slope, 0.0, 1), above = plane(0.0, 1.0, 1);
-    ASSERT_TRUE(level && tilted && above);
-    const ShapeRelation turned = relationOf(*level, *tilted), step = relationOf(*level, *above);
-    of_angle.add(turned.angle_deg.value - 30.0, turned.angle_deg.error);
-    of_distance.add(step.distance_mm.value - 1.0, step.distance_mm.error);
-  }
-  for (const auto& [name, covered] : {std::pair("angle", of_angle), std::pair("distance", of_distance)}) {
-    std::printf("%-10s %s\n", name, covered.counts().c_str());
-    if (countsCoverage()) {
-      EXPECT_EQ(covered.complaint(), "") << name;
-    }
-  }
 }
 
 // The least squares of heights themselves, of a plane as by its own normal equations, of a ball by a look around it.
@@ -464,60 +200,6 @@ TEST(Fit, VerticalDistancesAreThoseAlongZ) {
     }
     EXPECT_GT(squares(centre, ball->shape.radius + by), least);
   }
-}
-
-// Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
-TEST(FitUncertainty, CoversTiltsOfSteepPlanes) {
-  Coverage of_x, of_y;
-  for (int seed = 0; seed < coverageSeeds(); ++seed) {
-    const auto plane = fitOf(fieldWith(
-                                 {20, 20, 0.25, 0.25}, [](double x, double y) { return 1.5 * x - 0.5 * y; },
-                                 0.005, static_cast<std::uint64_t>(seed)),
-                             ShapeKind::kPlane, {.noise_mm = 0.005});
-    ASSERT_TRUE(plane);
-    const glm::dvec3 n = plane->shape.direction;
-    const ShapeFit::Errors e = plane->errors();
-    of_x.add(std::atan(-n.x / n.z) - std::atan(1.5), e.tilt_x);
-    of_y.add(std::atan(-n.y / n.z) + std::atan(0.5), e.tilt_y);
-  }
-  for (const auto& [name, covered] : {std::pair("tilt x", of_x), std::pair("tilt y", of_y)}) {
-    std::printf("%-10s %s\n", name, covered.counts().c_str());
-    if (countsCoverage()) {
-      EXPECT_EQ(covered.complaint(), "") << name;
-    }
-  }
-}
-
-// Noise that 3 x 3 neighbours share: the scatter of sums over parts of the region says so.
-TEST(FitUncertainty, CountsNoiseThatNeighboursShare) {
-  const SeenShape of = seenShapes()[3];
-  int once = 0;
-  double correlation = 0.0;
-  const int seeds = std::min(coverageSeeds(), 200);
-  for (int seed = 0; seed < seeds; ++seed) {
-    std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
-    std::normal_distribution<double> normal(0.0, 0.015);
-    std::vector<double> white(62 * 62);
-    for (double& w : white) w = normal(random);
-    const Version field = fieldWith({60, 60, 0.1, 0.083}, [&](double x, double y) {
-      const auto c = static_cast<std::size_t>(std::lround(x / 0.1)),
-                 r = static_cast<std::size_t>(std::lround(y / 0.083));
-      double sum = 0.0;
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) sum += white[(r + i) * 62 + c + j] / 9.0;
-      return heightOn(of.shape, x, y, of.low, of.high) + sum;
-    });
-    const auto fit = fitOf(field, ShapeKind::kCylinder, {.noise_mm = 0.001});
-    ASSERT_TRUE(fit);
-    once += std::abs(fit->shape.radius - of.shape.radius) <= fit->errors().radius ? 1 : 0;
-    correlation += fit->correlation / seeds;
-  }
-  std::printf("shared by 3 x 3: %d of %d within one error, variance times %.2f\n", once, seeds, correlation);
-  if (!countsCoverage()) return;
-  // As many as of independent noise, less four in a hundred for what parts of five samples do not see: of 200 109.
-  EXPECT_GE(once, seeds * (0.683 - 0.04) - 3.0 * std::sqrt(seeds * 0.68 * 0.32));
-  // Without it a third of the error: the variance of a mean grows ninefold.
-  EXPECT_GT(correlation, 4.0);
 }
 
 TEST(Fit, IsTheSameForAnyNumberOfThreads) {
