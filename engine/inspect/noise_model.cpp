@@ -47,7 +47,7 @@ constexpr double kRatioScatter = 0.55, kRatioOfCounted = 1.04, kLackFactor = 1.2
 // A variance of n independent samples by squared fourth differences has 5.3 / n; the noise that is in the scan is known better than that of others
 // like it, by half.
 constexpr double kSquareScatter = 1.3;
-// What lines share is told from a surface by the difference of its detail along and across them, which a surface with edges along them has as well.
+// What lines share is distinguished from a surface by the difference of its detail along and across them, which a surface with edges along them has as well.
 // What is left of long waves in a window is a share of a few per cent: less of that is in doubt.
 constexpr double kSharedDoubt = 0.5, kShareOfWaves = 0.1;
 constexpr double kUnmeasured = 0.4;  // doubt of the finest detail alone

@@ -13,8 +13,8 @@ namespace fettle::engine {
 [[nodiscard]] double robustScale(const FitPoints& points, const FitWeights& weights,
                                  const FitSurface& surface, double least);
 
-/// Solves a model again and again from its base, with the scale of robust weights and the weights of vertical distances
-/// of what the round before left, until the scale rests. False where no finite surface was found or the job was cancelled.
+/// Solves a model again and again from its base, with the scale of robust weights of what the round before left,
+/// until the scale rests. False where no finite surface was found or the job was cancelled.
 [[nodiscard]] bool fitInRounds(const FitPoints& points, FitWeights weights, bool robust, double least,
                                FitModel& model, JobControl& job);
 
