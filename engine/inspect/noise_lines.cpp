@@ -196,6 +196,7 @@ LineNoise noiseOfLines(const FieldReader& reader, LineDirection direction,
     all[i].apart = 0.5 * (a - b);
   });
   std::vector<double> common;
+  common.reserve(all.size());
   for (const Differing& d : all) common.push_back(d.common);
   // The quieter quarter has no edge; from it to all that is like it.
   double most = kEdge * rankedSize(common, 0.25) / kQuarter;

@@ -232,6 +232,7 @@ void withoutOffsets(std::array<float, kNoiseSide * kNoiseSide>& heights, const P
 WindowLines linesOf(const FieldReader& reader, LineDirection direction, const std::vector<Placed>& places) {
   WindowLines of;
   std::vector<std::int32_t> firsts;
+  firsts.reserve(places.size());
   for (const Placed& p : places) firsts.push_back(direction == LineDirection::kRows ? p.row : p.column);
   std::sort(firsts.begin(), firsts.end());
   firsts.erase(std::unique(firsts.begin(), firsts.end()), firsts.end());
@@ -288,6 +289,7 @@ Result<NoiseModel> noiseOfWindows(const Version& field, const std::vector<Placed
   // bounded by rank: noise that is added to all raises all by as much, so that it raises sigma^2 by as much.
   const double middle = ranked(all, 0.5);
   std::vector<double> all_finest;
+  all_finest.reserve(smooth.size());
   for (const Placed* p : smooth) all_finest.push_back(p->window.finest);
   const double middle_of_finest = ranked(all_finest, 0.5);
   const auto drawnOf = [](const std::vector<double>& cell, double middle_of_all) {
