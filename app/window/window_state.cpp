@@ -326,6 +326,8 @@ Report waitedFor(const Parts& p, const Input& input) {
     // A device that moves by itself comes to no rest.
     waits("the pen's shadow",
           p.document.isOpen() && p.document.client()->mouse() != nullptr && p.spared_shadow.pending());
+    waits("the pen's trail",
+          p.document.isOpen() && p.document.client()->mouse() != nullptr && p.stylus_overlay.fades());
   }
   if (!p.document.isOpen()) return names;
   const LoopClient& client = *p.document.client();

@@ -98,6 +98,9 @@ TEST_F(HandTools, the_trail_follows_the_tip_and_is_gone_a_second_later) {
   (void)user.key("7");
   (void)user.key("s");
   user.at({200, 332});
+  program->until("the cursor", [](const State& s) { return s["cursor"][0] == 200; });
+  // The way to here is a trail too; it fades first.
+  (void)user.rest();
   const Screen before = user.look("before");
   for (int x = 210; x <= 420; x += 10) user.at({x, 332 + (x / 10) % 3 * 8});
   // Left of where the tip comes to rest, and far from where it was before.
