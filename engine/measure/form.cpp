@@ -17,6 +17,7 @@
 #include "engine/compare/tile_select.h"
 #include "engine/compare/tile_sums.h"
 #include "engine/measure/form_solve.h"
+#include "engine/measure/least_trimmed.h"
 #include "engine/measure/lowered.h"
 
 namespace fettle::engine {
@@ -181,15 +182,12 @@ double medianDistance(const Version& field, Region region, const PolynomialForm&
 }
 
 // Up to some kSpread x kSpread samples of a region, evenly spread.
-struct Sample {
-  double column, row, z;
-};
-std::vector<Sample> spreadSamples(const Version& field, Region region) {
+std::vector<FormSample> spreadSamples(const Version& field, Region region) {
   constexpr int kSpread = 64;
   const FieldReader reader = field.reader();
   const std::int32_t columns = std::max(1, reader.width() / kSpread),
                      rows = std::max(1, reader.height() / kSpread);
-  std::vector<Sample> samples;
+  std::vector<FormSample> samples;
   for (std::int32_t r = rows / 2; r < reader.height(); r += rows)
     for (std::int32_t c = columns / 2; c < reader.width(); c += columns) {
       float z = 0.0F;
@@ -201,7 +199,7 @@ std::vector<Sample> spreadSamples(const Version& field, Region region) {
 
 // The plane with the least median distance of all that go through three of the samples tried, as height, slope by
 // column and slope by row; nothing where no three of them span one.
-std::optional<std::array<double, 3>> leastMedianPlane(const std::vector<Sample>& samples) {
+std::optional<std::array<double, 3>> leastMedianPlane(const std::vector<FormSample>& samples) {
   // With half of the samples on the plane all of 300 triples miss it once in 1e17 times.
   constexpr int kTrials = 300;
   if (samples.size() < 3) return std::nullopt;
@@ -210,9 +208,9 @@ std::optional<std::array<double, 3>> leastMedianPlane(const std::vector<Sample>&
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> distances(samples.size());
   for (int trial = 0; trial < kTrials; ++trial) {
-    const Sample& p = samples[random() % samples.size()];
-    const Sample& q = samples[random() % samples.size()];
-    const Sample& s = samples[random() % samples.size()];
+    const FormSample& p = samples[random() % samples.size()];
+    const FormSample& q = samples[random() % samples.size()];
+    const FormSample& s = samples[random() % samples.size()];
     const double area = (q.column - p.column) * (s.row - p.row) - (s.column - p.column) * (q.row - p.row);
     if (area == 0.0) continue;
     const double by_column = ((q.z - p.z) * (s.row - p.row) - (s.z - p.z) * (q.row - p.row)) / area;
@@ -233,19 +231,19 @@ std::optional<std::array<double, 3>> leastMedianPlane(const std::vector<Sample>&
 
 // The same for the mean height: the sample with the least median distance from all others is near the middle of the
 // shorter half; the median is near enough.
-double medianHeight(std::vector<Sample> samples) {
+double medianHeight(std::vector<FormSample> samples) {
   const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-  std::ranges::nth_element(samples, middle, {}, &Sample::z);
+  std::ranges::nth_element(samples, middle, {}, &FormSample::z);
   return middle->z;
 }
 
 // The rounding of heights: of most of them, since one spike may be as high as all others' rounding is less.
-double roundingOf(const std::vector<Sample>& samples, double range) {
+double roundingOf(const std::vector<FormSample>& samples, double range) {
   constexpr double kRounding = std::numeric_limits<float>::epsilon();
   if (samples.empty()) return kRounding * range;
   std::vector<double> heights;
   heights.reserve(samples.size());
-  for (const Sample& sample : samples) heights.push_back(sample.z);
+  for (const FormSample& sample : samples) heights.push_back(sample.z);
   const auto quantile = [&](std::size_t twentieths) {
     const auto at = heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) * twentieths / 20);
     std::ranges::nth_element(heights, at);
@@ -290,11 +288,26 @@ Status refine(const Version& field, const FormOptions& options, const FormAxes& 
   return {};
 }
 
+// What stands on a bent surface may be nearer to the plane of before than the surface is: then a form that was found without
+// planes is nearer to most samples, and the fit starts again from that.
+Status refineFromTrimmed(const Version& field, const FormOptions& options, const FormAxes& axes,
+                         const std::vector<FormSample>& samples, double least, FormFit& fit,
+                         JobControl& job) {
+  constexpr double kClearly = 0.8;  // of the median distance: both start near the same form else
+  if (options.degree < 2 || samples.empty()) return {};
+  PolynomialForm other = leastTrimmedForm(samples, fit.form, axes, field.grid());
+  if (!(medianDistance(samples, other) < kClearly * medianDistance(samples, fit.form))) return {};
+  fit.form = std::move(other);
+  for (int pass = 0; pass < 2; ++pass)
+    if (auto done = refine(field, options, axes, least, fit, job); !done) return done;
+  return {};
+}
+
 // From the plane with the least median distance to the degree asked for, one degree after the other: what the lower one
 // leaves decides which samples the next one sees.
 Status fitRobustly(const Version& field, const FormOptions& options, const FormAxes& axes, double range,
                    FormFit& fit, JobControl& job) {
-  const std::vector<Sample> samples = spreadSamples(field, options.region);
+  const std::vector<FormSample> samples = spreadSamples(field, options.region);
   const double least = roundingOf(samples, range);
   PolynomialForm& form = fit.form;
   const int first = std::min(options.degree, 1);
@@ -321,7 +334,7 @@ Status fitRobustly(const Version& field, const FormOptions& options, const FormA
     for (int pass = 0; pass < 2; ++pass)
       if (auto done = refine(field, now, axes, least, fit, job); !done) return done;
   }
-  return {};
+  return refineFromTrimmed(field, options, axes, samples, least, fit, job);
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct FormOptions {
   /// Samples far from the form, as of steps and spikes, do not count: from the plane with the least median distance
   /// (P. Rousseeuw, Least median of squares regression, 1984), of those through 300 triples of 4,096 samples, by
   /// Tukey's biweight at 4.685 times the normalised median distance (an MM-estimate: V. Yohai, High breakdown-point and
-  /// high efficiency robust estimates for regression, 1987), one degree after the other. Half of the samples must be
-  /// nearer to the form than the others are.
+  /// high efficiency robust estimates for regression, 1987), one degree after the other; from leastTrimmedForm()
+  /// (least_trimmed.h) where that is clearly nearer to most samples. Half of the samples must be nearer to the form than the others are.
   bool robust = false;
 };
 

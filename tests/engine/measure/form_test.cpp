@@ -140,6 +140,41 @@ TEST(Form, RobustOfAnExactPlaneIsThatPlane) {
   EXPECT_NEAR(fit.form.gradient().by_row, -0.125, 1e-6);
 }
 
+// What stands on a bent surface is no bend of it, wherever it stands: it is nearer to a plane than the surface is.
+TEST(Form, RobustIgnoresWhatStandsOnABentSurface) {
+  const auto bent = [](double c, double r) {
+    const double x = (c - 100.0) / 100.0, y = (r - 80.0) / 100.0;
+    return 0.3 * x * x + 0.1 * x * y - 0.2 * y * y + 0.05 * x;
+  };
+  struct Standing {
+    const char* what;
+    std::function<bool(int, int)> there;
+  };
+  const std::vector<Standing> all{
+      {"a strip at the edge, 13 %", [](int c, int) { return c < 26; }},
+      {"a boss in the middle, 16 %", [](int c, int r) { return std::hypot(c - 100, r - 80) < 40; }},
+      {"a corner, 24 %", [](int c, int r) { return c < 98 && r < 78; }},
+      {"two walls, 30 %", [](int c, int) { return c < 20 || (c > 90 && c < 130); }}};
+  for (const Standing& standing : all)
+    for (int degree = 2; degree <= 4; ++degree) {
+      std::mt19937_64 random(11);
+      std::normal_distribution<double> noise(0.0, 0.001);
+      const Version field = fieldOf(200, 160, [&](int c, int r) {
+        return bent(c, r) + noise(random) + (standing.there(c, r) ? 0.3 : 0.0);
+      });
+      const FormFit fit = fitted(field, {degree, Region::kAll, true});
+      double square = 0.0, samples = 0.0;
+      for (int r = 0; r < 160; ++r)
+        for (int c = 0; c < 200; ++c) {
+          if (standing.there(c, r)) continue;
+          const double off = fit.form.heightAt(c, r) - bent(c, r);
+          square += off * off;
+          samples += 1.0;
+        }
+      EXPECT_LT(std::sqrt(square / samples), 2e-4) << standing.what << ", degree " << degree;
+    }
+}
+
 // The height of one spike says nothing of how finely the others are rounded.
 TEST(Form, RobustWithASpikeBesideAStepIsThePlane) {
   for (const double spike : {1e3, 1e5, 1e6}) {
