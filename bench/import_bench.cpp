@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -132,6 +133,20 @@ engine::Status writeSur(const engine::Version& field, const std::string& path) {
   return engine::writeFileAtomically(path, bytes);
 }
 
+// Text with a row of heights per line and Gwyddion's remarks, in shortest decimals: reads back bit-identical.
+engine::Status writeMatrix(const engine::Version& field, const std::string& path) {
+  const engine::Grid& grid = field.grid();
+  const engine::FieldReader reader = field.reader();
+  std::string text =
+      fmt::format("# Channel: height\n# Width: {} mm\n# Height: {} mm\n# Value units: {}\n",
+                  grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm(), grid.height_unit.name);
+  for (std::int32_t r = grid.height - 1; r >= 0; --r)
+    for (std::int32_t c = 0; c < grid.width; ++c)
+      fmt::format_to(std::back_inserter(text), "{}{}", reader.heightAt(c, r),
+                     c + 1 < grid.width ? '\t' : '\n');
+  return engine::writeFileAtomically(path, text);
+}
+
 namespace fs = std::filesystem;
 
 constexpr std::int32_t kEveryFormat = 2048;  // largest side
@@ -187,6 +202,7 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
   add("OpenEXR", "image.exr", exported({}));
   add("Digital Surf", "surface.sur", [&](const std::string& path) { return writeSur(field, path); });
   add("ESRI ASCII grid", "grid.asc", exported({}));
+  add("text matrix", "matrix.txt", [&](const std::string& path) { return writeMatrix(field, path); });
   add("XYZ text", "points.xyz", exported({}));
   add("PLY points", "points.ply", exported({}));
   add("PCD binary", "points.pcd", [&](const std::string& path) { return writePcd(field, path); });

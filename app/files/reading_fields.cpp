@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -126,20 +127,25 @@ std::string readingText(const ScanOptions& reading) {
   return fmt::format("{}", fmt::join(said, ", "));
 }
 
-std::string formatByName(const std::string& path) {
-  const std::string extension = engine::extensionOf(path);
-  for (const engine::FormatInfo& format : engine::formats())
-    if (std::ranges::find(format.extensions, extension) != format.extensions.end())
-      return std::string(format.name);
-  return {};
-}
-
 FieldsThatApply fieldsThatApply(std::string_view format, bool counts) {
   FieldsThatApply apply;
   apply.cells = std::ranges::find(kOfPoints, format) != kOfPoints.end();
   apply.spacing = !apply.cells;
   apply.camera = counts && std::ranges::find(kPictures, format) != kPictures.end();
   return apply;
+}
+
+FieldsThatApply fieldsOfName(const std::string& path) {
+  const std::string extension = engine::extensionOf(path);
+  std::optional<FieldsThatApply> all;
+  for (const engine::FormatInfo& format : engine::formats()) {
+    if (std::ranges::find(format.extensions, extension) == format.extensions.end()) continue;
+    const FieldsThatApply one = fieldsThatApply(format.name, false);
+    if (!all) all = one;
+    all->spacing = all->spacing || one.spacing;
+    all->cells = all->cells || one.cells;
+  }
+  return all.value_or(fieldsThatApply({}, false));
 }
 
 ReadingSources readingSources(const ScanOptions& reading, const std::vector<std::string>& warnings,

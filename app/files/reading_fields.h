@@ -36,9 +36,6 @@ struct ReadingField {
 /// "unit mm, no data 0": what was said of a file, by the names of the fields; empty where nothing was.
 [[nodiscard]] std::string readingText(const ScanOptions& reading);
 
-/// The name of the format that a file seems to be of by its extension, before it is read; may be empty.
-[[nodiscard]] std::string formatByName(const std::string& path);
-
 /// Which fields can apply to a file of a format (FormatInfo::name).
 struct FieldsThatApply {
   bool spacing = true;  ///< samples in rows and columns
@@ -47,6 +44,8 @@ struct FieldsThatApply {
 };
 /// `counts`: the samples are whole numbers.
 [[nodiscard]] FieldsThatApply fieldsThatApply(std::string_view format, bool counts);
+/// To a file before it is read: those of each format that has its extension.
+[[nodiscard]] FieldsThatApply fieldsOfName(const std::string& path);
 
 /// Where unit and spacing of a reading come from: "from the file: spacing" and "as you say: unit mm, no data 0"; a text is
 /// empty where there is nothing of its kind. What was guessed stands in neither.

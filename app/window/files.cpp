@@ -33,14 +33,15 @@ void Files::begin(const std::string& path, const ScanOptions& as, const ScanThum
   form = ImportForm::of(as);
   found_grid.reset();
   found_warnings.clear();
-  apply = fieldsThatApply(formatByName(path), false);
+  apply = fieldsOfName(path);
 }
 
 void Files::noteFound(const std::string& path, const ScanThumbnail& picture) {
   found_grid = picture.grid;
   found_warnings = picture.warnings;
-  apply = fieldsThatApply(picture.format.empty() ? formatByName(path) : picture.format,
-                          picture.grid && picture.grid->height_per_count != 0.0);
+  apply = picture.format.empty()
+              ? fieldsOfName(path)
+              : fieldsThatApply(picture.format, picture.grid && picture.grid->height_per_count != 0.0);
 }
 
 void Files::follow(const std::string& typed, bool narrows) {

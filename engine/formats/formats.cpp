@@ -19,10 +19,10 @@ namespace fettle::engine {
 
 namespace {
 
-// Formats with a signature first; other text is tried as points.
-constexpr const Format* kTable[] = {&kTiffFormat,      &kPngFormat,    &kPlyFormat, &kPcdFormat, &kLasFormat,
-                                    &kSurFormat,       &kX3pFormat,    &kSdfFormat, &kExrFormat, &kStlFormat,
-                                    &kAsciiGridFormat, &kFettleFormat, &kXyzFormat};
+// Formats with a signature first; other text is a matrix where its lines are longer than those of points.
+constexpr const Format* kTable[] = {
+    &kTiffFormat, &kPngFormat, &kPlyFormat, &kPcdFormat,       &kLasFormat,    &kSurFormat,    &kX3pFormat,
+    &kSdfFormat,  &kExrFormat, &kStlFormat, &kAsciiGridFormat, &kFettleFormat, &kMatrixFormat, &kXyzFormat};
 
 std::string extensionsOf(bool FormatInfo::*able) {
   std::vector<std::string_view> all;
@@ -98,7 +98,9 @@ Result<Exported> writeRestored(const Format& format, const Version& field, const
   auto written = format.write(*stored, path, writing, job);
   if (written && stored->form() != nullptr && &format != &kFettleFormat)
     written->warnings.emplace_back(
-        "the heights are written with the form that lay over them: fettle level --layer bake leaves it out");
+        "the heights are written with the form that lay over them: make what is seen the heights first to "
+        "leave "
+        "it out (fettle level --layer bake)");
   return written;
 }
 

@@ -59,6 +59,6 @@ FormatWriter writeTiff, writePng, writePly, writePlyMesh, writeX3p, writeSdf, wr
 
 /// All formats, for engine/formats to list. Constants from the start: no order of initialisation.
 extern const Format kTiffFormat, kPngFormat, kPlyFormat, kPcdFormat, kLasFormat, kSurFormat, kX3pFormat,
-    kSdfFormat, kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kXyzFormat;
+    kSdfFormat, kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kMatrixFormat, kXyzFormat;
 
 }  // namespace fettle::engine

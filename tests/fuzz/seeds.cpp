@@ -81,6 +81,10 @@ std::vector<std::pair<std::string, std::string>> fuzzSeeds() {
       "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 4\nproperty float x\n"
       "property float y\nproperty float z\nelement range_grid 6\nproperty list uchar int vertex_indices\n"
       "end_header\n0 0 5\n2 0 6\n0 1 7\n1 1 8\n1 0\n0\n1 1\n1 2\n1 3\n0\n");
+  seeds.emplace_back(
+      ".txt", "# Channel: Z\n# Width: 3 um\n# Height: 2 um\n# Value units: m\n1e-9\t2e-9\tnan\n4\t\t6\n");
+  seeds.emplace_back(
+      ".txt", "a title\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n,2,3,4,,6,7,8,9,10,11,12,13,NA,15,16\n");
   seeds.emplace_back(".xyz",
                      "a title\nid;\"Z [nm]\";x_um;Y (um)\nP1;5;0;0\n\"P;2\";6;1;0\nP3;;0;1\nP4;8;1;1\n");
   seeds.emplace_back(".xyz", "x\ty\tz\nmm\tmm\tum\n0\t0\t1\n0.5\t0\t2\n0\t0.5\t3\n40\t40\t4\n");

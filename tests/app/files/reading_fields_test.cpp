@@ -67,6 +67,12 @@ TEST(ReadingFields, only_what_can_apply_to_a_format_is_asked) {
   EXPECT_FALSE(fieldsThatApply("X3P", true).camera);
   EXPECT_FALSE(fieldsThatApply("GTiff", true).cells);
   EXPECT_TRUE(fieldsThatApply("PLY", false).cells);
+  // Text may be a matrix or points, until it is read.
+  EXPECT_TRUE(fieldsOfName("a.txt").cells);
+  EXPECT_TRUE(fieldsOfName("a.txt").spacing);
+  EXPECT_FALSE(fieldsOfName("a.tif").cells);
+  EXPECT_FALSE(fieldsOfName("a.las").spacing);
+  EXPECT_TRUE(fieldsOfName("a").spacing);
   // The names are those of the table of formats.
   const auto formats = engine::formats();
   for (const char* name : {"PLY", "PCD", "LAS", "XYZ", "STL", "GTiff", "PNG"})

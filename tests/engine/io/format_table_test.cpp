@@ -46,6 +46,7 @@ const std::map<std::string, Written>& rowsThatAreKnown() {
       {"SDF text `--ascii`", {"SDF", ".sdf", false, true}},
       {"OpenEXR `.exr`", {"EXR", ".exr"}},
       {"ESRI ASCII `.asc`", {"AAIGrid", ".asc"}},
+      {"text matrix `.txt` `.csv`", {"Matrix", ""}},
       {"XYZ text", {"XYZ", ".xyz"}},
       {"PLY points", {"PLY", ".ply"}},
       {"PLY mesh `--mesh`", {"PLY", ".ply", true}},

@@ -265,7 +265,7 @@ TEST(Formats, TheTableNamesWhatCanBeReadAndWritten) {
   }
   EXPECT_EQ(
       table,
-      "GTiff rw PNG rw PLY rw PCD r LAS r SUR r X3P rw SDF rw EXR rw STL rw AAIGrid rw Fettle rw XYZ rw ");
+      "GTiff rw PNG rw PLY rw PCD r LAS r SUR r X3P rw SDF rw EXR rw STL rw AAIGrid rw Fettle rw Matrix r XYZ rw ");
 }
 
 TEST(AsciiGrid, ThatIsCutInsideItsLastNumberIsWarnedOf) {
