@@ -175,6 +175,9 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
     unitsOfCrs(grid->crs_wkt, grid->origin_y + 0.5 * grid->height * units.spacing->second, units, warnings);
   }
   determineUnits(*grid, units, options, warnings);
+  // A corner lies half a sample from the first one, by the spacing that holds.
+  if (!header->x_centre) grid->origin_x = header->x_corner.value_or(0.0) + 0.5 * grid->spacing_x;
+  if (!header->y_centre) grid->origin_y = header->y_corner.value_or(0.0) + 0.5 * grid->spacing_y;
   HeightRule rule;
   rule.scale = options.z_scale.value_or(1.0);
   const std::optional<double> declared = chooseNoData(header->no_data, sidecar, warnings);
