@@ -41,7 +41,10 @@ constexpr Tip kTips[] = {
     {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
     {Action::kFilterAdd,
      "Keeps what is shown and puts another beside it, which follows the fields from then on."},
-    {Action::kFilterApply, "Makes the previewed filter a step, which undo takes back."},
+    {Action::kFilterApply,
+     "Makes the filter that the panel says a step, which undo takes back. Where the picture shows a preview "
+     "of "
+     "another filter, it shows this one first."},
     {Action::kFilterScope,
      "\"keep marks\": marked samples keep their heights. \"only marks\": nothing else changes."},
     {Action::kFilterMaxChange,

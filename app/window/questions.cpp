@@ -150,6 +150,8 @@ bool Questions::begin() {
   const KindInfo& info = infoOf(shown_->kind);
   const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
+  // What does not fit scrolls: a button that cannot be reached cannot be pressed.
+  ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F), ImGui::GetIO().DisplaySize);
   if (!ImGui::BeginPopupModal(labelOf(info.title), nullptr, info.flags)) {
     key_ = Key::kNone;  // there is no room for it on the screen, and input must not wait for that
     return false;

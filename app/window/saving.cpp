@@ -60,7 +60,7 @@ std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keep
   return outputs;
 }
 
-engine::Result<engine::Version> writeFiles(const std::string& path, const std::vector<std::string>& outputs,
+engine::Result<Saving::Written> writeFiles(const std::string& path, const std::vector<std::string>& outputs,
                                            const engine::Version& field, const engine::Version& original,
                                            engine::JobControl& job) {
   ScanGuard guard;  // of other sessions: this one does not need the file any more
@@ -76,7 +76,7 @@ engine::Result<engine::Version> writeFiles(const std::string& path, const std::v
   if (hasLines(field) && !isSessionPath(path))
     if (auto lines = engine::exportLines(linesPath(path), *field.lines(), field.grid()); !lines)
       return tl::unexpected(lines.error());
-  return field;
+  return Saving::Written{field, std::move(done->warnings)};
 }
 
 }  // namespace
@@ -182,12 +182,17 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
   }
   if (auto done = writing_.take()) {
     ended = *done ? engine::Status{} : tl::unexpected(done->error());
+    if (*done)
+      for (const std::string& warning : (*done)->warnings)
+        feedback.notices.push_back(
+            {fmt::format("{}: {}", fs::path(target_).filename().string(), warning), ""});
     if (*done && keeping_ == Keeping::kCopy)
-      exported_ = Exported{**done, target_, fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr)))};
+      exported_ =
+          Exported{(*done)->field, target_, fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr)))};
     if (*done && keeping_ == Keeping::kWorkThere) {
       path_ = target_;
       written_ = outputs_;
-      document.noteSaved(**done);
+      document.noteSaved((*done)->field);
     }
   }
   if (auto done = keeper != nullptr ? keeper->saved() : std::nullopt) {

@@ -39,7 +39,13 @@ class Saving {
     Afterwards afterwards;
     bool moved = false;  ///< the document has a new location
   };
-  /// Once per frame. Nothing while it runs, or where it failed, which a dialog reports.
+  /// What was written [upright], and what the format does not hold of it.
+  struct Written {
+    engine::Version field;
+    std::vector<std::string> warnings;
+  };
+  /// Once per frame. Nothing while it runs, or where it failed, which a dialog reports. What a format does not hold becomes
+  /// notices.
   [[nodiscard]] std::optional<Saved> poll(ActiveDocument& document, Feedback& feedback);
 
   /// Whether something is being written, or waits for that.
@@ -80,7 +86,7 @@ class Saving {
   Afterwards afterwards_;
   std::vector<std::string> outputs_;
   bool waits_for_scan_ = false;  // until the session stores the scan
-  Background<engine::Version> writing_;
+  Background<Written> writing_;
 };
 
 }  // namespace fettle::app

@@ -192,6 +192,12 @@ void FilterPreview::apply(LoopClient& client) {
     adopt(client, variants_.back());
     return;
   }
+  const auto other = [&](const Variant& v) { return v.asked.kind != spec.kind; };
+  if (!computes() && !variants_.empty() && std::ranges::all_of(variants_, other)) {
+    compute(client, Keep::kReplace);
+    shown_instead_ = true;
+    return;
+  }
   if (!computes() || !same(of_view_, spec)) compute(client, Keep::kReplace);
   apply_when_done_ = true;
 }
@@ -245,6 +251,9 @@ std::vector<PreviewPicture> FilterPreview::pictures() const {
 
 bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
+  if (std::exchange(shown_instead_, false))
+    notices.push_back({trFormat("the preview was of another filter: now it is of {}", filterName(spec)),
+                       tr("Apply again makes it a step")});
   // What was computed under another form cannot be adopted.
   if (const engine::FieldForm& form = client.newest().formOver(); form != form_) {
     form_ = form;

@@ -72,7 +72,9 @@ class FilterPreview {
   void look(const engine::FieldView& view);
   /// The picture so far of what is computed; its field is empty before, and afterwards.
   [[nodiscard]] const engine::FilterView::Picture& soFar() const noexcept { return so_far_; }
-  /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`.
+  /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`. Where the preview
+  /// that is shown is one of another filter, that of `spec` is shown instead, a notice says so, and nothing is applied: what
+  /// was never seen becomes no step beside a picture of something else.
   void apply(LoopClient& client);
   void cancel(LoopClient& client);
   /// As cancel(), and waits until no worker uses the port of `client`, which may be destroyed afterwards.
@@ -113,6 +115,7 @@ class FilterPreview {
   std::vector<Variant> variants_;
   Keep keep_ = Keep::kReplace;
   bool apply_when_done_ = false;
+  bool shown_instead_ = false;  // of a preview of another filter, which was to be applied
   double seconds_ = 0.0;
   int applied_ = 0;
   engine::FieldForm form_;                    // over the field that is previewed

@@ -43,7 +43,7 @@ struct MakerName {
 };
 
 std::string removedText(const engine::RemoveCounts& counts) {
-  std::string text = trFormat("{} of {} samples removed", counts.removed, counts.heights);
+  std::string text = trFormat("removes {} of {} samples", counts.removed, counts.heights);
   if (counts.spared > 0) text += trFormat("; {} stay since they are marked", counts.spared);
   return text;
 }

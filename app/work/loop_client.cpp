@@ -195,6 +195,10 @@ void LoopClient::poll() {
     take(std::move(held_.front()));
   sendQuestion();
   steps_.journal().flushWhenDue();
+  // One that was undone is often meant to be made again in another manner; several may be work.
+  if (const std::int64_t replaced = steps_.takeReplaced(); replaced > 1)
+    notices_.push_back(
+        {trFormat("the new step took the place of {} that were undone", replaced), "", "", 1, false, true});
 }
 
 template <class Open>

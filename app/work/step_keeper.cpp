@@ -148,9 +148,12 @@ bool StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   info.name = name;
   info.kind = kind;
   info.time = engine::stepTimeNow();
+  const std::int64_t undone = history_.last() - history_.number();
   const bool pushed = history_.push(std::move(info), after);
   committed_ = after;
   if (!pushed) return false;
+  // Of the rounds of one filter each takes the place of the one before, which nobody undid.
+  if (!adopting_) replaced_ += undone;
   const std::int64_t state = history_.number();
   if (kind == engine::StepKind::kFilter || change) last_rect_ = history_.info(state).rect;
   if (!journal_.records()) return true;

@@ -115,6 +115,9 @@ class StepKeeper {
   void change(std::string name, engine::StepKind kind, const engine::Version& field,
               const haptic::LoopPlace& at, HandChange change);
 
+  /// How many undone steps later ones took the place of, since the last call.
+  [[nodiscard]] std::int64_t takeReplaced() noexcept { return std::exchange(replaced_, 0); }
+
   /// Move in the history; return the version to be restored, if there is such a state.
   std::optional<engine::Version> undo() { return history_.undo(); }
   std::optional<engine::Version> redo() { return history_.redo(); }
@@ -132,6 +135,7 @@ class StepKeeper {
   engine::Version committed_;  // the last step's, the reference for a running stroke
   LoopJournal journal_;
   engine::SampleRect last_rect_;
+  std::int64_t replaced_ = 0;
   haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
   std::string adoption_name_ = "Filter";
   bool adopting_ = false;  // the running adoption has a step

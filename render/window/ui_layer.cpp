@@ -234,6 +234,8 @@ bool UiLayer::wantsKeys() const noexcept {
 
 void UiLayer::notePress(int key, int modifiers) {
   if (!wantsKeys()) return;
+  // Return chooses in a list, which ImGui takes the space bar for.
+  if ((key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) && listIsOpen()) key = GLFW_KEY_SPACE;
   // Characters come by themselves; of their keys the panels know those with Ctrl alone.
   const bool types = key > GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;
   if (types && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0) return;
@@ -386,6 +388,11 @@ void UiLayer::beginFrame() {
   ImGui::NewFrame();
   for (const int key : changed) io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;
   if (leaving_ > 0 && pressed_.empty()) --leaving_;
+}
+
+bool UiLayer::listIsOpen() {
+  return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) &&
+         ImGui::GetTopMostPopupModal() == nullptr;
 }
 
 bool UiLayer::typing() const noexcept {

@@ -71,6 +71,8 @@ class UiLayer {
   [[nodiscard]] bool entered() const noexcept { return entered_; }
   void enterPanels() noexcept { entered_ = true; }
   void leavePanels() noexcept;
+  /// Whether a list or a menu is open, which keys walk through; dialogs have keys of their own.
+  [[nodiscard]] static bool listIsOpen();
   /// Whether a text field takes the keys that are pressed now. One that Escape or Return leaves has the keyboard until the frame
   /// after: leaveField() says of such a press that those after it are not the field's.
   [[nodiscard]] bool typing() const noexcept;

@@ -128,7 +128,7 @@ struct Window::Impl {
   }
   // `x`, `y`: GLFW's.
   void noteAt(InputEvent event, double x, double y) {
-    event.panels_key = ui->typing() || ui->entered();
+    event.panels_key = ui->typing() || ui->entered() || render::UiLayer::listIsOpen();
     event.panels_mouse = ui->panelsHaveMouse(x, y);
     input.push_back(event);
   }

@@ -2,15 +2,18 @@
 #include <cctype>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "app/texts/texts.h"
+#include "app/window/action_tips.h"
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/result_files.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::app {
 namespace {
@@ -143,6 +146,21 @@ void howToClean() {
   writeWrapped("Screen readers cannot read this window; every function is on the command line, too.");
 }
 
+// The filters that the search is about; whether there is any.
+bool filtersAbout(const std::string& sought) {
+  bool found = false;
+  for (const engine::Filter& filter : engine::filters()) {
+    const std::string_view title = tr(filter.title), says = tr(filter.says);
+    if (lower(fmt::format("{} {}", title, says)).find(sought) == std::string::npos) continue;
+    if (!std::exchange(found, true)) {
+      ImGui::Separator();
+      ImGui::TextUnformatted(tr("Filters, in the list of the panel Filter"));
+    }
+    writeWrapped(fmt::format("  {}: {}", title, says));
+  }
+  return found;
+}
+
 std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, float scale) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(420.0F * scale);
@@ -153,8 +171,10 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
   if (sought.empty()) howToClean();
   std::string_view section;
   for (const ActionRow& row : actions()) {
-    const std::string all =
-        fmt::format("{} {} {}", tr(row.section), tr(row.name), keyText(row.key, row.modifiers));
+    // What one would use it for is sought as well, as "spike".
+    const std::string_view tip = tipOf(row.action);
+    const std::string all = fmt::format("{} {} {} {}", tr(row.section), tr(row.name),
+                                        keyText(row.key, row.modifiers), tip.empty() ? tip : tr(tip));
     if (lower(all).find(sought) == std::string::npos) continue;
     if (row.section != section) {
       section = row.section;
@@ -168,7 +188,12 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
     ImGui::SameLine(220.0F * scale);
     writeWrapped(std::string(tr(row.name)));
   }
-  if (!sought.empty()) return left ? std::optional(Choice::kBack) : std::nullopt;
+  if (!sought.empty()) {
+    const bool filter = filtersAbout(sought);
+    if (section.empty() && !filter)
+      writeWrapped("Nothing is found: try another word, or empty the field for the whole list.");
+    return left ? std::optional(Choice::kBack) : std::nullopt;
+  }
   ImGui::Separator();
   ImGui::TextUnformatted(tr(
       "  Ctrl+1 .. Ctrl+9         recent files\n"
@@ -245,13 +270,13 @@ std::optional<Answer> dialog(Parts& parts) {
   Question* const question = questions.next();
   if (question == nullptr) return std::nullopt;
   parts.picture.requestRedraw();
-  if (isPathKind(question->kind))
-    ImGui::SetNextWindowSize(ImVec2(900.0F * static_cast<float>(parts.window.scale()), 0.0F));
-  if (question->kind == Kind::kImport)
-    ImGui::SetNextWindowSize(ImVec2(740.0F * static_cast<float>(parts.window.scale()), 0.0F));
+  const auto wide = [&](float at_one) {
+    return std::min(at_one * static_cast<float>(parts.window.scale()), ImGui::GetIO().DisplaySize.x);
+  };
+  if (isPathKind(question->kind)) ImGui::SetNextWindowSize(ImVec2(wide(900.0F), 0.0F));
+  if (question->kind == Kind::kImport) ImGui::SetNextWindowSize(ImVec2(wide(740.0F), 0.0F));
   if (question->kind == Kind::kShortcuts)
-    ImGui::SetNextWindowSize(
-        ImVec2(720.0F * static_cast<float>(parts.window.scale()), 0.8F * ImGui::GetIO().DisplaySize.y));
+    ImGui::SetNextWindowSize(ImVec2(wide(720.0F), 0.8F * ImGui::GetIO().DisplaySize.y));
   if (!questions.begin()) return std::nullopt;
   std::optional<Answer> answer;
   if (const auto choice = layOut(*question, parts)) answer = Answer{*choice, questions.close()};

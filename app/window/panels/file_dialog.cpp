@@ -1,4 +1,5 @@
 // The dialog of a path: to open, to compare with, to save as, to export; of a scan or of a scene.
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <filesystem>
@@ -28,6 +29,8 @@ using render::Key;
 using render::PanelColour;
 
 constexpr float kPlaces = 150.0F, kPreview = 230.0F, kHeight = 300.0F;  // at scale 1 [pixels]
+constexpr float kWhole = 900.0F;                                        // all of it, where there is room
+constexpr float kLinesAround = 8.0F;                                    // above and below the lists
 constexpr int kPage = 12;                                               // rows of Page up and Page down
 
 bool isScene(const Question& question) {
@@ -117,8 +120,8 @@ bool pageByKeys(Question& question, Files& files) {
   return true;
 }
 
-void placesList(Question& question, Files& files, float scale) {
-  if (ImGui::BeginChild("places", ImVec2(kPlaces * scale, kHeight * scale), true))
+void placesList(Question& question, Files& files, ImVec2 size) {
+  if (ImGui::BeginChild("places", size, true))
     for (const FilePlace& place : files.shown_places) {
       ImGui::PushID(place.folder.c_str());
       const std::string name = (place.own ? "* " : "") + place.name;
@@ -218,8 +221,8 @@ bool fileTable(Question& question, Files& files, ImVec2 size, bool scroll) {
   return twice;
 }
 
-void preview(const Question& question, Parts& parts, float scale) {
-  if (ImGui::BeginChild("preview", ImVec2(kPreview * scale, kHeight * scale), true)) {
+void preview(const Question& question, Parts& parts, ImVec2 size) {
+  if (ImGui::BeginChild("preview", size, true)) {
     const FileBrowser& browser = parts.files.browser;
     const bool scan = browser.chosen() && browser.entry(*browser.chosen()).scan &&
                       browser.pathOf(*browser.chosen()) == parts.files.wholePath(question.path);
@@ -363,13 +366,18 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   narrowByKeys(files.browser);
   const bool paged = pageByKeys(question, files);
   folderLine(question, parts);
-  placesList(question, files, scale);
+  // Where the window is too small for the text, lists are narrower and lower before anything is out of reach.
+  const float fit = std::min(1.0F, ImGui::GetWindowWidth() / (kWhole * scale)) * scale;
+  const float line = ImGui::GetFrameHeightWithSpacing();
+  const float room = ImGui::GetIO().DisplaySize.y - kLinesAround * line;
+  const float height = std::max(std::min(room, kHeight * scale), 4.0F * line);
+  placesList(question, files, ImVec2(kPlaces * fit, height));
   ImGui::SameLine();
-  const float width = ImGui::GetContentRegionAvail().x - kPreview * scale - ImGui::GetStyle().ItemSpacing.x;
+  const float width = ImGui::GetContentRegionAvail().x - kPreview * fit - ImGui::GetStyle().ItemSpacing.x;
   const bool moved = paged || files.browser.chosen() != before;
-  const bool twice = fileTable(question, files, ImVec2(width, kHeight * scale), moved);
+  const bool twice = fileTable(question, files, ImVec2(width, height), moved);
   ImGui::SameLine();
-  preview(question, parts, scale);
+  preview(question, parts, ImVec2(kPreview * fit, height));
   const ResultFile* const result = resultFileOf(question.kind);
   if (result != nullptr)
     resultHelp(question, *result, parts);

@@ -40,7 +40,18 @@ void cell(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-constexpr int kCaptionLines = 2;
+constexpr int kCaptionLines = 3;
+
+// "52.7 +- 0.3" in a narrow column; whole as its tip.
+void withoutNoise(const std::string& text) {
+  constexpr std::string_view kWithin = " +- ";
+  const std::size_t at = text.find(kWithin);
+  if (at == std::string::npos)
+    ImGui::TextDisabled("%s", text.c_str());
+  else
+    ImGui::TextDisabled("%s\u00b1%s", text.substr(0, at).c_str(), text.substr(at + kWithin.size()).c_str());
+  if (!text.empty() && ImGui::IsItemHovered()) valueTip(trFormat("without noise {}", text));
+}
 
 // A column for each value; with `noise` a second row for each parameter, with its figures without noise. The table has its
 // rows from when it is asked for: what is below moves by that click, and not when the figures come.
@@ -50,6 +61,12 @@ void arealTable(const MeasureTool& measure, bool noise) {
   if (!ImGui::BeginTable("parameters", before ? 4 : 3,
                          ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
     return;
+  // Names and units have what they need, the figures all that is left.
+  const auto narrow = [](const char* id) { ImGui::TableSetupColumn(id, ImGuiTableColumnFlags_WidthFixed); };
+  narrow("##names");
+  if (before) ImGui::TableSetupColumn("##before", ImGuiTableColumnFlags_WidthStretch, 1.0F);
+  ImGui::TableSetupColumn("##now", ImGuiTableColumnFlags_WidthStretch, 1.0F);
+  narrow("##units");
   cell("");
   if (before) cell(tr("scan"));
   cell(before ? tr("now") : tr("value"));
@@ -76,7 +93,7 @@ void arealTable(const MeasureTool& measure, bool noise) {
     cell("");
     for (const std::string& without : line.without) {
       ImGui::TableNextColumn();
-      ImGui::TextDisabled("%s", without.c_str());
+      withoutNoise(without);
     }
   }
   ImGui::EndTable();
@@ -90,6 +107,9 @@ void caption(MeasureTool& measure) {
   } else if (const auto* figures = measure.figures()) {
     writeWrapped(trFormat("ISO 25178-2, {} samples{}", figures->samples,
                           measure.outdated() ? tr("; the field has changed since") : ""));
+    // Both kinds of figures are of one noise model, and a filtered field has next to no finest detail.
+    if (figures->options.noise && figures->before)
+      writeIn(render::PanelColour::kMuted, "noise that filters spread over neighbours is in no error");
   } else {
     writeIn(render::PanelColour::kMuted, "surface texture by ISO 25178-2");
   }

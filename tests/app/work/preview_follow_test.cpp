@@ -210,7 +210,7 @@ TEST_F(PreviewFollow, RemovedSamplesAndFilledHolesFollowTheirFields) {
   EXPECT_FALSE(heights_.previews(heights_.remove));
   heights_.remove.low = 0.0;
   until([&] { return heights_.previews(heights_.remove); });
-  EXPECT_NE(heights_.found().find("samples removed"), std::string::npos) << heights_.found();
+  EXPECT_NE(heights_.found().find("removes "), std::string::npos) << heights_.found();
   heights_.preview(heights_.fill, all());
   until([&] { return heights_.previews(heights_.fill); });
   poll();
