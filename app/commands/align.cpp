@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,13 +12,17 @@
 #include "app/commands/estimate_option.h"
 #include "app/commands/nominal_option.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
+#include "engine/inspect/noise_model.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/moved_onto.h"
 #include "engine/nominal/nominal_surface.h"
@@ -40,6 +45,7 @@ struct AlignCommand {
 struct PlacedB {
   engine::Alignment alignment = {};
   std::optional<engine::Version> moved = {};
+  std::optional<engine::Version> measured = {};  // of these, where B has filled samples
   std::optional<Report> nominal = {};
   std::optional<Report> only = {};  // an estimate: nothing was done
 };
@@ -59,6 +65,26 @@ engine::Result<Foreseen> foreseeAlign(const AlignCommand& options, const engine:
   return foresee(planned, shownInput(options.b), options.estimate, job);
 }
 
+// Two measurements of one surface differ by their noise. What differs by far more has another shape there, or lies elsewhere:
+// the errors of the motion count it as far as the surface says, but know of no other place.
+engine::Status warnOfRemainder(const engine::Alignment& alignment, const engine::Version& a,
+                               const engine::Version& b, engine::JobControl& job) {
+  constexpr double kFar = 10.0;  // both fields' noise is less through the window
+  double square = 0.0;
+  for (const engine::Version* field : {&a, &b}) {
+    const auto noise = engine::measureNoise(*field, job);
+    if (!noise) return tl::unexpected(noise.error());
+    if (!(noise->sigma > 0.0)) return {};
+    square += std::pow(noise->sigma * field->grid().height_unit.mm, 2);
+  }
+  if (const double times = alignment.rms_mm / std::sqrt(square); times > kFar)
+    warn(fmt::format(
+        "what remains is {:.2g} times the noise of both scans: their shapes differ, or B lies elsewhere "
+        "than was found: look at fettle compare --align, or state its place with --moves level",
+        times));
+  return {};
+}
+
 engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Imported& read,
                                     engine::JobControl& job) {
   const engine::Version& a = read.field;
@@ -73,13 +99,24 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::I
       job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return PlacedB{.only = std::move(foreseen->only)};
+  warnOfFilled(a, read.original, options.a);
+  const bool filled = b->original && engine::countFilled(b->field, *b->original) > 0;
+  if (filled) warnOfFilled(b->field, b->original, options.b);
   const auto alignment = alignmentOf(read, b->field, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
+  if (auto status = warnOfRemainder(*alignment, a, b->field, job); !status)
+    return tl::unexpected(status.error());
   PlacedB placed{.alignment = *alignment};
   if (options.out.empty()) return placed;
   auto moved = engine::movedOnto(b->field, alignment->motion, a.grid(), job);
   if (!moved) return tl::unexpected(moved.error());
   placed.moved = *std::move(moved);
+  if (!filled) return placed;
+  const auto measured = engine::withoutFilled(b->field, *b->original, job);
+  if (!measured) return tl::unexpected(measured.error());
+  auto known = engine::movedOnto(*measured, alignment->motion, a.grid(), job);
+  if (!known) return tl::unexpected(known.error());
+  placed.measured = *std::move(known);
   return placed;
 }
 
@@ -138,7 +175,8 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
   if (placed->nominal) report["nominal"] = *placed->nominal;
   if (placed->moved) {
     engine::ExportOptions writing = options.writing;
-    writing.original = *placed->moved;
+    writing.original = placed->measured ? *placed->measured : *placed->moved;
+    warnOfFilledLost(*placed->moved, writing.original, options.out, options.to);
     if (auto status = saveField(*placed->moved, options.out, job, writing, options.to); !status)
       return tl::unexpected(status.error());
     report["out"] = options.out;

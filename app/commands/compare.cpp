@@ -183,6 +183,7 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   if (foreseen->only) return *std::move(foreseen->only);
   Report alignment;
   if (options.aligned) {
+    warnOfFilled(b->field, b->original, options.b);
     const auto found = alignmentOf(*a, b->field, options.a, options.b, options.align, job);
     if (!found) return tl::unexpected(found.error());
     auto moved = engine::movedOnto(b->field, found->motion, a->field.grid(), job);

@@ -5,6 +5,7 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/known_steps.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/shards/band_work.h"
@@ -71,6 +72,7 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   if (imported->field.lines() != nullptr && !imported->field.lines()->empty() && written->format != "Fettle")
     written->warnings.push_back(
         "the edge lines of the session are not stored, the format has none; fettle lines --out writes them");
+  warnOfFilledLost(imported->field, imported->original, task.out, task.to);
   for (const std::string& warning : written->warnings) warn(shownOutput(task.out) + ": " + warning);
   return Report{{"format", written->format},
                 {"from", imported->format},

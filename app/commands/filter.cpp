@@ -21,6 +21,7 @@
 #include "app/commands/list_text.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/region_option.h"
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -175,6 +176,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const double seconds = watch.seconds();
   if (!filtered) return tl::unexpected(continued(filtered.error(), task.out, *std::move(kept)));
   const engine::Stopwatch save_watch;
+  warnOfFilledLost(filtered->field, writing.original, task.out, task.to);
   if (auto status = saveField(filtered->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(continued(status.error(), task.out, *std::move(kept)));
   if (!options.residual.empty()) {

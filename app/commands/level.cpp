@@ -83,6 +83,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   }
   known->beganWith(step);
   known->note(writing);
+  warnOfFilledLost(*levelled, writing.original, task.out, task.to);
   if (auto status = saveField(*levelled, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   Report report;

@@ -25,6 +25,7 @@
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/mosaic/blended.h"
 #include "engine/mosaic/join.h"
@@ -203,6 +204,15 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
     if (!scan) return tl::unexpected(scan.error());
     if (scan->field.lines() != nullptr)
       warn(fmt::format("{}: its edge lines do not go along", shownInput(path)));
+    if (const std::int64_t filled = scan->original ? engine::countFilled(scan->field, *scan->original) : 0;
+        filled > 0) {
+      // What another scan measured there counts more.
+      warn(fmt::format("{}: {} filled samples are left out: fill what is still a hole of the mosaic",
+                       shownInput(path), filled));
+      auto measured = engine::withoutFilled(scan->field, *scan->original, job);
+      if (!measured) return tl::unexpected(measured.error());
+      scan->field = *std::move(measured);
+    }
     scans.push_back(std::move(scan->field));
   }
   const auto places = placesOf(options, scans);
@@ -223,6 +233,14 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
     if (error.remedy.ends_with("say where scans lie")) error.remedy += " with --layout";
     return tl::unexpected(error);
   }
+  // Over loops of pairs they would agree to about 1.
+  constexpr double kMisfit = 5.0;
+  if (const int freedom = joined->poses.freedom; freedom > 0)
+    if (const double misfit = std::sqrt(joined->poses.misfit / freedom); misfit > kMisfit)
+      warn(fmt::format(
+          "the pairs agree only to {:.2g} of their standard errors: some of the scans lie elsewhere; state "
+          "their places with --layout",
+          misfit));
   engine::ExportOptions writing = options.writing;
   writing.original = joined->field;
   if (auto status = saveField(joined->field, out, job, writing, options.to); !status)

@@ -14,10 +14,13 @@
 
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
+#include "app/work/outputs.h"
 #include "app/work/section_report.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
+#include "engine/io/files/input_file.h"
 #include "engine/marks/chosen_marks.h"
 #include "engine/marks/polygon.h"
 #include "engine/measure/only_region.h"
@@ -251,6 +254,17 @@ void warnOfFilled(const engine::Version& counted, const std::optional<engine::Ve
   if (filled > 0)
     warn(fmt::format("{}: {} of its samples were filled, not measured: --region measured leaves them out",
                      shownInput(scan), filled));
+}
+
+void warnOfFilledLost(const engine::Version& field, const std::optional<engine::Version>& original,
+                      const std::string& out, const std::string& to) {
+  const std::string extension = isStream(out) ? withDot(to) : engine::extensionOf(out);
+  if (!original || memoryPlace(out) != nullptr || extension == ".fettle") return;
+  if (const std::int64_t filled = engine::countFilled(field, *original); filled > 0)
+    warn(fmt::format(
+        "{}: {} of its samples were filled, not measured, and the file does not say which: write a "
+        "session, .fettle",
+        shownOutput(out), filled));
 }
 
 engine::Result<engine::Version> chosenLike(const engine::Version& other, const engine::Version& chosen,

@@ -71,6 +71,11 @@ void addRegionOptions(Command command, RegionArguments& arguments, const std::st
 void warnOfFilled(const engine::Version& counted, const std::optional<engine::Version>& original,
                   const std::string& scan);
 
+/// Warns where samples were filled and the file of `out`, of the extension `to` on standard output, will not say which: all
+/// but sessions. Memory (memoryPlace) does.
+void warnOfFilledLost(const engine::Version& field, const std::optional<engine::Version>& original,
+                      const std::string& out, const std::string& to);
+
 /// Another field at the samples of `chosen`, what chosenOf() made of `field`: with holes wherever that has some, but of all
 /// samples as it is. A field of other sides is returned as it is.
 [[nodiscard]] engine::Result<engine::Version> chosenLike(const engine::Version& other,

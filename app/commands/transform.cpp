@@ -11,6 +11,7 @@
 #include "app/commands/known_steps.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
+#include "app/commands/region_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/transforming.h"
@@ -77,6 +78,7 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
         fmt::format("{}: turned, its samples are no longer where its coordinate system says: it is written "
                     "without one",
                     shownInput(task.in)));
+  warnOfFilledLost(result->field, writing.original, task.out, task.to);
   if (auto status = saveField(result->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(result->field);

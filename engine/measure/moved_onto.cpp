@@ -32,16 +32,29 @@ Result<MovedField> MovedField::create(const Version& field, const RigidMotion& m
   return MovedField(field, motion, motion.moved({motion.centre.x, motion.centre.y, middle->middle}).z);
 }
 
+namespace {
+
+// `t` in a cell as its end, where that is within `by`.
+double atEnd(double t, double by) {
+  return std::abs(t - std::round(t)) < by ? std::round(t) : t;
+}
+
+}  // namespace
+
 // The bilinear patch at a place of the field.
 MovedField::Patch MovedField::patchAt(double x, double y) const noexcept {
   const double u = x / spacing_x_, v = y / spacing_y_;
-  // A sample on the border is one, whatever rounding makes of its place.
-  constexpr double kSlack = 1e-9;
-  if (!(u >= -kSlack && v >= -kSlack && u <= width_ - 1 + kSlack && v <= height_ - 1 + kSlack)) return {};
+  if (!(u >= -kBeyond && v >= -kBeyond && u <= width_ - 1 + kBeyond && v <= height_ - 1 + kBeyond)) return {};
   const auto c = std::clamp(static_cast<std::int32_t>(u), 0, std::max(0, width_ - 2)),
              r = std::clamp(static_cast<std::int32_t>(v), 0, std::max(0, height_ - 2));
-  const auto nearWhole = [](double t) { return std::abs(t - std::round(t)) < 1e-9 ? std::round(t) : t; };
-  const double s = nearWhole(u - c), t = nearWhole(v - r);
+  // A sample on the border is one, whatever rounding makes of its place.
+  constexpr double kRounding = 1e-9;
+  const Patch patch = patchIn(c, r, atEnd(u - c, kRounding), atEnd(v - r, kRounding));
+  return std::isnan(patch.z) ? patchIn(c, r, atEnd(u - c, kBeyond), atEnd(v - r, kBeyond)) : patch;
+}
+
+// Of the cell at (c, r), at (s, t) in it.
+MovedField::Patch MovedField::patchIn(std::int32_t c, std::int32_t r, double s, double t) const noexcept {
   const std::int32_t right = std::min(c + 1, width_ - 1), above = std::min(r + 1, height_ - 1);
   const auto height = [&](std::int32_t column, std::int32_t row, double weight) {
     return weight == 0.0 ? 0.0 : double{from_.heightAt(column, row)} * unit_;

@@ -16,6 +16,10 @@ namespace fettle::engine {
 /// A field, moved: heights of its bilinear patches at any place. Threading: const functions from any thread.
 class MovedField {
  public:
+  /// How far beyond the border, and beyond the last sample beside a hole, the patch there goes on [samples]: a motion that is
+  /// found is known no better, and what lies on a sample must not be lost by its error.
+  static constexpr double kBeyond = 0.01;
+
   /// Errors: kCancelled. Throws std::bad_alloc. A long job, as heightsAround.
   [[nodiscard]] static Result<MovedField> create(const Version& field, const RigidMotion& motion,
                                                  JobControl& job);
@@ -25,7 +29,7 @@ class MovedField {
         std::numeric_limits<double>::quiet_NaN();  ///< [mm]; NaN: a hole, outside, or the surface overhangs
     double own_x = 0.0, own_y = 0.0;               ///< where that is in the field's own coordinates [mm]
   };
-  /// The moved surface over or under a place.
+  /// The moved surface over or under a place; beside a hole off by kBeyond times the slope at most.
   [[nodiscard]] Place at(double x, double y) const noexcept;
 
   [[nodiscard]] const Version& field() const noexcept { return field_; }
@@ -40,6 +44,7 @@ class MovedField {
     double z = std::numeric_limits<double>::quiet_NaN(), slope_x = 0.0, slope_y = 0.0;
   };
   [[nodiscard]] Patch patchAt(double x, double y) const noexcept;
+  [[nodiscard]] Patch patchIn(std::int32_t c, std::int32_t r, double s, double t) const noexcept;
 
   Version field_;
   RigidMotion motion_;

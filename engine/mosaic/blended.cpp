@@ -156,8 +156,8 @@ Result<Grid> gridOverAll(const std::vector<Version>& scans, const AdjustedPoses&
     return static_cast<std::int64_t>(rounded(v / spacing + slack));
   };
   const auto down = [](double v) { return std::floor(v); };
-  // Rounding adds no row.
-  constexpr double kSlack = 1e-6;
+  // The error of a place neither adds a row nor loses one.
+  constexpr double kSlack = MovedField::kBeyond;
   const std::int64_t left = sampleAt(all.left, grid.spacingXMm(), down, 1.0 - kSlack),
                      lower = sampleAt(all.lower, grid.spacingYMm(), down, 1.0 - kSlack),
                      right = sampleAt(all.right, grid.spacingXMm(), down, kSlack),
