@@ -167,7 +167,7 @@ class SectionMeasurement {
                                          options_.lambda_s.value_or(0.0), info.kind};
     const auto figures = engine::roughnessOf(section, within(section), filters);
     if (!figures) return tl::unexpected(figures.error());
-    const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_.sample_mm,
+    const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_,
                                               {.pairs = kRoughnessPairs});
     if (!noise) return tl::unexpected(noise.error());
     Report report{{"evaluated", stretchOf(figures->evaluated)}, {"lengths", figures->lengths}};

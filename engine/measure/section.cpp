@@ -297,6 +297,26 @@ Section::LineCovariance Section::lineCovariance(std::span<const std::vector<doub
   return result;
 }
 
+std::vector<std::vector<double>> Section::offBy(std::span<const LineOffsets> offsets) const {
+  std::vector<std::vector<double>> heights(offsets.size(), std::vector<double>(size(), 0.0));
+  if (source.field.empty()) return heights;
+  const Grid& grid = source.field.grid();
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  const PlaceReader reader(source.field, source.options);
+  const Lanes side_by_side = lanesOf(source);
+  for (std::size_t i = 0; i < size(); ++i)
+    for (const Share& part : takenAt(reader, side_by_side, spacing, along(i)).shares) {
+      const auto row = static_cast<std::size_t>(part.sample / grid.width),
+                 column = static_cast<std::size_t>(part.sample % grid.width);
+      for (std::size_t k = 0; k < offsets.size(); ++k) {
+        const LineOffsets& off = offsets[k];
+        heights[k][i] += part.weight * ((off.rows.empty() ? 0.0 : off.rows[row]) +
+                                        (off.columns.empty() ? 0.0 : off.columns[column]));
+      }
+    }
+  return heights;
+}
+
 Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> points,
                              const SectionOptions& options, JobControl& job) try {
   if (auto status = checkPoints(points, options); !status) return tl::unexpected(status.error());

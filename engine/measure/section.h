@@ -75,6 +75,12 @@ struct Section {
     int rows_met = 0, columns_met = 0;
   };
   [[nodiscard]] LineCovariance lineCovariance(std::span<const std::vector<double>> sums) const;
+  /// By how much the heights of all places are off where each row and each column of the field is off by so much; none of
+  /// either: as if all were 0. The same for several such offsets; 0 for places without a height. Time: lanes of all places times offsets.
+  struct LineOffsets {
+    std::vector<double> rows, columns;
+  };
+  [[nodiscard]] std::vector<std::vector<double>> offBy(std::span<const LineOffsets> offsets) const;
 };
 
 /// The section along the polyline through `points` (field coordinates [mm], at least two), signs applied. The places are

@@ -23,6 +23,13 @@ constexpr double kFewRanks = 1.3;
 // RSm, up to which they stay.
 constexpr double kMostOfElements = 0.03, kMostOfWidths = 0.02;
 
+// The variance of offsets is known to so much of itself, over the root of how many lines a field has (engine/inspect/noise_lines.h).
+constexpr double kLinesScatter = 2.3;
+
+// Share of the profile's mean square. Of simulated rows that were off by as much as the surface's Rq RSm was half as large as without, and
+// its error a fifth of what it was off; with less than a third of the mean square it was covered.
+constexpr double kMostOfProfile = 0.33;
+
 NoiseGrowth growthOf(const RoughnessInfo& info) {
   // The greatest of many, or what such a one decides.
   for (const auto figure :
@@ -71,41 +78,96 @@ std::vector<double> factorOf(const Section& section) {
   return factor;
 }
 
-std::vector<double> drawn(const Section& section, const std::vector<double>& factor, double noise_mm,
-                          std::uint64_t seed) {
+// Noise of samples alone.
+void addOfSamples(std::vector<double>& noise, const Section& section, const std::vector<double>& factor,
+                  double sample_mm, std::uint64_t seed) {
   const CounterRandom random(seed, 3);
   const auto band = static_cast<std::size_t>(section.band);
-  std::vector<double> own(section.size()), noise(section.size());
+  std::vector<double> own(section.size());
   for (std::size_t i = 0; i < own.size(); ++i) own[i] = random.normal(static_cast<std::int32_t>(i), 0);
   for (std::size_t i = 0; i < own.size(); ++i)
     for (std::size_t j = i + 1 >= band ? i + 1 - band : 0; j <= i; ++j)
-      noise[i] += noise_mm * factor[i * band + (j + band - 1 - i)] * own[j];
-  return noise;
+      noise[i] += sample_mm * factor[i * band + (j + band - 1 - i)] * own[j];
+}
+
+// Offsets of all rows and columns of the field, of independent size.
+Section::LineOffsets drawnOffsets(const Grid& grid, const SectionNoise& noise, std::uint64_t seed) {
+  Section::LineOffsets off;
+  const auto draw = [&](std::vector<double>& of, double size, std::int32_t lines, std::uint64_t stream) {
+    if (!(size > 0.0)) return;
+    const CounterRandom random(seed, stream);
+    for (std::int32_t i = 0; i < lines; ++i) of.push_back(size * random.normal(i, 0));
+  };
+  draw(off.rows, noise.rows_mm, grid.height, 4);
+  draw(off.columns, noise.columns_mm, grid.width, 5);
+  return off;
+}
+
+// Noise of a section, a row for each draw.
+struct DrawnNoise {
+  std::vector<std::vector<double>> heights;
+  double doubt = 0.0;  // share of its variance about its mean that is not sure
+};
+
+double squareAboutMean(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const double v : values) sum += v, squares += v * v;
+  return squares - sum * sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
+
+DrawnNoise drawnNoise(const Section& section, const SectionNoise& noise, std::uint64_t seed, int draws) {
+  DrawnNoise drawn;
+  drawn.heights.assign(static_cast<std::size_t>(draws), std::vector<double>(section.size(), 0.0));
+  double of_lines = 0.0;
+  const bool off = noise.rows_mm > 0.0 || noise.columns_mm > 0.0;
+  if (off && !section.source.field.empty()) {
+    const Grid& grid = section.source.field.grid();
+    std::vector<Section::LineOffsets> offsets;
+    for (int k = 0; k < draws; ++k)
+      offsets.push_back(drawnOffsets(grid, noise, seed + static_cast<std::uint64_t>(k)));
+    drawn.heights = section.offBy(offsets);
+    for (const std::vector<double>& heights : drawn.heights) of_lines += squareAboutMean(heights);
+  }
+  const std::vector<double> factor = factorOf(section);
+  for (std::size_t k = 0; k < drawn.heights.size(); ++k)
+    addOfSamples(drawn.heights[k], section, factor, noise.sample_mm, seed + k);
+  if (of_lines > 0.0) {
+    double all = 0.0;
+    for (const std::vector<double>& heights : drawn.heights) all += squareAboutMean(heights);
+    const Grid& grid = section.source.field.grid();
+    const double rows = noise.rows_mm * noise.rows_mm, columns = noise.columns_mm * noise.columns_mm;
+    const double known =
+        (rows * kLinesScatter / std::sqrt(grid.height) + columns * kLinesScatter / std::sqrt(grid.width)) /
+        (rows + columns);
+    drawn.doubt = known * std::min(1.0, of_lines / all);
+  }
+  return drawn;
 }
 
 }  // namespace
 
-std::vector<double> sectionNoise(const Section& section, double noise_mm, std::uint64_t seed) {
-  return drawn(section, factorOf(section), noise_mm, seed);
+std::vector<std::vector<double>> sectionNoise(const Section& section, const SectionNoise& noise,
+                                              std::uint64_t seed, int draws) {
+  return drawnNoise(section, noise, seed, draws).heights;
 }
 
 Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within,
-                                      const ProfileFilters& filters, const Roughness& found, double noise_mm,
-                                      const NoiseTrialOptions& options) {
+                                      const ProfileFilters& filters, const Roughness& found,
+                                      const SectionNoise& noise, const NoiseTrialOptions& options) {
   const std::span<const RoughnessInfo> infos = roughnessInfos();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   RoughnessNoise result(infos.size(), {kNone, kNone});
-  if (!(noise_mm > 0.0)) return result;
-  const std::vector<double> factor = factorOf(section);
+  if (std::isnan(noise.sample_mm) ||
+      !(noise.sample_mm > 0.0 || noise.rows_mm > 0.0 || noise.columns_mm > 0.0))
+    return result;
+  const DrawnNoise drawn = drawnNoise(section, noise, options.seed, options.pairs);
   std::vector<std::vector<TrialPair>> pairs(infos.size());
   Section noisy = section;
-  for (int k = 0; k < options.pairs; ++k) {
-    const std::vector<double> noise =
-        drawn(section, factor, noise_mm, options.seed + static_cast<std::uint64_t>(k));
+  for (const std::vector<double>& more : drawn.heights) {
     Roughness sides[2];
     for (int side = 0; side < 2; ++side) {
-      for (std::size_t i = 0; i < noise.size(); ++i)
-        noisy.height[i] = section.height[i] + (side == 0 ? noise[i] : -noise[i]);
+      for (std::size_t i = 0; i < more.size(); ++i)
+        noisy.height[i] = section.height[i] + (side == 0 ? more[i] : -more[i]);
       const auto rough = roughnessOf(noisy, within, filters);
       if (!rough) return tl::unexpected(rough.error());
       sides[side] = *rough;
@@ -116,13 +178,14 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
   std::vector<NoiseGrowth> growth;
   for (std::size_t f = 0; f < infos.size(); ++f) {
     growth.push_back(growthOf(infos[f]));
-    result[f] = noiseEffectOf(found.*infos[f].figure, pairs[f], growth.back());
+    result[f] = noiseEffectOf(found.*infos[f].figure, pairs[f], growth.back(), {.doubt = drawn.doubt});
     if (growth.back() == NoiseGrowth::kRank || growth.back() == NoiseGrowth::kShare)
       result[f].error *= kFewRanks;
   }
   // The noise in the profile over its heights: what the trials took off Rq by square, which lanes and filters have made smaller.
   const double less = effectOf(&Roughness::rq, result).without / found.rq;
-  addRankDoubt(result, growth, std::isnan(less) ? 0.0 : std::sqrt(std::max(0.0, 1.0 - less * less)));
+  const double share = std::isnan(less) ? 0.0 : std::sqrt(std::max(0.0, 1.0 - less * less));
+  addRankDoubt(result, growth, share);
   const auto rc = static_cast<std::size_t>(std::ranges::find(infos, &Roughness::rc, &RoughnessInfo::figure) -
                                            infos.begin());
   const NoiseEffect& widths = effectOf(&Roughness::rsm, result);
@@ -131,6 +194,14 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
   if (!std::isnan(result[rc].without) &&
       !(same_elements && std::abs(result[rc].without - found.rc) <= kMostOfElements * found.rc))
     result[rc] = {kNone, kNone, "noise changes the elements of the profile"};
+  // Trials around a profile that is mostly noise change its elements and its shape no more.
+  if (share * share > kMostOfProfile)
+    for (const auto figure : {&Roughness::rsm, &Roughness::rsk, &Roughness::rku}) {
+      const auto at =
+          static_cast<std::size_t>(std::ranges::find(infos, figure, &RoughnessInfo::figure) - infos.begin());
+      if (!std::isnan(result[at].without))
+        result[at] = {kNone, kNone, "the profile is noise for the most part"};
+    }
   // A size with an error as large as itself, and a share with one larger than that of all shares alike, are not determined.
   for (std::size_t f = 0; f < infos.size(); ++f) {
     const double most = growth[f] == NoiseGrowth::kShare  ? 1.0 / std::sqrt(12.0)

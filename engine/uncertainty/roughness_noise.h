@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/measure/roughness.h"
+#include "engine/measure/section_noise.h"
 #include "engine/uncertainty/noise_trial.h"
 
 namespace fettle::engine {
@@ -14,15 +15,19 @@ namespace fettle::engine {
 /// is of heights and shares of the material ratio curve, and all of these of waviness; all by withinRange().
 using RoughnessNoise = std::vector<NoiseEffect>;
 
-/// By trials (noise_trial.h) in which heights of the section get noise with the covariance that independent noise of standard deviation
-/// `noise_mm` in every sample gives them (Section::covariance), drawn through its banded Cholesky factor. `found` is roughnessOf(section, within,
-/// filters). Noise that samples share is left out, as in the errors of section_figures.h. `noise_mm` not above 0: no effect, NaN.
-/// Time: 2 pairs times that of roughnessOf, and places times band squared. Errors: those of roughnessOf. Thread: any.
+/// By trials (noise_trial.h) in which heights of the section get noise like its own: with the covariance that independent noise in every
+/// sample gives them (Section::covariance), drawn through its banded Cholesky factor, and with what an offset of each row and each column of
+/// the field does to them (Section::offBy): one along a row has one offset, which no profile has, one across the rows another at each
+/// place, and a width does not make it less. `found` is roughnessOf(section, within, filters). Noise that samples share otherwise is left
+/// out, as in the errors of section_figures.h. The noise of samples not above 0 and that of lines neither, or that of samples NaN: no effect, NaN.
+/// Time: 2 pairs times that of roughnessOf, places times band squared, and pairs times lanes of all places where lines are off. Errors: those of roughnessOf. Thread: any.
 [[nodiscard]] Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within,
                                                     const ProfileFilters& filters, const Roughness& found,
-                                                    double noise_mm, const NoiseTrialOptions& options);
+                                                    const SectionNoise& noise,
+                                                    const NoiseTrialOptions& options);
 
-/// Heights with such noise, `sign` times; places without a height have none. For tests.
-[[nodiscard]] std::vector<double> sectionNoise(const Section& section, double noise_mm, std::uint64_t seed);
+/// What such noise adds to the heights, a draw for each seed from `seed` on; places without a height have none. For tests.
+[[nodiscard]] std::vector<std::vector<double>> sectionNoise(const Section& section, const SectionNoise& noise,
+                                                            std::uint64_t seed, int draws);
 
 }  // namespace fettle::engine

@@ -57,8 +57,7 @@ TEST(SectionNoise, HasTheCovarianceOfTheSection) {
   const std::size_t n = section.size(), band = static_cast<std::size_t>(section.band);
   constexpr int kDraws = 400;
   std::vector<double> sums(band + 2), wanted(band + 2);
-  for (int k = 0; k < kDraws; ++k) {
-    const std::vector<double> noise = sectionNoise(section, 0.3, static_cast<std::uint64_t>(k));
+  for (const std::vector<double>& noise : sectionNoise(section, {0.3}, 0, kDraws)) {
     ASSERT_EQ(noise.size(), n);
     for (std::size_t i = 0; i + band + 2 < n; ++i)
       for (std::size_t lag = 0; lag < band + 2; ++lag) sums[lag] += noise[i] * noise[i + lag] / kDraws;
@@ -93,7 +92,7 @@ void expectCoverage(ProfileKind kind, int few) {
       const Section noisy = sectionOf(groundField(sigma, 100U + static_cast<unsigned>(s)), to_y, width);
       const auto found = roughnessOf(noisy, all, filters);
       ASSERT_TRUE(found);
-      const auto noise = roughnessNoise(noisy, all, filters, *found, sigma,
+      const auto noise = roughnessNoise(noisy, all, filters, *found, {sigma},
                                         {.pairs = 16, .seed = 5000 + 100 * static_cast<std::uint64_t>(s)});
       ASSERT_TRUE(noise);
       for (std::size_t f = 0; f < infos.size(); ++f) {
@@ -164,7 +163,7 @@ TEST(RoughnessNoise, FiguresWithoutNoiseLieWithinTheirRange) {
     const Stretch all{0.0, section->lengthMm()};
     const auto found = roughnessOf(*section, all, {1.0});
     ASSERT_TRUE(found);
-    const auto noise = roughnessNoise(*section, all, {1.0}, *found, 1e-4, {.pairs = 32});
+    const auto noise = roughnessNoise(*section, all, {1.0}, *found, {1e-4}, {.pairs = 32});
     ASSERT_TRUE(noise);
     for (std::size_t f = 0; f < noise->size(); ++f) {
       const NoiseEffect& effect = (*noise)[f];
@@ -187,7 +186,7 @@ TEST(RoughnessNoise, WithoutNoiseHasNoEffect) {
   const auto found = roughnessOf(section, all, {40.0});
   ASSERT_TRUE(found);
   for (const double none : {0.0, std::nan("")}) {
-    const auto noise = roughnessNoise(section, all, {40.0}, *found, none, {});
+    const auto noise = roughnessNoise(section, all, {40.0}, *found, {none}, {});
     ASSERT_TRUE(noise);
     for (const NoiseEffect& effect : *noise) EXPECT_TRUE(std::isnan(effect.error));
   }
@@ -233,7 +232,7 @@ TEST(RoughnessNoise, RcIsStatedWhereNoiseLeavesTheElementsAsTheyAre) {
       const Section noisy = section(sigma, 100 + seed);
       const Roughness found = *roughnessOf(noisy, all, filters);
       const NoiseEffect effect =
-          (*roughnessNoise(noisy, all, filters, found, sigma, {.pairs = 16, .seed = 70 + 100U * seed}))[rc];
+          (*roughnessNoise(noisy, all, filters, found, {sigma}, {.pairs = 16, .seed = 70 + 100U * seed}))[rc];
       if (std::isnan(effect.without)) {
         EXPECT_FALSE(effect.why.empty());
         continue;
