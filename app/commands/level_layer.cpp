@@ -15,6 +15,7 @@
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
+#include "app/work/through_noise.h"
 #include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
 #include "engine/field/upright.h"
@@ -31,7 +32,11 @@ engine::Result<engine::FittedForm> fitOver(const engine::Version& samples,
                                            const std::string& scan, engine::JobControl& job) {
   auto counted = countedOf(engine::upright(samples), original, scan, form, job);
   if (!counted) return tl::unexpected(counted.error());
-  return formOf(*counted, scan, imported, form, job);
+  auto fit = formOf(*counted, scan, imported, form, job);
+  if (fit)
+    if (auto status = addThroughNoise(*fit, *counted, formChoiceOf(form), job); !status)
+      return tl::unexpected(status.error());
+  return fit;
 }
 
 tl::unexpected<engine::Error> noLayer(const std::string& scan) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/work/streams.h"
+#include "app/work/through_noise.h"
 #include "engine/field/piece.h"
 #include "engine/field/tile.h"
 #include "engine/measure/lowered.h"
@@ -89,6 +90,8 @@ engine::Result<Levelling> levellingOf(const engine::Version& counted, const std:
   auto fit = formOf(level, scan, imported, form, job);
   if (!fit) return tl::unexpected(fit.error());
   levelling.fit = *std::move(fit);
+  if (auto status = addThroughNoise(levelling.fit, level, formChoiceOf(form), job); !status)
+    return tl::unexpected(status.error());
   return levelling;
 }
 

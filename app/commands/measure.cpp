@@ -27,6 +27,7 @@
 #include "app/work/layer_over.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
+#include "app/work/through_noise.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/areal.h"
@@ -130,7 +131,10 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (auto status = writeSurface(options, *limited, imported->field, job); !status)
     return tl::unexpected(status.error());
   Report report;
-  addForm(report, options.form, limited->fit, grid);
+  engine::FittedForm fit = limited->fit;
+  if (auto status = addThroughNoise(fit, *marked, formChoiceOf(options.form), job); !status)
+    return tl::unexpected(status.error());
+  addForm(report, options.form, fit, grid);
   addLayer(report, imported->field);
   if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
   addScale(report, options.scale);

@@ -176,8 +176,8 @@ engine::Result<Report> probed(const SectionArguments& options, const ReadScan& s
   const double radius = options.probe_radius.value_or(engine::usualProbeRadiusMm(grid));
   for (const std::string& text : options.probes) {
     const std::vector<double> at = numbersOf(text, 2);
-    const auto figures = engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region,
-                                         scan.noise.sample_mm);
+    const auto figures =
+        engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region, scan.noise);
     if (!figures) return tl::unexpected(figures.error());
     Report one{{"x", at[0]}, {"y", at[1]}, {"radius_mm", radius}};
     addEstimate(one, "height", "mm", figures->height_mm);
@@ -348,8 +348,9 @@ void addSection(Command root, Chosen& chosen) {
       "Positions count from the lower left sample, x to the right and y up the picture. The section is taken "
       "as the "
       "scan stands: fettle level takes a tilt out first.\n"
-      "Standard errors are those that the noise of single samples gives, between cursors that of rows and "
-      "columns, too. Of noise that neighbours share otherwise, as "
+      "Standard errors are those that the noise of single samples and of whole rows and columns gives, as "
+      "the "
+      "section goes along or across them. Of noise that neighbours share otherwise, as "
       "in filtered "
       "scans, they are too small; those of --compare's scan are by the greater noise of both. Step: the "
       "third of the width next to the edge does not count, as beside a groove in "

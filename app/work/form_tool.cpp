@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/texts/texts.h"
+#include "app/work/through_noise.h"
 #include "engine/measure/form_surface.h"
 
 namespace fettle::app {
@@ -13,7 +14,7 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                                     engine::JobControl& job) {
   const auto samples = engine::withoutLayer(field, job);
   if (!samples) return tl::unexpected(samples.error());
-  const auto fit = engine::fitNominalForm(*samples, options, job);
+  auto fit = engine::fitNominalForm(*samples, options, job);
   if (!fit) {
     engine::Error error = fit.error();
     if (error.kind == engine::ErrorKind::kInput && error.where == "form")
@@ -21,6 +22,8 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
                                                             : "mark samples, or fit by all of them";
     return tl::unexpected(error);
   }
+  if (auto status = addThroughNoise(*fit, *samples, options, job); !status)
+    return tl::unexpected(status.error());
   return FormTool::Fit{options,      std::make_shared<const engine::NominalForm>(fit->form),
                        fit->samples, fit->rms,
                        fit->open,    fit->leaves,

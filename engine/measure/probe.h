@@ -23,9 +23,10 @@ struct ProbeFigures {
 
 /// Fits z = a + b x + c y + d x^2 + e x y + f y^2 by least squares to the samples of the region within `radius_mm` of
 /// `at` (field coordinates [mm]). Curvatures are those of the graph (M. do Carmo, Differential geometry of curves and
-/// surfaces, 1976, section 3.3). `noise_mm` as in section_figures.h. Errors (kInput): samples that do not determine a
+/// surfaces, 1976, section 3.3). `noise` as in section_figures.h: that of rows and columns
+/// counts as the samples lie in them, and what the samples scatter beyond it and their own is noise of theirs. Errors (kInput): samples that do not determine a
 /// quadratic; more than 2^22 of them. Thread: any.
 [[nodiscard]] Result<ProbeFigures> probeAt(const Version& field, glm::dvec2 at, double radius_mm,
-                                           Region region, double noise_mm);
+                                           Region region, const SectionNoise& noise);
 
 }  // namespace fettle::engine

@@ -42,7 +42,7 @@ struct ThreePointPlane {
 /// is found exactly whichever of them are holes. Signs applied.
 ///
 /// The errors are those that the scatter of the samples about the plane gives to the three means, taken as independent from sample
-/// to sample. Of noise that neighbours share they are too small; where discs overlap too large.
+/// to sample; addLineErrors() (three_point_errors.h) counts lines that are off. Of other noise that neighbours share they are too small; where discs overlap too large.
 ///
 /// Refused (kInput): a point without a sample around it; three middles of which one lies nearer to the line through the other two
 /// than a sample or a fiftieth of their distance; a radius of a thousand samples or more. Sums in double. Thread: any; time as the

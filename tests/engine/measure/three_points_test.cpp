@@ -6,11 +6,13 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/field/means.h"
 #include "engine/measure/form_fit.h"
+#include "engine/measure/three_point_errors.h"
 #include "tests/engine/measure/fields.h"
 
 namespace fettle::engine {
@@ -148,6 +150,36 @@ TEST(ThreePointPlanes, AreAsSureAsTheyState) {
     EXPECT_NEAR(direction[0], 683, 45);
     EXPECT_NEAR(direction[1], 954, 20);
     EXPECT_GE(direction[2], 991);
+  }
+}
+
+// The same where rows, or columns, are off by three times the noise of a sample; two of the points share rows.
+TEST(ThreePointPlanes, AreAsSureAsTheyStateWhereLinesAreOff) {
+  constexpr int kSeeds = 400;
+  const ThreePoints points{{{{1.0, 2.0}, {5.0, 3.0}, {2.5, 12.0}}}, 0.8};
+  for (const bool by_rows : {true, false}) {
+    double off_x = 0.0, off_y = 0.0, error_x = 0.0, error_y = 0.0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      std::mt19937 random(static_cast<unsigned>(seed + 1));
+      std::normal_distribution<double> normal;
+      std::vector<double> off(60);
+      for (double& each : off) each = 9.0 * normal(random);
+      const Version field = unevenly(fieldOf(60, 40, [&](int c, int r) {
+        const double n = 3.0 * normal(random) + off[static_cast<std::size_t>(by_rows ? r : c)];
+        return (c * 3 + r) % 11 == 0 ? kGap : 2.0 * c - 5.0 * r + n;
+      }));
+      auto plane = planeThrough(field, points, Region::kAll);
+      ASSERT_TRUE(plane) << plane.error().line();
+      addLineErrors(*plane, field, points, Region::kAll, {3e-3, by_rows ? 9e-3 : 0.0, by_rows ? 0.0 : 9e-3});
+      const auto gradient = plane->form.gradient();
+      off_x += std::pow((gradient.by_column - 2.0) * 1e-3 / 0.1, 2);
+      off_y += std::pow((gradient.by_row + 5.0) * 1e-3 / 0.4, 2);
+      error_x += std::pow(plane->slope_x_error, 2);
+      error_y += std::pow(plane->slope_y_error, 2);
+    }
+    // The root of a mean square of 400 is known to 3.5 %.
+    EXPECT_NEAR(std::sqrt(error_x / off_x), 1.0, 0.12) << by_rows;
+    EXPECT_NEAR(std::sqrt(error_y / off_y), 1.0, 0.12) << by_rows;
   }
 }
 
