@@ -54,6 +54,50 @@ constexpr ArealFigure kFigures[] = {
     {"sdv", [](const P& p) { return p.feature.sdv; }, G::kPlaces, kFromZero},
 };
 
+// What lines share has all of its power in one direction, which a trial with as much of it again leaves as it is. Whether it decides the
+// direction, and the strongest wave, is seen by what is off along rows added along columns, and the other way round: a surface whose own lay has less
+// power than so much of the lines' variance loses its direction to that.
+constexpr double kTurnedVariance = 4.0;
+constexpr double kTurnedAway = 3.0;  // [degrees]
+constexpr double kOtherWave = 0.03;  // share
+
+Result<ArealParameters> measuredWithLinesTurned(const Version& field, const NoiseModel& noise,
+                                                const ArealTrialOf& measure, const NoiseTrialOptions& options,
+                                                JobControl& job) {
+  NoiseModel turned;
+  turned.parts.row_offset = kTurnedVariance * noise.whole_columns;
+  turned.parts.column_offset = kTurnedVariance * noise.whole_rows;
+  turned.sigma = std::sqrt(turned.parts.variance());
+  const auto draw = NoiseDraw::create(field.grid(), turned, options.seed);
+  if (!draw) return tl::unexpected(draw.error());
+  const auto noisy = draw->addedTo(field, turned, 1.0, job);
+  if (!noisy) return tl::unexpected(noisy.error());
+  return measure(*noisy, TrialNoise::kOwn);
+}
+
+std::size_t indexOfFigure(std::string_view key) noexcept {
+  return static_cast<std::size_t>(&arealFigure(key) - kFigures);
+}
+
+// Takes away what lines that are off decide.
+Status leaveOutOfLines(std::span<NoiseEffect> effects, const Version& field, const NoiseModel& noise,
+                       const ArealParameters& measured, const ArealTrialOf& measure,
+                       const NoiseTrialOptions& options, JobControl& job) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  NoiseEffect &direction = effects[indexOfFigure("std")], &wave = effects[indexOfFigure("ssw")];
+  if (!(noise.whole_rows > 0.0 || noise.whole_columns > 0.0)) return {};
+  if (std::isnan(direction.without) && std::isnan(wave.without)) return {};
+  const auto again = measuredWithLinesTurned(field, noise, measure, options, job);
+  if (!again) return tl::unexpected(again.error());
+  const double away = again->spatial.lay - measured.spatial.lay;
+  if (!std::isnan(direction.without) && !(std::abs(away - 180.0 * std::round(away / 180.0)) <= kTurnedAway))
+    direction = {kNone, kNone, "its direction may be that of the lines that are off"};
+  if (!std::isnan(wave.without) &&
+      !(std::abs(again->spatial.ssw - measured.spatial.ssw) <= kOtherWave * measured.spatial.ssw))
+    wave = {kNone, kNone, "its wave may be one of the lines that are off"};
+  return {};
+}
+
 }  // namespace
 
 std::span<const ArealFigure> arealFigures() noexcept {
@@ -90,14 +134,12 @@ void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& mea
   ranges.resize(found.size());  // heights have any
   for (std::size_t i = 0; i < found.size(); ++i) effects[i] = withinRange(effects[i], found[i], ranges[i]);
   // Where noise decides how many hills there are it decides how large they are.
-  const auto indexOf = [](std::string_view key) {
-    return static_cast<std::size_t>(&arealFigure(key) - kFigures);
-  };
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (const auto& [size, density] :
        {std::pair{"sha", "spd"}, {"shv", "spd"}, {"sda", "svd"}, {"sdv", "svd"}})
-    if (std::isnan(effects[indexOf(density)].without) && !std::isnan(effects[indexOf(size)].without))
-      effects[indexOf(size)] = {kNone, kNone, "noise changes how many there are"};
+    if (std::isnan(effects[indexOfFigure(density)].without) &&
+        !std::isnan(effects[indexOfFigure(size)].without))
+      effects[indexOfFigure(size)] = {kNone, kNone, "noise changes how many there are"};
 }
 
 void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
@@ -125,8 +167,11 @@ Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseM
         return valuesOf(*again);
       },
       options, job);
-  if (effects) addDominanceDoubt(*effects, noise, measured);
-  if (effects) keepWithinRanges(*effects, measured);
+  if (!effects) return effects;
+  addDominanceDoubt(*effects, noise, measured);
+  keepWithinRanges(*effects, measured);
+  if (auto status = leaveOutOfLines(*effects, field, noise, measured, measure, options, job); !status)
+    return tl::unexpected(status.error());
   return effects;
 }
 
