@@ -226,7 +226,8 @@ engine::Result<Report> measureLines(const LinesArguments& options, engine::JobCo
   if (!noise) return tl::unexpected(noise.error());
   const auto shared = engine::measureNoise(field, job);
   if (!shared) return tl::unexpected(shared.error());
-  // A field without any has no window to measure it in.
+  // A field without any has no window to measure it in. Offsets of lines are those of windows as well as of whole lines (`parts` has
+  // both): a section of an edge is no longer than a window, so that what a line is off over a piece of it counts as much.
   auto edges = engine::measureEdges(field,
                                     {.sigma = std::isnan(noise->sigma) ? 0.0 : noise->sigma,
                                      .rows = std::sqrt(shared->parts.row_offset),
