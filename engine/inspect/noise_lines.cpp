@@ -24,8 +24,11 @@ constexpr double kSure =
     3.5;  // standard errors from 0, which few lines know badly: a share of kBadly / lines more
 constexpr double kBadly = 12.0;
 constexpr double kLeast = 0.003;  // of the variance of a sample
-constexpr double kFar = 3.5;      // standard deviations of samples
-constexpr double kEdge = 3.5;     // standard deviations of the other lines
+// Correlation of fourth differences that follow each other: -0.8 of independent offsets, known to 0.4 / sqrt(differences) (M. Bartlett, 1946),
+// -0.5 of offsets that two lines share by halves, the cosine of the angle from line to line of a wave, of which 3 and more lines are one.
+constexpr double kAlike = -0.5, kAlikeScatter = 3.0 * 0.4;
+constexpr double kFar = 3.5;   // standard deviations of samples
+constexpr double kEdge = 3.5;  // standard deviations of the other lines
 constexpr std::size_t kBesideEdge = 3;
 constexpr double kQuartiles = 1.349;                 // between those of normal numbers of deviation 1
 constexpr double kQuarter = 0.3186, kHalf = 0.6745;  // |x| of standard normal numbers at these ranks
@@ -140,6 +143,20 @@ double deviationOf(Halves& half) {
   return std::sqrt(squares);
 }
 
+// The correlation of fourth differences with the next ones, without edges; below kAlike without any.
+double neighbourCorrelation(std::span<const Differing> all) {
+  double squares = 0.0, products = 0.0, count = 0.0, pairs = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].edge) continue;
+    squares += all[i].common * all[i].common;
+    ++count;
+    if (i + 1 == all.size() || all[i + 1].edge || all[i + 1].first != all[i].first + 1) continue;
+    products += all[i].common * all[i + 1].common;
+    ++pairs;
+  }
+  return pairs > 0.0 && squares > 0.0 ? products / pairs / (squares / count) : -1.0;
+}
+
 double rankedSize(std::vector<double> values, double share) {
   for (double& value : values) value = std::abs(value);
   return rankOf(values, share);
@@ -230,6 +247,7 @@ LineNoise noiseOfLines(const FieldReader& reader, LineDirection direction,
   // Of offsets the half of the lines that is less off has as large a variance as all, but for its own scatter; edges are few.
   const double half = rankedSize(common, 0.5) / kHalf, scatter = std::sqrt(2.0 * kOfFourth / (0.37 * count));
   if (half * half < std::clamp(1.0 - 2.5 * scatter, 0.3, 0.5) * (products + apart) / count) return noise;
+  if (neighbourCorrelation(all) > kAlike + kAlikeScatter / std::sqrt(count)) return noise;
   noise.variance = variance;
   noise.error = std::hypot(by_samples, variance * std::sqrt(2.0 * kOfFourth / count));
   noise.offsets = offsetsOf(heights, lines);

@@ -25,7 +25,8 @@ enum class LineDirection : std::uint8_t { kRows, kColumns };
 /// edges are in. Two halves of the line have their own noise of samples but the same offset, so that the mean of products of both
 /// is the variance of offsets, unless it is below 3.5 standard errors of what independent samples make of it, or below 0.003 of
 /// the variance of a sample (0.055 in standard deviations). Lines that are off by more than 4.5 standard deviations of the others
-/// have an edge along them. Not told from offsets: a surface that is rough across the lines and alike along the whole of them.
+/// have an edge along them. Where the differences of lines that follow each other go together, as those of a wave over three lines and more,
+/// they are the surface's. Not told from offsets: a surface that is rough from line to line and alike along the whole of them.
 ///
 /// The error of variance is 2.3 / sqrt(lines) of itself for loud offsets. At most 512 samples a line are read. Turning heights upside
 /// down changes nothing; bit-identical for any number of threads. Throws std::bad_alloc. Any thread.

@@ -179,6 +179,22 @@ TEST(NoiseModel, FindsNoOffsetsWhereThereAreNone) {
     }
 }
 
+// Waves along the columns' numbers, alike in whole columns, exact or with little noise: from one column to the next they go on, which
+// offsets do not. What windows still take for offsets of columns is in doubt.
+TEST(NoiseModel, TakesNoWavesForOffsetsOfLines) {
+  for (const double step : {0.1, 0.3, 1.0, 1.5})
+    for (const double sigma : {0.0, 1e-4, 0.01}) {
+      const auto model = modelOf(fieldOf(256, 256, [&](int c, int r) {
+        return std::sin(step * c) + (sigma > 0.0 ? sigma * white(41, c, r) : 0.0);
+      }));
+      EXPECT_EQ(model.whole_columns, 0.0) << step << " " << sigma;
+      EXPECT_EQ(model.whole_rows, 0.0) << step << " " << sigma;
+      if (model.sigma > 1.5 * sigma + 1e-7) {
+        EXPECT_GT(model.doubt, 0.3) << step << " " << sigma;
+      }
+    }
+}
+
 TEST(NoiseModel, FindsWhatNeighboursOfARowShare) {
   // The mean of three: correlations of 2/3 and 1/3 to the next two.
   const auto noise = [](int c, int r) {
