@@ -54,6 +54,9 @@ constexpr ArealFigure kFigures[] = {
     {"sdv", [](const P& p) { return p.feature.sdv; }, G::kPlaces, kFromZero},
 };
 
+// Noise over Sq from which on its hills are taken for the highest.
+constexpr double kOtherHills = 0.15;
+
 // What lines share has all of its power in one direction, which a trial with as much of it again leaves as it is. Whether it decides the
 // direction, and the strongest wave, is seen by what is off along rows added along columns, and the other way round: a surface whose own lay has less
 // power than so much of the lines' variance loses its direction to that.
@@ -146,7 +149,25 @@ void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
                        const ArealParameters& measured) {
   // The share's square in place of it: next to nothing of noise that is below a third of the surface.
   const double share = noise.sigma / measured.sq;
-  if (measured.sq > 0.0) addRankDoubt(effects, growthsOf(measured), share * share);
+  if (!(measured.sq > 0.0)) return;
+  addRankDoubt(effects, growthsOf(measured), share * share);
+  // What a parabola leaves of Sa of kinks and levels: 0.2 % with noise of 0.2, 0.6 % with 0.3.
+  NoiseEffect& sa = effects[indexOfFigure("sa")];
+  sa.error = std::hypot(sa.error, std::pow(share, 4) * sa.without);
+  // Five highest peaks of hills that noise made are others' (0.6 of S5p is left on steps), and extremes say not how many.
+  if (share < kOtherHills) return;
+  const auto hillsChange = [&](std::string_view density) {
+    return std::isnan(effects[indexOfFigure(density)].without);
+  };
+  const auto leaveOut = [&](std::string_view key, bool changes) {
+    NoiseEffect& effect = effects[indexOfFigure(key)];
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (changes && !std::isnan(effect.without))
+      effect = {kNone, kNone, "noise decides which hills are the highest"};
+  };
+  leaveOut("s5p", hillsChange("spd"));
+  leaveOut("s5v", hillsChange("svd"));
+  leaveOut("s10z", hillsChange("spd") || hillsChange("svd"));
 }
 
 ArealOptions optionsOf(ArealOptions options, TrialNoise noise) {

@@ -265,6 +265,38 @@ TEST(ArealNoise, ErrorsCoverTheTruthOfKnownSurfaces) {
   EXPECT_GE(whole.within[2], 0.94 * whole.stated);
 }
 
+// Means of five extremes and Sa where noise is a fifth of the surface: what is stated is covered, and peaks of hills that noise makes are not stated.
+TEST(ArealNoise, MeansOfFiveExtremesUnderLoudNoise) {
+  const int seeds = seedsOf(4);
+  for (const double sigma : {0.1, 0.2}) {
+    Coverage fives, mean;
+    const auto add = [&](const KnownSurface& surface) {
+      const auto all = coverageOf(surface.heights(), sigma, seeds, 8, 9500);
+      for (const std::string_view key : {"sa", "s5p", "s5v", "s10z"}) {
+        const Coverage& c = all[static_cast<std::size_t>(&arealFigure(key) - arealFigures().data())];
+        fmt::print("{}, noise {}: {:4} n {:3} raised {:6.3f} left {:6.3f} of it, error over off {:5.2f}\n",
+                   surface.name, sigma, key, c.stated, c.raise / c.truth, c.left / c.truth,
+                   std::sqrt(c.errors / c.off));
+        Coverage& sum = key == "sa" ? mean : fives;
+        sum.stated += c.stated;
+        for (int k = 0; k < 3; ++k) sum.within[k] += c.within[k];
+      }
+    };
+    for (const KnownSurface& surface : kSurfaces) add(surface);
+    for (const KnownSurface& surface : kOtherSurfaces) add(surface);
+    for (const Coverage& c : {fives, mean})
+      fmt::print("noise {}: {} {} {} of {}\n", sigma, c.within[0], c.within[1], c.within[2], c.stated);
+    EXPECT_EQ(mean.stated, 8 * seeds);
+    EXPECT_GE(mean.within[0], 0.5 * mean.stated);
+    EXPECT_GE(mean.within[1], 0.85 * mean.stated);
+    EXPECT_GE(fives.within[1], 0.85 * fives.stated);
+    if (sigma > 0.15)
+      EXPECT_LT(fives.stated, 6 * seeds);
+    else
+      EXPECT_EQ(fives.stated, 24 * seeds);
+  }
+}
+
 // Rows that are off have their power in one direction, which is no lay, and waves along it: Std and Ssw are not stated where they may decide them,
 // and stated where they do not.
 TEST(ArealNoise, SpatialParametersWhereRowsAreOff) {
