@@ -31,6 +31,7 @@
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/areal.h"
+#include "engine/measure/height_rounding.h"
 
 namespace fettle::app {
 
@@ -150,6 +151,10 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
       report["smc"].push_back(
           {{"ratio", areal->at_ratios[i]}, {"height", numberOrNull(measured->heights[i])}});
   }
+  // Of a smoothed surface the scan's rounding says nothing.
+  if (options.scale.s_filter.empty())
+    if (const std::string doubt = engine::roundingDoubt(*marked, *measured); !doubt.empty())
+      warn(fmt::format("{}: {}; a zero near the surface keeps more digits", shownInput(scan), doubt));
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;
   stated.heights.resize(areal->at_ratios.size());
