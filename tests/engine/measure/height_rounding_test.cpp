@@ -29,7 +29,7 @@ Version wavesAt(double height, double high) {
   return makeField(grid, z);
 }
 
-ArealParameters measuredOf(const Version& field) {
+ArealParameters arealOfWaves(const Version& field) {
   JobControl job;
   const auto fit = fitForm(field, {}, job);
   EXPECT_TRUE(fit);
@@ -39,7 +39,7 @@ ArealParameters measuredOf(const Version& field) {
 // The excess of Sdq that is said is that of the same waves at 0, which floats hold.
 TEST(HeightRounding, IsSaidWhereItMakesTheGradient) {
   for (const double high : {1e-4, 3e-5}) {
-    const ArealParameters there = measuredOf(wavesAt(0.0, high)), here = measuredOf(wavesAt(100.0, high));
+    const ArealParameters there = arealOfWaves(wavesAt(0.0, high)), here = arealOfWaves(wavesAt(100.0, high));
     const std::string doubt = roundingDoubt(wavesAt(100.0, high), here);
     const double excess = 100.0 * (1.0 - there.sdq / here.sdq);
     ASSERT_GT(excess, 1.0) << "the waves are lower than floats resolve";
@@ -53,10 +53,10 @@ TEST(HeightRounding, IsSaidWhereItMakesTheGradient) {
 TEST(HeightRounding, IsNotSaidWhereFloatsHoldTheSurface) {
   for (const double height : {0.0, 1.0, 100.0}) {
     const Version field = wavesAt(height, 0.1);
-    EXPECT_EQ(roundingDoubt(field, measuredOf(field)), "") << height;
+    EXPECT_EQ(roundingDoubt(field, arealOfWaves(field)), "") << height;
   }
   const Version flat = wavesAt(100.0, 0.0);
-  EXPECT_EQ(roundingDoubt(flat, measuredOf(flat)), "");
+  EXPECT_EQ(roundingDoubt(flat, arealOfWaves(flat)), "");
 }
 
 }  // namespace
