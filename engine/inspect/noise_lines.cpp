@@ -30,6 +30,7 @@ constexpr double kAlike = -0.5, kAlikeScatter = 3.0 * 0.4;
 constexpr double kFar = 3.5;   // standard deviations of samples
 constexpr double kEdge = 3.5;  // standard deviations of the other lines
 constexpr std::size_t kBesideEdge = 3;
+constexpr double kMostOfSpreads = 1.3;               // of the middle one
 constexpr double kQuartiles = 1.349;                 // between those of normal numbers of deviation 1
 constexpr double kQuarter = 0.3186, kHalf = 0.6745;  // |x| of standard normal numbers at these ranks
 
@@ -162,20 +163,37 @@ double rankedSize(std::vector<double> values, double share) {
   return rankOf(values, share);
 }
 
+// Differences of a line to the one before it.
+void differencesTo(const LineHeights& heights, std::size_t line, std::vector<double>& differences) {
+  differences.clear();
+  const float *before = heights.line(line - 1), *here = heights.line(line);
+  for (std::size_t p = 0; p < heights.along; ++p)
+    if (const double d = double{here[p]} - double{before[p]}; !std::isnan(d)) differences.push_back(d);
+}
+
 // What lines are off from the first of those that follow each other.
 std::vector<double> offsetsOf(const LineHeights& heights, std::span<const std::int32_t> lines) {
-  std::vector<double> steps(lines.size(), 0.0);
-  tbb::parallel_for(std::size_t{1}, lines.size(), [&](std::size_t i) {
-    if (lines[i] != lines[i - 1] + 1) return;
-    thread_local std::vector<double> differences;
-    differences.clear();
-    const float *before = heights.line(i - 1), *here = heights.line(i);
-    for (std::size_t p = 0; p < heights.along; ++p)
-      if (const double d = double{here[p]} - double{before[p]}; !std::isnan(d)) differences.push_back(d);
-    if (differences.empty()) return;
-    // By their own spread: a rough surface has more than the noise, and what of it is left out would change from line to line.
+  std::vector<double> steps(lines.size(), 0.0), spreads(lines.size(), -1.0), known;
+  const auto forEachNext = [&](const auto& use) {
+    tbb::parallel_for(std::size_t{1}, lines.size(), [&](std::size_t i) {
+      if (lines[i] != lines[i - 1] + 1) return;
+      thread_local std::vector<double> differences;
+      differencesTo(heights, i, differences);
+      if (!differences.empty()) use(i, differences);
+    });
+  };
+  forEachNext([&](std::size_t i, std::vector<double>& differences) {
     const double low = rankOf(differences, 0.25), high = rankOf(differences, 0.75);
-    steps[i] = meanOfNear(differences, (high - low) / kQuartiles);
+    spreads[i] = (high - low) / kQuartiles;
+  });
+  known.reserve(spreads.size());
+  for (const double spread : spreads)
+    if (spread >= 0.0) known.push_back(spread);
+  // By the spread of the surface, which is rougher than the noise: what of it is left out would change from line to line. That of a line
+  // beside an edge along a quarter of it has the edge.
+  const double most = known.empty() ? 0.0 : kMostOfSpreads * rankOf(known, 0.5);
+  forEachNext([&](std::size_t i, std::vector<double>& differences) {
+    steps[i] = meanOfNear(differences, std::min(spreads[i], most));
   });
   std::vector<double> offsets(lines.size(), 0.0);
   for (std::size_t i = 1; i < lines.size(); ++i)
