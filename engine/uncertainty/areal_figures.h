@@ -29,7 +29,8 @@ struct ArealFigure {
 /// leaves open.
 void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured);
 
-/// Adds to the errors of ranks what nothing says of them where noise is as large as the surface.
+/// Adds to the errors of ranks, and of Sa, what nothing says of them where noise is as large as the surface, and takes away means of
+/// five extremes where noise of 0.15 of Sq and more decides which hills are the highest.
 void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
                        const ArealParameters& measured);
 
@@ -40,6 +41,7 @@ using ArealTrialOf = std::function<Result<ArealParameters>(const Version& field,
 [[nodiscard]] ArealOptions optionsOf(ArealOptions options, TrialNoise noise);
 
 /// noiseEffects() of the parameters of a field, with addDominanceDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
+/// Where whole rows or columns are off it does so once more, with such offsets in the other direction: Std and Ssw that these change are not stated.
 [[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseModel& noise,
                                                             const ArealParameters& measured,
                                                             const ArealTrialOf& measure,
