@@ -37,13 +37,13 @@ Report errorsOf(const glm::dvec3& v) {
   return Report::array({numberOf(v.x), numberOf(v.y), numberOf(v.z)});
 }
 
-// "1.5 +- 0.2 mm"; without an error the value alone. `least`: the smallest error by whose digits the value is shown.
-std::string shownComponent(double value, const Report& error, double least, const ReadAs& as) {
+// "1.5 +- 0.2 mm"; without an error the value alone.
+std::string shownComponent(double value, const Report& error, const ReadAs& as) {
   const std::string unit = as.name.empty() ? std::string() : " " + as.name;
-  if (error.is_null()) return fmt::format("{:.6g}{}", value / as.size, unit);
-  const double by = error.get<double>();
-  return fmt::format("{} +- {:.2g}{}", shownTo(value / as.size, std::max(by, least) / as.size), by / as.size,
-                     unit);
+  const double by = error.is_null() ? 0.0 : error.get<double>();
+  // Of a plane x and y are chosen.
+  if (by == 0.0) return fmt::format("{:.6g}{}", value / as.size, unit);
+  return fmt::format("{} +- {:.2g}{}", shownTo(value / as.size, by / as.size), by / as.size, unit);
 }
 
 void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
@@ -151,16 +151,14 @@ std::vector<FitLine> fitLines(const Report& fit) {
     lines.push_back({figure.title, shownEstimate(fit, figure.key, figure.unit, as)});
   }
   const ReadAs place = readLengthAs(sizeOf(fit["point_mm"]), 1.0, "mm");
-  // Within a plane the point may lie anywhere, and has next to no error.
   for (std::size_t k = 0; k < 3; ++k)
-    lines.push_back(
-        {fmt::format("{} {}", pointTitle(shape), kAxes[k]),
-         shownComponent(fit["point_mm"][k].get<double>(), fit["point_error_mm"][k], 1e-5, place)});
+    lines.push_back({fmt::format("{} {}", pointTitle(shape), kAxes[k]),
+                     shownComponent(fit["point_mm"][k].get<double>(), fit["point_error_mm"][k], place)});
   if (fit.contains("direction"))
     for (std::size_t k = 0; k < 3; ++k)
       lines.push_back(
           {fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
-           shownComponent(fit["direction"][k].get<double>(), fit["direction_error"][k], 0.0, {"", 1.0})});
+           shownComponent(fit["direction"][k].get<double>(), fit["direction_error"][k], {"", 1.0})});
   return lines;
 }
 

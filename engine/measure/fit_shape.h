@@ -24,10 +24,10 @@ struct ShapeInfo {
 /// A surface in space. Lengths in millimetres, z towards the viewer of the height field.
 struct Shape {
   ShapeKind kind = ShapeKind::kPlane;
-  /// On the plane; centre of the sphere and of the torus; on the axis of the cylinder; apex of the cone.
+  /// On the plane, of a fitted one over the mean place of the samples; centre of the sphere and of the torus; on the axis of the cylinder; apex of the cone.
   glm::dvec3 point{0.0};
-  /// Of length 1. Normal of the plane, upwards; axis of the cylinder and the torus; from the apex into the cone. Of a
-  /// sphere without meaning.
+  /// Of length 1. Normal of the plane, upwards; axis of the cylinder and the torus, which has no sense, in that of inAxisSense(); from the
+  /// apex into the cone. Of a sphere without meaning.
   glm::dvec3 direction{0.0, 0.0, 1.0};
   double radius = 0.0;  ///< of the sphere and the cylinder; of the middle of a torus's tube about the axis
   double tube_radius = 0.0;  ///< of the torus

@@ -11,6 +11,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kTiny = 1e-300;
+constexpr double kFlattest = 1e-9;  // least |z| of the normal of a plane that has a height over each place
 
 // Any direction across another one.
 glm::dvec3 acrossOf(const glm::dvec3& direction) noexcept {
@@ -126,7 +127,10 @@ Shape FitSurface::shape(ShapeKind kind, const glm::dvec3& middle, const glm::dve
   switch (kind) {
     case ShapeKind::kPlane:
       shape.direction = up * n;
-      shape.point = middle - glm::dot(middle - foot, n) * n;
+      // Not the foot of the middle: that moves along the plane with the middle's height.
+      shape.point = std::abs(n.z) > kFlattest
+                        ? glm::dvec3(middle.x, middle.y, middle.z + glm::dot(foot - middle, n) / n.z)
+                        : middle - glm::dot(middle - foot, n) * n;
       break;
     case ShapeKind::kSphere:
       shape.point = foot + n / tube;

@@ -35,8 +35,8 @@ struct FitSurface {
 
   /// The shape as a member of the family, with its foot below or above `near`.
   [[nodiscard]] static FitSurface of(const Shape& shape, const glm::dvec3& near) noexcept;
-  /// The shape of a kind that these numbers describe; its point on an axis or plane is that nearest to `middle`, an axis
-  /// without a sense points as `alike` does.
+  /// The shape of a kind that these numbers describe; its point on an axis is that nearest to `middle`, on a plane that
+  /// above or below it; an axis without a sense points as `alike` does.
   [[nodiscard]] Shape shape(ShapeKind kind, const glm::dvec3& middle, const glm::dvec3& alike) const noexcept;
 };
 

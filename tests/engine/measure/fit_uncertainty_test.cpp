@@ -181,6 +181,40 @@ TEST(FitUncertainty, CoversOfAngleAndDistance) {
   }
 }
 
+// A plane's point is its height over the middle of the samples: noise moves z alone. A tenth of the heights is raised in half of the
+// scans, which moves the median height and, robustly, not the plane: the foot of the median would move along it.
+TEST(FitUncertainty, CoversTheHeightOfAPlanesPoint) {
+  for (const bool steep : {false, true})
+    for (const bool robust : {false, true}) {
+      const double slope = steep ? 1.5 : 0.0;
+      Coverage of_z;
+      for (int seed = 0; seed < coverageSeeds(); ++seed) {
+        const auto plane =
+            fitOf(fieldWith(
+                      {21, 21, 0.25, 0.25},
+                      [&](double x, double y) {
+                        const bool raised = robust && seed % 2 == 1 && x < 0.4;
+                        return slope * (x - 2.5) - 0.5 * (y - 2.5) + 0.3 + (raised ? 9.0 : 0.0);
+                      },
+                      0.005, static_cast<std::uint64_t>(seed) + 1),
+                  ShapeKind::kPlane, {.robust = robust, .noise_mm = 0.005});
+        ASSERT_TRUE(plane) << plane.error().line();
+        EXPECT_DOUBLE_EQ(plane->shape.point.x, 2.5);
+        EXPECT_DOUBLE_EQ(plane->shape.point.y, 2.5);
+        const ShapeFit::Errors e = plane->errors();
+        EXPECT_EQ(e.point.x, 0.0);
+        EXPECT_EQ(e.point.y, 0.0);
+        of_z.add(plane->shape.point.z - 0.3, e.point.z);
+      }
+      std::printf("plane's z %s %s %s  error %.3g, stated %.3g\n", steep ? "steep" : "flat ",
+                  robust ? "robust" : "", of_z.counts().c_str(), of_z.rms(), of_z.stated());
+      if (countsCoverage()) {
+        EXPECT_EQ(of_z.complaint(), "") << steep << robust;
+        EXPECT_NEAR(of_z.stated() / of_z.rms(), 1.0, scatterOfRms() + 0.05);
+      }
+    }
+}
+
 // Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
 TEST(FitUncertainty, CoversTiltsOfSteepPlanes) {
   Coverage of_x, of_y;
