@@ -79,6 +79,8 @@ Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOp
   fit.middle = samples.middle();
   fit.shape.kind = kind;
   fit.shape = fit.moved({});
+  if (kind == ShapeKind::kCylinder || kind == ShapeKind::kTorus)
+    fit.shape.direction = inAxisSense(fit.shape.direction);
   fit.samples = static_cast<std::int64_t>(samples.size());
   fit.left_out = sums.left_out;
   fit.rms_mm = sums.used > 0 ? fit.scale * std::sqrt(sums.squares / static_cast<double>(sums.used)) : 0.0;

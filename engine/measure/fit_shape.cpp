@@ -31,6 +31,13 @@ const ShapeInfo& infoOf(ShapeKind kind) noexcept {
   return kShapes[static_cast<std::size_t>(kind)];
 }
 
+glm::dvec3 inAxisSense(const glm::dvec3& direction) noexcept {
+  constexpr double kSure = 0.4;  // less than the root of a third, which one of three has at least
+  for (const double component : {direction.x, direction.y, direction.z})
+    if (std::abs(component) >= kSure) return component < 0.0 ? -direction : direction;
+  return direction;
+}
+
 double distanceFrom(const Shape& shape, const glm::dvec3& point) noexcept {
   const glm::dvec3 from = point - shape.point;
   const double along = glm::dot(from, shape.direction);

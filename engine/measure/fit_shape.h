@@ -35,6 +35,11 @@ struct Shape {
   bool hollow = false;       ///< seen from inside: the centre of curvature lies above the surface
 };
 
+/// Of a direction of length 1 and its opposite, one axis, the one whose first component of at least 0.4 in size, of x, y, z, is above 0: noise
+/// does not turn an axis along x, y or z, or at a multiple of 15 degrees between two of these, which all have another
+/// size than 0.4. Every rule has axes that noise turns: here those at 66.4 degrees from x, of a y below 0, and the like.
+[[nodiscard]] glm::dvec3 inAxisSense(const glm::dvec3& direction) noexcept;
+
 /// The orthogonal distance of a point from a shape, above 0 where the point lies above the surface; of a cone from the line
 /// through its apex that is nearest to the point. Plain arithmetic in double: an error of some 1e-15 of the point's distance
 /// from the shape's point and of the radius. Any thread.

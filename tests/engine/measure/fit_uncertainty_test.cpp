@@ -14,6 +14,7 @@
 
 #include "engine/measure/fit.h"
 #include "engine/measure/fit_relation.h"
+#include "engine/measure/fit_shape.h"
 #include "tests/engine/measure/seen_shapes.h"
 #include "tests/support/coverage.h"
 
@@ -213,6 +214,23 @@ TEST(FitUncertainty, CoversTheHeightOfAPlanesPoint) {
         EXPECT_NEAR(of_z.stated() / of_z.rms(), 1.0, scatterOfRms() + 0.05);
       }
     }
+}
+
+// Noise does not turn the axis of a cylinder along x, y or between them, nor the axis of a ring, over.
+TEST(FitUncertainty, NoiseTurnsNoAxisOver) {
+  constexpr double kHalf = 0.70710678118654752;
+  for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(kHalf, kHalf, 0),
+                                 glm::dvec3(kHalf, -kHalf, 0), glm::dvec3(0.5, -std::sqrt(0.75), 0)}) {
+    const SeenShape lying{"lying", {ShapeKind::kCylinder, {3.0, 2.5, -4.0}, axis, 6.0}, -4, 9};
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const auto fit =
+          fitOf(seenField(lying, 0.02, seed, {24, 20, 0.25, 0.25}), ShapeKind::kCylinder, {.noise_mm = 0.02});
+      ASSERT_TRUE(fit) << fit.error().line();
+      EXPECT_GT(glm::dot(fit->shape.direction, axis), 0.9) << axis.x << ' ' << axis.y << ' ' << seed;
+    }
+  }
+  EXPECT_EQ(inAxisSense({0, 0, -1}), glm::dvec3(0, 0, 1));
+  EXPECT_EQ(inAxisSense({0.3, -0.3, -std::sqrt(0.82)}).z, std::sqrt(0.82));
 }
 
 // Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
