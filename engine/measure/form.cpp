@@ -33,7 +33,8 @@ struct FormSums {
   std::array<std::array<CompensatedSum, kProducts>, kProducts> weight;
   std::array<std::array<CompensatedSum, kMost + 1>, kMost + 1> height;
   std::int64_t samples = 0;
-  CompensatedSum square;                                                            // of residuals
+  std::int64_t counted = 0;                                                         // with a weight above 0
+  CompensatedSum square, counted_square;                                            // of residuals
   std::int32_t left = Grid::kMaxSide, right = -1, low = Grid::kMaxSide, high = -1;  // of these samples
 
   void add(const FormSums& other) noexcept {
@@ -42,7 +43,9 @@ struct FormSums {
     for (std::size_t a = 0; a < height.size(); ++a)
       for (std::size_t b = 0; b < height.size(); ++b) height[a][b].add(other.height[a][b]);
     samples += other.samples;
+    counted += other.counted;
     square.add(other.square);
+    counted_square.add(other.counted_square);
     left = std::min(left, other.left);
     right = std::max(right, other.right);
     low = std::min(low, other.low);
@@ -87,7 +90,7 @@ class TileRowSums {
     double weight[kProducts][kTileSide] = {};
     double height[kMost + 1][kTileSide] = {};
     for (int r = 0; r < rect.rows; ++r) {
-      double w[kTileSide], wz[kTileSide], square = 0.0;
+      double w[kTileSide], wz[kTileSide], square = 0.0, counted_square = 0.0;
       int here = 0, first = kTileSide, last = -1;  // samples that count
       for (int c = 0; c < rect.columns; ++c) {
         const double h = z[r * kTileSide + c];
@@ -98,6 +101,10 @@ class TileRowSums {
         square += residual * residual;
         if (!counts) continue;
         ++sums.samples;
+        if (w[c] > 0.0) {
+          ++sums.counted;
+          counted_square += residual * residual;
+        }
         ++here;
         first = std::min(first, c);
         last = c;
@@ -109,6 +116,7 @@ class TileRowSums {
         sums.high = std::max(sums.high, rect.row + r);
       }
       sums.square.add(square);
+      sums.counted_square.add(counted_square);
       double t[kProducts];
       PolynomialForm::chebyshev(axes_.rows.scaled(rect.row + r), products - 1, t);
       for (int b = 0; b < products; ++b)
@@ -271,11 +279,12 @@ double largestChange(const std::vector<double>& a, const std::vector<double>& b)
 
 // Weighted fits of one degree until the coefficients rest; `scale` from the median distance before.
 Status refine(const Version& field, const FormOptions& options, const FormAxes& axes, double least,
-              FormFit& fit, JobControl& job) {
+              FormFit& fit, Weighting& weighting, JobControl& job) {
   constexpr int kMostRounds = 20;
   constexpr double kRest = 1e-6;  // of the scale
   const double scale = std::max(medianDistance(field, options.region, fit.form, job), least);
   if (job.cancelled()) return cancelled();
+  weighting.scale = scale;
   for (int round = 0; round < kMostRounds; ++round) {
     const auto sums = sumsOf(field, options, axes, fit.form, {scale}, job);
     if (!sums) return tl::unexpected(sums.error());
@@ -292,21 +301,21 @@ Status refine(const Version& field, const FormOptions& options, const FormAxes& 
 // planes is nearer to most samples, and the fit starts again from that.
 Status refineFromTrimmed(const Version& field, const FormOptions& options, const FormAxes& axes,
                          const std::vector<FormSample>& samples, double least, FormFit& fit,
-                         JobControl& job) {
+                         Weighting& weighting, JobControl& job) {
   constexpr double kClearly = 0.8;  // of the median distance: both start near the same form else
   if (options.degree < 2 || samples.empty()) return {};
   PolynomialForm other = leastTrimmedForm(samples, fit.form, axes, field.grid());
   if (!(medianDistance(samples, other) < kClearly * medianDistance(samples, fit.form))) return {};
   fit.form = std::move(other);
   for (int pass = 0; pass < 2; ++pass)
-    if (auto done = refine(field, options, axes, least, fit, job); !done) return done;
+    if (auto done = refine(field, options, axes, least, fit, weighting, job); !done) return done;
   return {};
 }
 
 // From the plane with the least median distance to the degree asked for, one degree after the other: what the lower one
 // leaves decides which samples the next one sees.
 Status fitRobustly(const Version& field, const FormOptions& options, const FormAxes& axes, double range,
-                   FormFit& fit, JobControl& job) {
+                   FormFit& fit, Weighting& weighting, JobControl& job) {
   const std::vector<FormSample> samples = spreadSamples(field, options.region);
   const double least = roundingOf(samples, range);
   PolynomialForm& form = fit.form;
@@ -332,9 +341,9 @@ Status fitRobustly(const Version& field, const FormOptions& options, const FormA
     now.degree = degree;
     // Twice: the scale after the first is that of samples on the form.
     for (int pass = 0; pass < 2; ++pass)
-      if (auto done = refine(field, now, axes, least, fit, job); !done) return done;
+      if (auto done = refine(field, now, axes, least, fit, weighting, job); !done) return done;
   }
-  return refineFromTrimmed(field, options, axes, samples, least, fit, job);
+  return refineFromTrimmed(field, options, axes, samples, least, fit, weighting, job);
 }
 
 }  // namespace
@@ -373,13 +382,16 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
   fit.decided = solved.decided;
   fit.open = std::move(solved.open);
   fit.form.coefficients = std::move(solved.coefficients);
+  Weighting weighting;
   if (options.robust && range > 0.0)
-    if (auto done = fitRobustly(field, options, axes, range, fit, job); !done)
+    if (auto done = fitRobustly(field, options, axes, range, fit, weighting, job); !done)
       return tl::unexpected(done.error());
-  sums = sumsOf(field, options, axes, fit.form, {}, job);
+  sums = sumsOf(field, options, axes, fit.form, weighting, job);
   if (!sums) return tl::unexpected(sums.error());
   fit.samples = sums->samples;
   fit.rms = std::sqrt(sums->square.value() / static_cast<double>(sums->samples));
+  fit.rms_counted =
+      std::sqrt(sums->counted_square.value() / static_cast<double>(std::max<std::int64_t>(sums->counted, 1)));
   return fit;
 }
 

@@ -27,7 +27,9 @@ struct FormFit {
   PolynomialForm form;
   std::int64_t samples = 0;  ///< of the region
   double rms = 0.0;  ///< of the region's samples about the form, each with the same weight [height_unit]
-  int rounds = 1;    ///< of weights
+  double rms_counted =
+      0.0;  ///< with `robust` of those that count, which are nearer than Tukey's biweight reaches; else the same
+  int rounds = 1;  ///< of weights
   /// Its terms, of how many combinations of them the samples say the size, and those they leave open, as solveForm() (form_solve.h):
   /// empty where they decide all.
   int terms = 0, decided = 0;

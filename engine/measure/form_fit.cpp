@@ -109,6 +109,7 @@ Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const Form
   FittedForm fitted;
   fitted.form = *form;
   fitted.numbers = fit->numbers;
+  fitted.rms_counted = fit->rms_mm / field.grid().height_unit.mm;
   fitted.fit = *std::move(fit);
   if (auto done = addAbout(field, choice.region, fitted, job); !done) return tl::unexpected(done.error());
   return fitted;
@@ -123,7 +124,7 @@ Result<FittedForm> fitThrough(const Version& field, const FormChoice& choice) {
   FittedForm fitted;
   fitted.form = plane->form;
   fitted.samples = plane->samples;
-  fitted.rms = plane->rms;
+  fitted.rms = fitted.rms_counted = plane->rms;
   fitted.through = *std::move(plane);
   return fitted;
 }
@@ -200,6 +201,7 @@ Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice
                       "take a form of a lower degree or a larger region");
   fitted.samples = fit->samples;
   fitted.rms = fit->rms;
+  fitted.rms_counted = fit->rms_counted;
   fitted.rounds = fit->rounds;
   fitted.numbers = fit->decided;
   if (choice.region != Region::kAll) fitted.leaves = leavesText(fit->form, field, info.word);

@@ -30,8 +30,10 @@ struct FittedForm {
   NominalForm form;
   std::int64_t samples = 0;  ///< of the region
   double rms = 0.0;  ///< of the region's samples about the form, each with the same weight [height_unit]
-  int rounds = 1;    ///< of weights, of a polynomial
-  int numbers = 0;   ///< of the form that the region's samples decide; 0 of a plane through three points
+  /// Of a robust polynomial of the samples that count alone, of a shape of their distances as they were fitted [height_unit]; without `robust` of all.
+  double rms_counted = 0.0;
+  int rounds = 1;   ///< of weights, of a polynomial
+  int numbers = 0;  ///< of the form that the region's samples decide; 0 of a plane through three points
   /// Of a plane whose samples lie on one line, which they leave open, as a sentence: "3 samples decide 2 of the 3 terms of a plane
   /// and leave y open"; else empty. It is the flattest of those that come nearest to them then, as fitForm().
   std::string open = {};

@@ -131,6 +131,10 @@ TEST(Form, RobustIgnoresWhatStandsOnAPlane) {
   const FormFit plain = fitted(field, {1, Region::kAll, false});
   EXPECT_GT(std::abs(plain.form.heightAt(199.0, 0.0) - plane(199.0, 0.0)), 0.5);
   EXPECT_GT(fit.rounds, 2);
+  // Of those on the plane it is the noise, to three standard deviations; of all, the lands' and the spike's.
+  EXPECT_NEAR(fit.rms_counted, 0.01, 3.0 * 0.01 / std::sqrt(2.0 * 22400.0));
+  EXPECT_GT(fit.rms, 1.0);
+  EXPECT_EQ(plain.rms_counted, plain.rms);
 }
 
 TEST(Form, RobustOfAnExactPlaneIsThatPlane) {
