@@ -52,6 +52,8 @@ void leaveOut(ArealParameters& result, const ArealOptions& options, const std::s
   result.ratio = {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
   result.ratios.assign(options.at_heights.size(), kNone);
   result.heights.assign(options.at_ratios.size(), kNone);
+  result.material.assign(options.at_volumes.size(), kNone);
+  result.voids = result.material;
   SpatialParameters& spatial = result.spatial;
   spatial.sal = spatial.str = spatial.lay = spatial.ssw = spatial.sal_direction = spatial.slow_direction =
       kNone;
@@ -258,7 +260,7 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     if (job.cancelled()) return cancelled();
     tbb::parallel_sort(heights.begin(), heights.end());
     if (job.cancelled()) return cancelled();
-    result.ratio = materialRatio(heights);
+    result.ratio = materialRatio(heights, options.volumes);
     if (std::isnan(result.ratio.smrk1))
       for (const char* const key : {"smrk1", "smrk2"})
         result.not_stated.push_back({key, variance > 0.0
@@ -266,6 +268,10 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
                                               : "the surface is flat"});
     for (const double height : options.at_heights) result.ratios.push_back(ratioAtHeight(heights, height));
     for (const double ratio : options.at_ratios) result.heights.push_back(heightAtRatio(heights, ratio));
+    for (const double ratio : options.at_volumes) {
+      result.material.push_back(materialVolume(heights, ratio));
+      result.voids.push_back(voidVolume(heights, ratio));
+    }
   }
 
   if (options.hybrid) {

@@ -39,8 +39,9 @@ struct ArealParameters {
   double sdr = 0.0;  ///< developed interfacial area ratio [1], 0 for a plane
   // Functional, 4.4.
   MaterialRatio ratio;
-  std::vector<double> ratios;   ///< Smr of each height asked for, 0 .. 1
-  std::vector<double> heights;  ///< Smc of each ratio asked for [height_unit]
+  std::vector<double> ratios;           ///< Smr of each height asked for, 0 .. 1
+  std::vector<double> heights;          ///< Smc of each ratio asked for [height_unit]
+  std::vector<double> material, voids;  ///< Vm and Vv of each ratio asked for [height_unit]
   // Spatial, and features.
   SpatialParameters spatial;
   std::shared_ptr<const SpatialAnalysis>
@@ -56,6 +57,8 @@ struct ArealOptions {
   bool hybrid = true, functional = true, spatial = true, feature = true;
   std::vector<double> at_heights = {};  ///< for Smr [height_unit], about the mean
   std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
+  std::vector<double> at_volumes = {};  ///< for Vm and Vv, 0 .. 1
+  VolumeRatios volumes = {};            ///< of Vmp, Vmc, Vvc and Vvv
   /// Numbers of the form that were fitted to these samples, FittedForm::numbers; 0: others, or none.
   int fitted = 0;
   bool analysis = false;  ///< keep the autocorrelation: 4 bytes per sample

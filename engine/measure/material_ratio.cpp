@@ -93,7 +93,7 @@ Line equivalentLine(const AbbottCurve& curve) noexcept {
 
 }  // namespace
 
-MaterialRatio materialRatio(std::span<const float> sorted) noexcept {
+MaterialRatio materialRatio(std::span<const float> sorted, const VolumeRatios& volumes) noexcept {
   const AbbottCurve curve(sorted);
   MaterialRatio result;
   const Line line = equivalentLine(curve);
@@ -106,8 +106,7 @@ MaterialRatio materialRatio(std::span<const float> sorted) noexcept {
   // A core at one height ends nowhere.
   if (!(result.sk > 0.0)) result.smrk1 = result.smrk2 = std::numeric_limits<double>::quiet_NaN();
 
-  constexpr double kPeaks = 0.1, kDales = 0.8;
-  const double peaks = curve.height(kPeaks), dales = curve.height(kDales);
+  const double peaks = curve.height(volumes.peaks), dales = curve.height(volumes.dales);
   result.vmp = curve.volumeAbove(peaks);
   result.vmc = curve.volumeAbove(dales) - result.vmp;
   result.vvv = curve.volumeBelow(dales);
@@ -115,6 +114,16 @@ MaterialRatio materialRatio(std::span<const float> sorted) noexcept {
   constexpr double kExtreme = 0.025, kMedian = 0.5;
   result.sxp = curve.height(kExtreme) - curve.height(kMedian);
   return result;
+}
+
+double materialVolume(std::span<const float> sorted, double ratio) noexcept {
+  const AbbottCurve curve(sorted);
+  return curve.volumeAbove(curve.height(ratio));
+}
+
+double voidVolume(std::span<const float> sorted, double ratio) noexcept {
+  const AbbottCurve curve(sorted);
+  return curve.volumeBelow(curve.height(ratio));
 }
 
 double ratioAtHeight(std::span<const float> sorted, double height) noexcept {

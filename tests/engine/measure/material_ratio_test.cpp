@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -32,6 +33,28 @@ TEST(MaterialRatio, OfAStraightCurveIsAllCore) {
   EXPECT_NEAR(ratio.vvc, 3.0 * (0.9 * 0.9 - 0.2 * 0.2) / 2, 1e-5);
   EXPECT_NEAR(ratio.vvv, 3.0 * 0.2 * 0.2 / 2, 1e-5);
   EXPECT_NEAR(ratio.sxp, 3.0 * 0.475, 1e-5);
+}
+
+// Of a ramp from 3 to 0, z = 3 (1 - q): Vm(p) = 3 p^2 / 2, Vv(p) = 3 (1 - p)^2 / 2; of a sine of amplitude A, z = A cos(pi q) by its share,
+// Vm(p) = A (sin(pi p) / pi - p cos(pi p)), and Vv(p) more by the height of p, since the mean is 0.
+TEST(MaterialRatio, VolumesAtAnyRatioAreThoseOfARampAndOfASine) {
+  using std::numbers::pi;
+  const auto ramp = curveOf(100000, [](double q) { return 3.0 * (1.0 - q); });
+  const auto sine = curveOf(100000, [](double q) { return 2.0 * std::cos(pi * q); });
+  for (const double p : {0.02, 0.1, 0.5, 0.8, 0.95}) {
+    EXPECT_NEAR(materialVolume(ramp, p), 1.5 * p * p, 1e-5) << p;
+    EXPECT_NEAR(voidVolume(ramp, p), 1.5 * (1.0 - p) * (1.0 - p), 1e-5) << p;
+    const double above = 2.0 * (std::sin(pi * p) / pi - p * std::cos(pi * p));
+    EXPECT_NEAR(materialVolume(sine, p), above, 1e-5) << p;
+    EXPECT_NEAR(voidVolume(sine, p), above + 2.0 * std::cos(pi * p), 1e-5) << p;
+    EXPECT_NEAR(heightAtRatio(sine, p), 2.0 * std::cos(pi * p), 1e-4) << p;
+  }
+  // Peaks end at 25 %, dales begin at 60 %.
+  const MaterialRatio ratio = materialRatio(ramp, {0.25, 0.6});
+  EXPECT_NEAR(ratio.vmp, 1.5 * 0.25 * 0.25, 1e-5);
+  EXPECT_NEAR(ratio.vmc, 1.5 * (0.6 * 0.6 - 0.25 * 0.25), 1e-5);
+  EXPECT_NEAR(ratio.vvc, 1.5 * (0.75 * 0.75 - 0.4 * 0.4), 1e-5);
+  EXPECT_NEAR(ratio.vvv, 1.5 * 0.4 * 0.4, 1e-5);
 }
 
 // Core of height 1 from 20 to 70 %, peaks and dales straight and steeper: ISO 13565-2's triangles.
