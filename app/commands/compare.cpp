@@ -75,6 +75,21 @@ void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a
         a.height_unit.name, b.height_unit.name));
 }
 
+// Without a place at which both have a height no figure has a value.
+engine::Error nothingInCommon(const CompareArguments& options, const engine::Deviation& deviation) {
+  const std::string what = deviation.only_a == 0 && deviation.only_b == 0
+                               ? std::string("there is nothing to compare, both scans have only holes")
+                               : fmt::format(
+                                     "there is nothing to compare, no place has a height in both scans: {} "
+                                     "in A alone, {} in B alone",
+                                     deviation.only_a, deviation.only_b);
+  const char* const remedy = options.counted.region != "all" ? "choose another --region"
+                             : options.aligned
+                                 ? "is B of the same part? fettle info counts the holes"
+                                 : "give --align all where B lies elsewhere, or fill holes by fettle fill";
+  return {engine::ErrorKind::kInput, what, shownInput(options.a) + " and " + shownInput(options.b), remedy};
+}
+
 // Options that say something about an alignment, or that exclude one.
 engine::Status checkAligned(const CompareArguments& options) {
   if (!options.aligned) {
@@ -200,7 +215,7 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   const auto deviation = engine::compareFields(*of_a, *of_b, job);
   if (!deviation) return tl::unexpected(deviation.error());
   warnOfDifferentGrids(options, a->field.grid(), b->field.grid());
-  if (deviation->samples == 0) warn("the two fields have no sample in common");
+  if (deviation->samples == 0) return tl::unexpected(nothingInCommon(options, *deviation));
   Report report{{"unit", a->field.grid().height_unit.name},
                 {"samples", deviation->samples},
                 {"rms", deviation->rms},

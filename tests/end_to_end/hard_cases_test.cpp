@@ -238,10 +238,16 @@ TEST(HardCases, WhatHasNoHeightHasNoFigure) {
   const TempFolder folder;
   const std::string path = folder.file("holes.asc");
   write(hardScans()[0], path);
-  const Outcome outcome = fettle({"compare", path, path, "--truth", path, "--unit", "mm"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("rms         -\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.err.find("no sample in common"), std::string::npos) << outcome.err;
+  for (const char* json : {"", "--json"}) {
+    std::vector<std::string> words{"compare", path, path, "--truth", path, "--unit", "mm"};
+    if (*json != 0) words.emplace_back(json);
+    const Outcome outcome = fettle(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("nothing to compare, both scans have only holes"), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("fettle fill"), std::string::npos) << outcome.err;
+  }
 }
 
 }  // namespace
