@@ -212,8 +212,8 @@ double strongestDirection(const AngularSpectrum& spectrum) noexcept {
 }
 
 double halfTurn(double degrees) noexcept {
-  const double within = std::fmod(degrees, 180.0);
-  return within < 0.0 ? within + 180.0 : within;
+  const double within = std::fmod(degrees, 180.0), turned = within < 0.0 ? within + 180.0 : within;
+  return turned < 180.0 ? turned : 0.0;  // of a rounding below 0 the sum is 180
 }
 
 struct Extreme {

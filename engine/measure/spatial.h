@@ -48,7 +48,7 @@ struct SpatialParameters {
   double sal_direction = 0.0;   ///< of the fastest decay [degrees from x to y, 0 <= . < 180]
   double slow_direction = 0.0;  ///< of the slowest
   /// Std, texture direction: that of the lay, across which the angular spectrum has its largest peak (the mean of what is
-  /// above half of it) [degrees from x to y, 0 .. 180).
+  /// above half of it) [degrees from x to y, 0 <= . < 180). 0 and 180 are one direction: a lay along x is at 0.1 or, 0.2 degrees from it, at 179.9.
   /// As the standard's angle of the spectrum's maximum itself with the y axis as the reference direction.
   double lay = 0.0;
   /// Ssw, dominant spatial wavelength: of the largest absolute value of the Fourier transform of the heights (holes are at the mean), there of the

@@ -111,7 +111,10 @@ NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> 
   }
   const double error = std::sqrt(by_trials * (share * scatter + spread * (share + 1.0 / n)) + doubt * doubt);
   if (!rule.by_square) {
-    if (growth == NoiseGrowth::kAxis) without -= 180.0 * std::floor(without / 180.0);
+    if (growth == NoiseGrowth::kAxis) {
+      without -= 180.0 * std::floor(without / 180.0);
+      if (!(without < 180.0)) without = 0.0;  // of a rounding below 0
+    }
     return {without, error};
   }
   // The further of both ends of what the square may be; error / (2 without) where that is far from 0.
