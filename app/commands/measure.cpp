@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,6 +46,9 @@ struct MeasureArguments {
   std::vector<std::string> groups;  // empty: all
   std::vector<std::string> at_heights;
   std::vector<double> at_ratios;
+  std::vector<double> volumes;     // p and q [%]; empty: the usual ones
+  std::vector<double> difference;  // of Sdc [%]; empty: none
+  double prune = 5.0;              // [% of Sz]
   std::string csv, surface;
   CurveFiles curves;
   int noise_trials = kUsualTrials;
@@ -90,6 +95,8 @@ engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& opti
   areal.at_heights = *heights;
   const std::vector<double>& ratios = options.at_ratios.empty() ? kUsualRatios : options.at_ratios;
   for (const double ratio : ratios) areal.at_ratios.push_back(ratio / 100.0);
+  if (!options.volumes.empty()) areal.volumes = {options.volumes[0] / 100.0, options.volumes[1] / 100.0};
+  areal.prune = options.prune / 100.0;
   return areal;
 }
 
@@ -111,7 +118,9 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
   engine::ArealOptions wanted = *areal;
-  addCurves(options.curves, wanted);
+  wanted.at_volumes = areal->at_ratios;
+  for (const double ratio : options.difference) wanted.at_ratios.push_back(ratio / 100.0);
+  addCurves(options.curves, wanted);  // their heights are the last ones
   const PlannedWork planned{.field = *marked,
                             .original = *marked,
                             .steps = {plannedMeasuring({*marked, scan, *imported, options.form, options.scale,
@@ -148,8 +157,17 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
           {{"height", areal->at_heights[i]}, {"ratio", numberOrNull(measured->ratios[i])}});
     report["smc"] = Report::array();
     for (std::size_t i = 0; i < areal->at_ratios.size(); ++i)
-      report["smc"].push_back(
-          {{"ratio", areal->at_ratios[i]}, {"height", numberOrNull(measured->heights[i])}});
+      report["smc"].push_back({{"ratio", areal->at_ratios[i]},
+                               {"height", numberOrNull(measured->heights[i])},
+                               {"material_volume", numberOrNull(measured->material[i])},
+                               {"void_volume", numberOrNull(measured->voids[i])}});
+    report["volume_ratios"] = Report::array({areal->volumes.peaks, areal->volumes.dales});
+    if (!options.difference.empty()) {
+      const std::size_t first = areal->at_ratios.size();
+      report["sdc"] = {
+          {"ratios", Report::array({options.difference[0] / 100.0, options.difference[1] / 100.0})},
+          {"height", numberOrNull(measured->heights[first] - measured->heights[first + 1])}};
+    }
   }
   // Of a smoothed surface the scan's rounding says nothing.
   if (options.scale.s_filter.empty())
@@ -158,6 +176,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;
   stated.heights.resize(areal->at_ratios.size());
+  if (areal->feature) report["prune"] = areal->prune;
   const auto noise =
       noiseOfMeasured({*marked, scan, *imported, options.form, options.scale, *areal, options.noise_trials},
                       *limited, stated, job);
@@ -200,6 +219,26 @@ engine::Result<Report> measureAll(const MeasureArguments& options, const std::ve
   return report;
 }
 
+// Two ratios of which the first is the higher height, and options without the group that they are of.
+engine::Status checkRatios(const MeasureArguments& options, bool functional) {
+  for (const auto& [ratios, option] :
+       {std::pair(&options.volumes, "--ratios"), {&options.difference, "--height-between"}}) {
+    if (ratios->empty()) continue;
+    if (!functional)
+      return engine::inputError("no material ratios are measured without the functional parameters", option,
+                                "add functional to --only");
+    for (const double ratio : *ratios)
+      if (!(ratio >= 0.0 && ratio <= 100.0))
+        return engine::inputError(fmt::format("{:.6g} is no material ratio", ratio), option,
+                                  "give 0 to 100, in per cent");
+    if (!((*ratios)[0] < (*ratios)[1]))
+      return engine::inputError(
+          fmt::format("the ratios {:.6g} and {:.6g} are not in order", (*ratios)[0], (*ratios)[1]), option,
+          "give the smaller one first");
+  }
+  return {};
+}
+
 engine::Result<Report> measure(const MeasureArguments& options, const std::vector<std::string>& arguments,
                                engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
@@ -210,6 +249,7 @@ engine::Result<Report> measure(const MeasureArguments& options, const std::vecto
     return engine::inputError("no material ratios are measured without the functional parameters",
                               options.at_heights.empty() ? "--at-ratio" : "--at-height",
                               "add functional to --only");
+  if (auto status = checkRatios(options, functional); !status) return tl::unexpected(status.error());
   if (auto status = checkListShard(options.shard, options.shard_folder); !status)
     return tl::unexpected(status.error());
   // Two inputs cannot both be standard input.
@@ -292,6 +332,24 @@ void addMeasure(Command root, Chosen& chosen) {
         .shown = "MR[,MR...]",
         .otherwise = "10,80",
         .between = ','},
+       {.name = "--ratios",
+        .to = &options->volumes,
+        .text = "Material ratios where peaks end and dales begin in Vmp, Vmc, Vvc and Vvv, in %",
+        .shown = "P,Q",
+        .otherwise = "10,80",
+        .values = 2,
+        .between = ','},
+       {.name = "--height-between",
+        .to = &options->difference,
+        .text = "Sdc, the height difference between two material ratios, in %",
+        .shown = "P,Q",
+        .values = 2,
+        .between = ','},
+       {.name = "--prune",
+        .to = &options->prune,
+        .text = "Hills and dales that are lower than this over their saddle are no features",
+        .range = Range{0.0, 100.0},
+        .unit = "% of Sz"},
        {.name = "--csv",
         .to = &options->csv,
         .text = "Write a row per scan and parameter, in the scan's units",
@@ -310,11 +368,15 @@ void addMeasure(Command root, Chosen& chosen) {
   addScanOptions(command, options->reading);
   command.notes(
       "No S- or L-filter is applied unless named. At borders and holes their weights are normalised. Ratios "
-      "are shares of 1 in a report, per cent in text. Between samples the surface is the bilinear patch. The "
-      "autocorrelation reaches to half of the surface. Std is the direction of the lay, and says little "
-      "where Str is near 1. Ssw is the length of the strongest wave of the Fourier transform. Hills and "
+      "are shares of 1 in a report, per cent in text. Sdq and Sdr are those of the bilinear patch between "
+      "four samples, the other figures of the samples. The "
+      "autocorrelation reaches to half of the surface. Std is the direction of the lay in degrees from x to "
+      "y, from 0 to below 180: 0 and 180 are one direction, so that noise may turn 0.1 into 179.9. "
+      "It says little where Str is near 1. Ssw is the length of the strongest wave of the Fourier transform. "
+      "Hills and "
       "dales "
-      "are all that are 5 % of Sz high or deep and more; S5p and S5v are means of the five highest peaks "
+      "are all that are --prune, 5 % of Sz, high or deep and more; S5p and S5v are means of the five highest "
+      "peaks "
       "and deepest pits about the mean. Sha and Sda are of hills and dales that reach neither border nor "
       "hole; Shv and Sdv lie above the highest saddle, or below the lowest one, of those that do not "
       "reach them there. What the samples do not determine is not stated, with the reason.\n"

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <iterator>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -152,12 +154,36 @@ std::string reasonOf(const Report& report, std::string_view key) {
   return "";
 }
 
+// A figure as text that was rounded: of a direction 180 degrees are 0.
+std::string inHalfTurn(std::string rounded, Quantity quantity) {
+  if (quantity == Quantity::kDegrees && std::stod(rounded) == 180.0) return "0";
+  return rounded;
+}
+
 // "12.3 +- 0.2": a figure without noise, of an object with `without` and `error`; empty where these are not stated.
-std::string withoutNoise(const Report& effect, double factor) {
+std::string withoutNoise(const Report& effect, double factor, Quantity quantity) {
   if (effect.is_null() || effect["without"].is_null()) return "";
   const double without = effect["without"].get<double>() * factor,
                error = effect["error"].get<double>() * factor;
-  return fmt::format("{} +- {:.2g}", shownTo(without, error), error);
+  return fmt::format("{} +- {:.2g}", inHalfTurn(shownTo(without, error), quantity), error);
+}
+
+// The text of a row with the ratios and the pruning of a report in place of the usual ones.
+std::string textWith(const ArealRow& row, const Report& report) {
+  std::string text = row.text;
+  const auto put = [&text](const std::string& usual, const std::string& own) {
+    if (const std::size_t at = text.find(usual); at != std::string::npos) text.replace(at, usual.size(), own);
+  };
+  if (row.quantity == Quantity::kVolume && report.contains("volume_ratios")) {
+    const double p = 100.0 * report["volume_ratios"][0].get<double>(),
+                 q = 100.0 * report["volume_ratios"][1].get<double>();
+    put("(10 to 80 %)", fmt::format("({:.6g} to {:.6g} %)", p, q));
+    put("(10 %)", fmt::format("({:.6g} %)", p));
+    put("(80 %)", fmt::format("({:.6g} %)", q));
+  }
+  if (report.contains("prune"))
+    put("of 5 % of Sz", fmt::format("of {:.6g} % of Sz", 100.0 * report["prune"].get<double>()));
+  return text;
 }
 
 // Why a figure without noise is not stated.
@@ -165,13 +191,14 @@ std::string noWithout(const Report& effect) {
   return effect.is_null() ? "" : effect.value("reason", std::string());
 }
 
-void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text,
-              const Report& effect, bool noise) {
+void printRow(const std::string& name, const Report& value, Quantity quantity, const Shown& shown,
+              const std::string& text, const Report& effect, bool noise) {
   if (value.is_null()) return;  // with all others: the reason stands with these
-  const std::string without = withoutNoise(effect, shown.factor);
+  const std::string without = withoutNoise(effect, shown.factor, quantity);
   const std::string why = noWithout(effect);
-  fmt::print("{:<8} {:>12} {:<10} {}{}{}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
-             shown.unit, noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text,
+  fmt::print("{:<8} {:>12} {:<10} {}{}{}\n", name,
+             inHalfTurn(fmt::format("{:.5g}", value.get<double>() * shown.factor), quantity), shown.unit,
+             noise ? fmt::format("{:>22}  ", without.empty() ? "-" : without) : "", text,
              why.empty() ? "" : fmt::format(" (-: {})", why));
 }
 
@@ -285,22 +312,37 @@ void printAreal(const Report& report) {
       if (value.is_null())
         fmt::print("{:<8} not stated: {}\n", row.name, reasonOf(report, row.key));
       else
-        printRow(row.name, value, shownAs(row.quantity, height, length), row.text, effectOn(report, row.key),
-                 noise);
+        printRow(row.name, value, row.quantity, shownAs(row.quantity, height, length), textWith(row, report),
+                 effectOn(report, row.key), noise);
     }
     if (std::string_view(group.word) != "functional" || !report.contains("smr")) continue;
     const Shown ratio = shownAs(Quantity::kRatio, height, length);
     const Shown level = shownAs(Quantity::kHeight, height, length);
     for (const Report& each : report["smr"])
-      printRow("Smr(c)", each["ratio"], ratio,
+      printRow("Smr(c)", each["ratio"], Quantity::kRatio, ratio,
                fmt::format("material ratio at {:.5g} {} about the mean",
                            each["height"].get<double>() * level.factor, level.unit),
                noise ? each : Report(), noise);
     for (const Report& each : report["smc"])
-      printRow("Smc(mr)", each["height"], level,
+      printRow("Smc(mr)", each["height"], Quantity::kHeight, level,
                fmt::format("height about the mean of a material ratio of {:.5g} %",
                            each["ratio"].get<double>() * 100.0),
                noise ? each : Report(), noise);
+    const Report no_trial{{"without", nullptr}, {"reason", "trials do not measure it"}};
+    for (const auto& [key, name, text] : {std::tuple("material_volume", "Vm(p)", "material volume above"),
+                                          {"void_volume", "Vv(p)", "void volume below"}})
+      for (const Report& each : report["smc"])
+        if (each.contains(key))
+          printRow(name, each[key], Quantity::kVolume, shownAs(Quantity::kVolume, height, length),
+                   fmt::format("{} the height of a material ratio of {:.5g} %", text,
+                               each["ratio"].get<double>() * 100.0),
+                   noise ? no_trial : Report(), noise);
+    if (report.contains("sdc"))
+      printRow("Sdc", report["sdc"]["height"], Quantity::kHeight, level,
+               fmt::format("height difference of the material ratios {:.5g} and {:.5g} %",
+                           report["sdc"]["ratios"][0].get<double>() * 100.0,
+                           report["sdc"]["ratios"][1].get<double>() * 100.0),
+               noise ? no_trial : Report(), noise);
   }
 }
 
@@ -315,10 +357,12 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
       const Shown shown = shownAs(row.quantity, height, length);
       ArealLine line{group.heading, row.name, shown.unit, row.text, {}, {}};
       for (const Report& report : reports) {
-        line.values.push_back(report[row.key].is_null()
-                                  ? reasonOf(report, row.key)
-                                  : fmt::format("{:.5g}", report[row.key].get<double>() * shown.factor));
-        line.without.push_back(withoutNoise(effectOn(report, row.key), shown.factor));
+        line.values.push_back(
+            report[row.key].is_null()
+                ? reasonOf(report, row.key)
+                : inHalfTurn(fmt::format("{:.5g}", report[row.key].get<double>() * shown.factor),
+                             row.quantity));
+        line.without.push_back(withoutNoise(effectOn(report, row.key), shown.factor, row.quantity));
       }
       lines.push_back(std::move(line));
     }
@@ -342,8 +386,8 @@ std::string arealRows(const std::string& scan, const Report& report) {
   const auto add = [&](const char* group, const std::string& name, const Report& value, Quantity quantity,
                        const std::string& remark, const Report& effect) {
     const Shown shown = shownAs(quantity, height, length);
-    const auto number = [&shown](const Report& of) {
-      return of.is_null() ? "" : fmt::format("{:.9g}", of.get<double>() * shown.factor);
+    const auto number = [&shown, quantity](const Report& of) {
+      return of.is_null() ? "" : inHalfTurn(fmt::format("{:.9g}", of.get<double>() * shown.factor), quantity);
     };
     fmt::format_to(out, "{},{},{},{},{},{},{},{},{}\n", csvField(scan), group, csvField(name), number(value),
                    shown.unit, csvField(remark), effect.is_null() ? "" : number(effect["without"]),
@@ -364,6 +408,16 @@ std::string arealRows(const std::string& scan, const Report& report) {
   for (const Report& each : report["smc"])
     add("functional", fmt::format("Smc({:.9g} %)", each["ratio"].get<double>() * 100.0), each["height"],
         Quantity::kHeight, withoutRemark(each), report.contains("noise") ? each : Report());
+  for (const auto& [key, name] : {std::pair("material_volume", "Vm"), {"void_volume", "Vv"}})
+    for (const Report& each : report["smc"])
+      if (each.contains(key))
+        add("functional", fmt::format("{}({:.9g} %)", name, each["ratio"].get<double>() * 100.0), each[key],
+            Quantity::kVolume, "", Report());
+  if (report.contains("sdc"))
+    add("functional",
+        fmt::format("Sdc({:.9g} to {:.9g} %)", report["sdc"]["ratios"][0].get<double>() * 100.0,
+                    report["sdc"]["ratios"][1].get<double>() * 100.0),
+        report["sdc"]["height"], Quantity::kHeight, "", Report());
   return text;
 }
 
