@@ -308,7 +308,10 @@ void addFit(Command root, Chosen& chosen) {
       "the samples do not determine, as the radius of a plane, is refused by its name.\n"
       "Standard errors are those that noise in height gives, and more where sums over parts of the region "
       "scatter by more. "
-      "Deviations of form as long as the region are not counted.");
+      "Deviations of form as long as the region are not counted. What noise moves figures by on average, as "
+      "a "
+      "radius by orthogonal distances, is in --json, and a warning says where it is more than a third of the "
+      "error.");
   command.examples(
       {{"fettle fit scan.tif", "The shape that all samples have"},
        {"fettle fit scan.tif --at 5,5 --shape plane --robust --residuals flatness.tif",

@@ -58,6 +58,8 @@ engine::Result<FieldFits> fitEach(const engine::Version& field, std::vector<engi
       fits.report["fits"].push_back(fitReport(fits.fitted.back()));
       if (std::string warning = otherShape(fits.fitted.back(), noise_mm); !warning.empty())
         fits.warnings.push_back(std::move(warning));
+      else if (std::string biased = biasWarning(fits.report["fits"].back(), how.vertical); !biased.empty())
+        fits.warnings.push_back(std::move(biased));
       continue;
     }
     if (chosen.error().kind != engine::ErrorKind::kInput || alone) return tl::unexpected(chosen.error());

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -46,13 +47,15 @@ std::string shownComponent(double value, const Report& error, const ReadAs& as) 
   return fmt::format("{} +- {:.2g}{}", shownTo(value / as.size, by / as.size), by / as.size, unit);
 }
 
-void addFigure(Report& report, const char* key, const char* unit, double value, double error) {
+void addFigure(Report& report, const char* key, const char* unit, double value, double error,
+               std::optional<double> bias = {}) {
   // An angle is no more than 90 degrees off any other: such an error leaves all of them.
   constexpr double kMostDegrees = 90.0;
   if (std::string_view(unit) == "deg" && error > kMostDegrees) value = std::nan("");
   if (std::isnan(value)) error = value;
   report[fmt::format("{}_{}", key, unit)] = numberOf(value);
   report[fmt::format("{}_error_{}", key, unit)] = numberOf(error);
+  if (bias) report[fmt::format("{}_bias_{}", key, unit)] = numberOf(std::isnan(value) ? value : *bias);
 }
 
 // The figures of a fit that are single numbers.
@@ -86,30 +89,36 @@ double sizeOf(const Report& vector) {
 Report fitReport(const FittedRegion& fitted) {
   const engine::ShapeFit& fit = fitted.chosen.fit;
   const engine::Shape& s = fit.shape;
-  const engine::ShapeFit::Errors e = fit.errors();
+  const engine::ShapeFit::Errors e = fit.errors(), bias = fit.biases();
   Report report{{"region", fitted.number},
                 {"shape", std::string(engine::infoOf(s.kind).word)},
                 {"samples", fit.samples},
                 {"left_out", fit.left_out},
                 {"middle_mm", vectorOf(fit.middle)},
                 {"point_mm", vectorOf(s.point)},
-                {"point_error_mm", errorsOf(e.point)}};
+                {"point_error_mm", errorsOf(e.point)},
+                {"point_bias_mm", errorsOf(bias.point)}};
   if (s.kind != ShapeKind::kSphere) {
     report["direction"] = vectorOf(s.direction);
     report["direction_error"] = errorsOf(e.direction);
+    report["direction_bias"] = errorsOf(bias.direction);
   }
   if (s.kind == ShapeKind::kPlane) {
     const auto degrees = [&](double along) { return std::atan(-along / s.direction.z) * kFitDegrees; };
-    addFigure(report, "tilt_x", "deg", degrees(s.direction.x), e.tilt_x * kFitDegrees);
-    addFigure(report, "tilt_y", "deg", degrees(s.direction.y), e.tilt_y * kFitDegrees);
+    addFigure(report, "tilt_x", "deg", degrees(s.direction.x), e.tilt_x * kFitDegrees,
+              bias.tilt_x * kFitDegrees);
+    addFigure(report, "tilt_y", "deg", degrees(s.direction.y), e.tilt_y * kFitDegrees,
+              bias.tilt_y * kFitDegrees);
   } else {
     report["hollow"] = s.hollow;
   }
   if (s.kind == ShapeKind::kSphere || s.kind == ShapeKind::kCylinder || s.kind == ShapeKind::kTorus)
-    addFigure(report, "radius", "mm", s.radius, e.radius);
-  if (s.kind == ShapeKind::kTorus) addFigure(report, "tube_radius", "mm", s.tube_radius, e.tube_radius);
+    addFigure(report, "radius", "mm", s.radius, e.radius, bias.radius);
+  if (s.kind == ShapeKind::kTorus)
+    addFigure(report, "tube_radius", "mm", s.tube_radius, e.tube_radius, bias.tube_radius);
   if (s.kind == ShapeKind::kCone)
-    addFigure(report, "half_angle", "deg", s.half_angle * kFitDegrees, e.half_angle * kFitDegrees);
+    addFigure(report, "half_angle", "deg", s.half_angle * kFitDegrees, e.half_angle * kFitDegrees,
+              bias.half_angle * kFitDegrees);
   report.update({{"rms_mm", fit.rms_mm},
                  {"largest_mm", fit.largest_mm},
                  {"correlation", fit.correlation},
@@ -160,6 +169,38 @@ std::vector<FitLine> fitLines(const Report& fit) {
           {fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]),
            shownComponent(fit["direction"][k].get<double>(), fit["direction_error"][k], {"", 1.0})});
   return lines;
+}
+
+std::string biasWarning(const Report& fit, bool vertical) {
+  constexpr double kOfError = 1.0 / 3.0;
+  double most = kOfError;
+  std::string text;
+  const auto look = [&](const std::string& name, const Report& bias, const Report& error, const char* unit) {
+    if (bias.is_null() || error.is_null() || !(error.get<double>() > 0.0)) return;
+    const double by = bias.get<double>(), of_error = std::abs(by) / error.get<double>();
+    if (!(of_error > most)) return;
+    most = of_error;
+    const ReadAs as =
+        std::string_view(unit) == "mm" ? readLengthAs(std::abs(by), 1.0, "mm") : ReadAs{unit, 1.0};
+    text = fmt::format("{} by {:+.2g}{}{}, {:.2g} of its standard error", name, by / as.size,
+                       as.name.empty() ? "" : " ", as.name, of_error);
+  };
+  const std::string shape = fit["shape"].get<std::string>();
+  for (std::size_t k = 0; k < 3; ++k) {
+    look(fmt::format("{} {}", pointTitle(shape), kAxes[k]), fit["point_bias_mm"][k], fit["point_error_mm"][k],
+         "mm");
+    if (fit.contains("direction"))
+      look(fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]), fit["direction_bias"][k],
+           fit["direction_error"][k], "");
+  }
+  for (const FitFigure& figure : kFitFigures)
+    if (const std::string key = fmt::format("{}_bias_{}", figure.key, figure.unit); fit.contains(key))
+      look(figure.title, fit[key], fit[fmt::format("{}_error_{}", figure.key, figure.unit)],
+           std::string_view(figure.unit) == "deg" ? "degrees" : figure.unit);
+  if (text.empty()) return text;
+  return fmt::format("region {}: noise moves the {} on average, which the error does not count: {}",
+                     fit["region"].get<int>(), text,
+                     vertical ? "take a larger region" : "--distance vertical has less of it");
 }
 
 std::vector<FitLine> relationLines(const Report& between) {

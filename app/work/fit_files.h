@@ -31,7 +31,10 @@ struct FitLine {
   std::string name, text;  ///< "radius", "5.02 +- 0.01 mm"
 };
 [[nodiscard]] std::vector<FitLine> fitLines(const Report& fit);
-/// The same of a relationReport(), those that there are.
+/// Of the figure of a fitReport() that noise moves most on average in parts of its standard error, where that is more than a third of it: a warning;
+/// else empty.
+[[nodiscard]] std::string biasWarning(const Report& fit, bool vertical);
+/// The same lines of a relationReport(), those that there are.
 [[nodiscard]] std::vector<FitLine> relationLines(const Report& between);
 
 /// A row for each figure: region, shape, figure, value, standard error, unit. Of the report.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/measure/fit_bias.h"
 #include "engine/measure/fit_errors.h"
 #include "engine/measure/fit_rounds.h"
 #include "engine/measure/fit_variance.h"
@@ -26,24 +27,40 @@ Shape ShapeFit::moved(const std::array<double, kMost>& by) const noexcept {
   return result;
 }
 
-ShapeFit::Errors ShapeFit::errors() const noexcept {
-  const auto variance = figureVariances<11>(*this, [](const Shape& s) {
-    const bool plane = s.kind == ShapeKind::kPlane;
-    return std::array<double, 11>{s.point.x,
-                                  s.point.y,
-                                  s.point.z,
-                                  s.direction.x,
-                                  s.direction.y,
-                                  s.direction.z,
-                                  s.radius,
-                                  s.tube_radius,
-                                  s.half_angle,
-                                  plane ? std::atan(-s.direction.x / s.direction.z) : 0.0,
-                                  plane ? std::atan(-s.direction.y / s.direction.z) : 0.0};
-  });
-  std::array<double, 11> e{};
-  for (std::size_t f = 0; f < e.size(); ++f) e[f] = std::sqrt(variance[f]);
+namespace {
+
+// In the order of ShapeFit::Errors.
+using ShapeNumbers = std::array<double, 11>;
+
+ShapeNumbers numbersOf(const Shape& s) {
+  const bool plane = s.kind == ShapeKind::kPlane;
+  return {s.point.x,
+          s.point.y,
+          s.point.z,
+          s.direction.x,
+          s.direction.y,
+          s.direction.z,
+          s.radius,
+          s.tube_radius,
+          s.half_angle,
+          plane ? std::atan(-s.direction.x / s.direction.z) : 0.0,
+          plane ? std::atan(-s.direction.y / s.direction.z) : 0.0};
+}
+
+ShapeFit::Errors byName(const ShapeNumbers& e) {
   return {{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6], e[7], e[8], e[9], e[10]};
+}
+
+}  // namespace
+
+ShapeFit::Errors ShapeFit::errors() const noexcept {
+  ShapeNumbers e = figureVariances<11>(*this, numbersOf);
+  for (double& each : e) each = std::sqrt(each);
+  return byName(e);
+}
+
+ShapeFit::Errors ShapeFit::biases() const {
+  return byName(figureBiases<11>(*this, numbersOf));
 }
 
 Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOptions& options,
@@ -88,10 +105,15 @@ Result<ShapeFit> fitShape(const FitSamples& samples, ShapeKind kind, const FitOp
   std::optional<FitLineSums> lines;
   if ((options.rows_mm > 0.0 || options.columns_mm > 0.0) && samples.lattice().rows > 0)
     lines.emplace(points, weights, *model);
-  if (auto status = setCovariance(fit, *model, sums, lines ? &*lines : nullptr, options, samples.rounding());
-      !status)
-    return tl::unexpected(status.error());
+  const auto noise = setCovariance(fit, *model, sums, lines ? &*lines : nullptr, options, samples.rounding());
+  if (!noise) return tl::unexpected(noise.error());
   if (auto status = checkDetermined(fit, *model); !status) return tl::unexpected(status.error());
+  Eigen::MatrixXd covariance(numbers, numbers);
+  for (int a = 0; a < numbers; ++a)
+    for (int b = 0; b < numbers; ++b)
+      covariance(a, b) = fit.covariance[static_cast<std::size_t>(a * ShapeFit::kMost + b)];
+  Eigen::Map<Eigen::VectorXd>(fit.bias.data(), numbers) =
+      numbersBias(points, weights, *model, *noise, covariance);
   return fit;
 }
 

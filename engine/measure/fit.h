@@ -48,6 +48,8 @@ struct ShapeFit {
   double scale = 1.0;
   int numbers = 0;
   std::array<double, kMost * kMost> covariance{};
+  /// What noise moves them by on average (fit_bias.h); the numbers are as they were fitted.
+  std::array<double, kMost> bias{};
 
   /// The shape with the numbers moved by `by`.
   [[nodiscard]] Shape moved(const std::array<double, kMost>& by) const noexcept;
@@ -59,6 +61,8 @@ struct ShapeFit {
            tilt_y = 0.0;  ///< of a plane: of the angles at which it rises along x and y [radians]
   };
   [[nodiscard]] Errors errors() const noexcept;
+  /// What noise in height moves the same figures by on average, to second order: in no error, and not taken off them.
+  [[nodiscard]] Errors biases() const;
 };
 
 /// Fits one kind of shape to the samples by Levenberg and Marquardt (Eigen's port of MINPACK) from start values by normals.

@@ -74,6 +74,7 @@ FitNoise noiseThatCounts(const FitSums& sums, const FitLineSums* lines, const Fi
   }
   // Of what counts of robust distances: lines share less of it than of the noise.
   const double whole = noise.sample + of_lines;
+  noise.height = whole;
   if (!options.robust || !(whole > 0.0)) return noise;
   noise.rows = whole * psi.shared(noise.rows / whole);
   noise.columns = whole * psi.shared(noise.columns / whole);
@@ -156,8 +157,8 @@ FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitMod
   return all;
 }
 
-Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, const FitLineSums* lines,
-                     const FitOptions& options, double rounding) {
+Result<double> setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums,
+                             const FitLineSums* lines, const FitOptions& options, double rounding) {
   const int n = model.size();
   Vector sizes(n);
   for (int k = 0; k < n; ++k) sizes[k] = std::sqrt(std::max(sums.noise(k, k), 1e-300));
@@ -211,7 +212,7 @@ Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums, 
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b)
       fit.covariance[static_cast<std::size_t>(a * ShapeFit::kMost + b)] = covariance(a, b);
-  return {};
+  return counts.height;
 }
 
 Status checkDetermined(const ShapeFit& fit, const FitModel& model) {

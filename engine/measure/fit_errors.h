@@ -27,9 +27,11 @@ struct FitSums {
 [[nodiscard]] FitSums fitSums(const FitPoints& points, const FitWeights& weights, const FitModel& model);
 
 /// The covariance of the fitted numbers and ShapeFit::correlation from the sums, with `lines` where the options' noise has rows
-/// or columns, else null; `rounding` of heights [mm]. Errors: numbers that the samples do not determine.
-[[nodiscard]] Status setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums,
-                                   const FitLineSums* lines, const FitOptions& options, double rounding);
+/// or columns, else null; `rounding` of heights [mm]. Returns the variance of the noise of a sample's height that counts [scale^2], NaN where it is
+/// not known. Errors: numbers that the samples do not determine.
+[[nodiscard]] Result<double> setCovariance(ShapeFit& fit, const FitModel& model, const FitSums& sums,
+                                           const FitLineSums* lines, const FitOptions& options,
+                                           double rounding);
 
 /// Refuses a fit, its covariance known, of which a radius, an apex, a ring or a direction is not determined (fitShape).
 [[nodiscard]] Status checkDetermined(const ShapeFit& fit, const FitModel& model);

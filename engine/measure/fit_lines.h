@@ -14,6 +14,7 @@ namespace fettle::engine {
 struct FitNoise {
   double sample = 0.0;               ///< of a sample's own
   double rows = 0.0, columns = 0.0;  ///< of what all samples of a row, of a column have in common
+  double height = 0.0;               ///< of a sample's height, with what its lines add
 };
 
 /// What noise that whole rows or columns of samples share does to the sums of a fit. With J the derivatives of weighted

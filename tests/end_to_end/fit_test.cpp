@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -87,6 +88,33 @@ TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
   for (const std::string& one : used) EXPECT_TRUE(defined.contains(one)) << one;
   EXPECT_NE(first.find("PLANE("), std::string::npos);
   EXPECT_NE(first.find("SPHERICAL_SURFACE("), std::string::npos);
+}
+
+// Orthogonal distances make the radius of a ball in noise smaller than it is, by more than its standard error here; those along z hardly.
+TEST(FitCommand, WarnsOfWhatNoiseMovesOnAverage) {
+  const TempFolder folder;
+  const std::string scan = folder.file("ball.asc");
+  {
+    std::ofstream out(scan);
+    out << "ncols 81\nnrows 61\nxllcenter 0\nyllcenter 0\ncellsize 0.08\n";
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0.0, 0.1);
+    for (int i = 0; i < 81 * 61; ++i) {
+      const double x = 0.08 * (i % 81 - 40), y = 0.08 * (i / 81 - 30);
+      out << std::sqrt(36.0 - x * x - y * y) + noise(random) << (i % 81 == 80 ? '\n' : ' ');
+    }
+  }
+  const std::vector<std::string> words{"fit", scan, "--unit", "mm", "--shape", "sphere"};
+  const auto ball = fettleJson(words)["fits"][0];
+  EXPECT_LT(ball["radius_bias_mm"].get<double>(), -ball["radius_error_mm"].get<double>());
+  EXPECT_NEAR(ball["radius_mm"].get<double>() - ball["radius_bias_mm"].get<double>(), 6.0,
+              4.0 * ball["radius_error_mm"].get<double>());
+  const Outcome text = fettle(words);
+  EXPECT_NE(text.err.find("region 1: noise moves the "), std::string::npos) << text.err;
+  EXPECT_NE(text.err.find("of its standard error on average"), std::string::npos) << text.err;
+  std::vector<std::string> along = words;
+  along.insert(along.end(), {"--distance", "vertical"});
+  EXPECT_EQ(fettle(along).err.find("noise moves"), std::string::npos);
 }
 
 TEST(FitCommand, SaysWhatItCannotDo) {

@@ -233,6 +233,67 @@ TEST(FitUncertainty, NoiseTurnsNoAxisOver) {
   EXPECT_EQ(inAxisSense({0.3, -0.3, -std::sqrt(0.82)}).z, std::sqrt(0.82));
 }
 
+// What noise moves figures by on average, which no error counts: of orthogonal distances as the square of the noise, whatever the number of samples.
+// Stated to a tenth of the mean, where three standard deviations of the mean of so many scans are no more.
+TEST(FitUncertainty, StatesWhatNoiseMovesFiguresByOnAverage) {
+  using Figure = std::pair<double, double>;  // its value less the truth, and its bias
+  struct Case {
+    SeenShape of;
+    FitField field;
+    double noise;
+    FitOptions options;
+    const char* name;
+    std::function<Figure(const ShapeFit&)> figure;
+  };
+  const auto radius = [](const ShapeFit& fit) { return Figure{fit.shape.radius - 6.0, fit.biases().radius}; };
+  const auto tilt = [](const ShapeFit& fit) {
+    return Figure{std::atan(-fit.shape.direction.x / fit.shape.direction.z) - std::atan(1.0),
+                  fit.biases().tilt_x};
+  };
+  const auto height = [](const ShapeFit& fit) {
+    return Figure{fit.shape.point.z + 4.0, fit.biases().point.z};
+  };
+  const SeenShape ball{"ball", {ShapeKind::kSphere, {3.0, 2.5, -4.0}, {0, 0, 1}, 6.0}, -4, 9};
+  const SeenShape lying{"cylinder", {ShapeKind::kCylinder, {3.0, 2.5, -4.0}, {0, 1, 0}, 6.0}, -4, 9};
+  const SeenShape slope{
+      "plane", {ShapeKind::kPlane, {3.0, 2.5, 0.2}, glm::normalize(glm::dvec3(-1, 0, 1))}, -9, 9};
+  const FitField whole{49, 41, 0.125, 0.125}, cap{31, 31, 0.06, 0.06};
+  SeenShape top = ball;
+  top.shape.point = {0.9, 0.9, -4.0};
+  const std::vector<Case> cases{{ball, whole, 0.1, {}, "radius", radius},
+                                {ball, whole, 0.1, {}, "centre z", height},
+                                {top, cap, 0.02, {}, "radius of a cap", radius},
+                                {ball, whole, 0.1, {.vertical = true}, "radius", radius},
+                                {lying, whole, 0.1, {}, "radius", radius},
+                                {lying, whole, 0.1, {.robust = true}, "radius", radius},
+                                {slope, whole, 0.2, {}, "tilt", tilt}};
+  for (const Case& one : cases) {
+    double sum = 0.0, squares = 0.0, stated = 0.0;
+    const int seeds = std::min(coverageSeeds(), 400);
+    for (int seed = 0; seed < seeds; ++seed) {
+      FitOptions options = one.options;
+      options.noise_mm = one.noise;
+      const auto fit = fitOf(seenField(one.of, one.noise, static_cast<std::uint64_t>(seed) + 1, one.field),
+                             one.of.shape.kind, options);
+      ASSERT_TRUE(fit) << fit.error().line();
+      const auto [off, bias] = one.figure(*fit);
+      sum += off;
+      squares += off * off;
+      stated += bias / seeds;
+    }
+    const double mean = sum / seeds, scatter = std::sqrt((squares / seeds - mean * mean) / seeds);
+    std::printf("%-10s %-10s %-7s %-16s mean off %9.3g +- %.2g, stated %9.3g; error %.3g\n",
+                one.of.name.c_str(), one.options.vertical ? "vertical" : "orthogonal",
+                one.options.robust ? "robust" : "", one.name, mean, scatter, stated,
+                scatter * std::sqrt(seeds));
+    if (!countsCoverage()) continue;
+    EXPECT_NEAR(stated, mean, 0.1 * std::abs(mean) + 3.0 * scatter) << one.of.name << ' ' << one.name;
+    if (!one.options.vertical) {
+      EXPECT_GT(std::abs(mean), 3.0 * scatter) << one.of.name << ' ' << one.name;
+    }
+  }
+}
+
 // Tilts of steep planes: the error of an angle is that of the slope less the slope's own squares, once.
 TEST(FitUncertainty, CoversTiltsOfSteepPlanes) {
   Coverage of_x, of_y;
