@@ -93,6 +93,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
                  {"rms", levelling->fit.rms},
                  {"rounds", levelling->fit.rounds},
                  {"hash", hashOf(*levelled)}});
+  if (options.form.robust) report["rms_counted"] = levelling->fit.rms_counted;
   return report;
 }
 

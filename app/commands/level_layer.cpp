@@ -172,6 +172,7 @@ engine::Result<Report> changeLayer(const LayerChange& change, const BatchTask& t
     }
     addForm(report, form, *fit, grid);
     report.update({{"samples", fit->samples}, {"rms", fit->rms}, {"rounds", fit->rounds}});
+    if (form.robust) report["rms_counted"] = fit->rms_counted;
   } else {
     report["form"] = formWordOf(*imported->field.seenOf()->form());
   }
