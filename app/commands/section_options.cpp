@@ -198,7 +198,7 @@ void addFigureOptions(Command command, SectionArguments& options) {
         .between = ','},
        {.name = "--cutoff",
         .to = &options.cutoff,
-        .text = "Ra, Rq, Rz, Rp, Rv, Rt, Rc, RSm, Rsk, Rku, Rdq, Rk, Rpk, Rvk of ISO 21920-2 with this "
+        .text = "Ra, Rq, Rz, Rzx, Rp, Rv, Rt, Rc, RSm, Rsk, Rku, Rdq, Rk, Rpk, Rvk of ISO 21920-2 with this "
                 "Gaussian cut-off",
         .range = Range{1e-9, 1e9},
         .unit = "mm"},

@@ -120,6 +120,7 @@ constexpr RoughnessInfo kRoughness[] = {
     {"ra", "Ra", Unit::kHeight, &Roughness::ra, "mean height, signs left out"},
     {"rq", "Rq", Unit::kHeight, &Roughness::rq, "root mean square height"},
     {"rz", "Rz", Unit::kHeight, &Roughness::rz, "mean of the section lengths' heights"},
+    {"rzx", "Rzx", Unit::kHeight, &Roughness::rzx, "greatest height of a section length (Rmax)"},
     {"rp", "Rp", Unit::kHeight, &Roughness::rp, "mean of their highest peaks"},
     {"rv", "Rv", Unit::kHeight, &Roughness::rv, "mean of their deepest dales"},
     {"rt", "Rt", Unit::kHeight, &Roughness::rt, "height of the whole profile"},
@@ -270,6 +271,7 @@ Result<Roughness> roughnessOf(const Section& section, const Stretch& within, con
     const auto [least, most] = std::minmax_element(profile.begin() + low, profile.begin() + high + 1);
     result.rp += *most / result.lengths;
     result.rv -= *least / result.lengths;
+    result.rzx = std::max(result.rzx, *most - *least);
   }
   result.rz = result.rp + result.rv;
   const auto [lowest, highest] = std::ranges::minmax(profile);

@@ -69,7 +69,8 @@ struct Roughness {
   double ra = 0.0, rq = 0.0;
   /// Means of the section lengths' highest (rp), of their lowest below the mean line (rv), and the sum of both (rz).
   double rz = 0.0, rp = 0.0, rv = 0.0;
-  double rt = 0.0;  ///< from the lowest to the highest of the evaluation length
+  double rzx = 0.0;  ///< the greatest height of a section length (Rmax before)
+  double rt = 0.0;   ///< from the lowest to the highest of the evaluation length
   double rsk = 0.0, rku = 0.0;
   /// Mean width and height of the profile elements, from one rise (fall) through the mean line to the next, over all of the evaluation
   /// length; peaks and dales lower than a tenth of rz count to their neighbours.

@@ -268,7 +268,7 @@ TEST(Roughness, MeansAreOfSectionLengthsAndTheTotalIsOfAll) {
   const auto profile = roughnessProfile(section, {0.0, 500.0}, {100.0});
   ASSERT_TRUE(profile);
   ASSERT_EQ(profile->lengths, 4);
-  double up = 0.0, down = 0.0, most = -1e9, least = 1e9;
+  double up = 0.0, down = 0.0, most = -1e9, least = 1e9, tallest = 0.0;
   for (int k = 0; k < 4; ++k) {
     double high = -1e9, low = 1e9;
     for (std::size_t i = profile->lengths_begin[static_cast<std::size_t>(k)];
@@ -276,6 +276,7 @@ TEST(Roughness, MeansAreOfSectionLengthsAndTheTotalIsOfAll) {
       high = std::max(high, profile->heights[i]);
       low = std::min(low, profile->heights[i]);
     }
+    tallest = std::max(tallest, high - low);
     up += high / 4.0;
     down -= low / 4.0;
     most = std::max(most, high);
@@ -284,6 +285,9 @@ TEST(Roughness, MeansAreOfSectionLengthsAndTheTotalIsOfAll) {
   const Roughness r = measured(section, 100.0);
   EXPECT_DOUBLE_EQ(r.rp, up);
   EXPECT_DOUBLE_EQ(r.rv, down);
+  EXPECT_DOUBLE_EQ(r.rzx, tallest);
+  EXPECT_GT(r.rzx, 1.1 * r.rz);
+  EXPECT_LT(r.rzx, 0.9 * r.rt);
   EXPECT_DOUBLE_EQ(r.rt, most - least);
   EXPECT_GT(r.rt, 1.5 * r.rz);
 }
