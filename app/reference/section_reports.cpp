@@ -27,6 +27,7 @@ Keys profileKeys(const engine::ProfileInfo& profile) {
     keys.push_back({names.value, "number", info.text});
     keys.push_back({names.without, "number", "without noise"});
     keys.push_back({names.error, "number", "standard error of that"});
+    keys.push_back({names.reason + "?", "string", "why it is not stated without noise"});
   }
   return keys;
 }

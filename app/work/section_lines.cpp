@@ -125,3 +125,5 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
 }
 
 }  // namespace fettle::app
+      } else if (r.contains(keys.reason) && !r[keys.value].is_null()) {
+        text += fmt::format(", without noise not stated: {}", r[keys.reason].get<std::string>());

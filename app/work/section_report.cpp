@@ -100,8 +100,8 @@ class SectionMeasurement {
     const auto figures = engine::stepFigures(section, edge, within(section), noise_);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.step == "auto" && !standsOut(section, figures->step_mm))
-      return engine::inputError("no step stands out from the noise of the section", "--step",
-                                "average over a --width, or give the edge's length");
+      return engine::inputError("no step stands out from the noise of the section", "--step auto",
+                                "give a --width to average over, or the edge's length as --step A");
     addMarks({edge}, "step", marks);
     Report report{{"edge_mm", edge}};
     addEstimate(report, "step", "mm", figures->step_mm);
@@ -124,8 +124,9 @@ class SectionMeasurement {
     const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
-      return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
-                                "average over a --width, or give the lengths of both edges");
+      return engine::inputError(
+          "no groove or ridge stands out from the noise of the section", "--groove auto",
+          "give a --width to average over, or the lengths of both edges as --groove A,B");
     addMarks({edges.from_mm, edges.to_mm}, "groove", marks);
     Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
     addEstimate(report, "depth", "mm", figures->step_mm);
@@ -187,6 +188,7 @@ class SectionMeasurement {
   engine::SectionNoise noise_;
 };
 
+      if (!(*noise)[f].why.empty()) report[keys.reason] = (*noise)[f].why;
 }  // namespace
 
 Report numberOrNull(double value) {
@@ -243,7 +245,8 @@ RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInf
   // The same words behind another first letter: "wa".
   const std::string key = fmt::format("{}{}", profile.word.substr(0, 1), info.key.substr(1));
   return {fmt::format("{}{}", key, ending), fmt::format("{}_without{}", key, ending),
-          fmt::format("{}_error{}", key, ending), fmt::format("{}{}", profile.letter, info.symbol.substr(1))};
+          fmt::format("{}_error{}", key, ending), fmt::format("{}{}", profile.letter, info.symbol.substr(1)),
+          fmt::format("{}_reason", key)};
 }
 
 std::span<const std::string_view> sectionFigureKeys() noexcept {

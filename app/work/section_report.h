@@ -67,9 +67,10 @@ struct FailedFigure {
 [[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
                                                                  const std::string& option);
 
-/// Of a figure in a section's "roughness", "primary" or "waviness": what it is, without noise, and the standard error of that; and its symbol, "Wa".
+/// Of a figure in a section's "roughness", "primary" or "waviness": what it is, without noise, and the standard error of that; its symbol, "Wa"; and why it is
+/// not stated without noise.
 struct RoughnessKeys {
-  std::string value, without, error, symbol;
+  std::string value, without, error, symbol, reason;
 };
 [[nodiscard]] RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInfo& profile);
 

@@ -156,10 +156,11 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
                                       const SectionNoise& noise, const NoiseTrialOptions& options) {
   const std::span<const RoughnessInfo> infos = roughnessInfos();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  RoughnessNoise result(infos.size(), {kNone, kNone});
-  if (std::isnan(noise.sample_mm) ||
-      !(noise.sample_mm > 0.0 || noise.rows_mm > 0.0 || noise.columns_mm > 0.0))
-    return result;
+  const bool known = !std::isnan(noise.sample_mm);
+  RoughnessNoise result(
+      infos.size(),
+      {kNone, kNone, known ? "the scan has no noise that was found" : "the noise of the scan is not known"});
+  if (!known || !(noise.sample_mm > 0.0 || noise.rows_mm > 0.0 || noise.columns_mm > 0.0)) return result;
   const DrawnNoise drawn = drawnNoise(section, noise, options.seed, options.pairs);
   std::vector<std::vector<TrialPair>> pairs(infos.size());
   Section noisy = section;
@@ -210,8 +211,13 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
     // A waviness has a few waves of the smoothest kind: the equivalent line goes from some ranks of theirs to others, which trials do not see
     // (of 40 simulated ones 6 to 25 lie within one error).
     const bool ranks = growth[f] == NoiseGrowth::kShare || growth[f] == NoiseGrowth::kRank;
-    if (result[f].error > most || (ranks && filters.kind == ProfileKind::kWaviness))
-      result[f] = {kNone, kNone};
+    if (ranks && filters.kind == ProfileKind::kWaviness)
+      result[f] = {kNone, kNone, "trials do not see how ranks of a few smooth waves change"};
+    else if (result[f].error > most)
+      result[f] = {kNone, kNone,
+                   growth[f] == NoiseGrowth::kShare
+                       ? "noise leaves it open: its error would be that of any share"
+                       : "noise leaves it open: its error would be as large as itself"};
     result[f] = withinRange(result[f], found.*infos[f].figure, rangeOf(infos[f]));
   }
   return result;

@@ -163,6 +163,14 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
     expectRefused(fettle(more), why);
   };
   refused({"--profile", "waviness"}, "add --cutoff");
+  // Each figure has one without noise or a reason.
+  for (const char* const name : {"roughness", "primary", "waviness"})
+    for (const auto& [key, value] : all[name].items())
+      if (const std::size_t at = key.find("_without"); at != std::string::npos && value.is_null()) {
+        EXPECT_TRUE(all[name].contains(key.substr(0, at) + "_reason")) << key;
+      }
+  EXPECT_EQ(all["waviness"]["wk_reason"], "the scan has no noise that was found");
+  EXPECT_NE(shown.out.find("without noise not stated: the scan has no noise"), std::string::npos) << shown.out;
   refused({"--profile", "primary", "--cutoff", "1.5"}, "--cutoff");
   // Letters are the words.
   EXPECT_EQ(with({"--cutoff", "1.5", "--profile", "R,P,W"}), all);
@@ -308,6 +316,10 @@ TEST(SectionCommand, StatesNoEdgeWhereNoneStandsOut) {
 }
 
 // A slip of the hand in a name must not cost a scan.
+    EXPECT_EQ(
+        section("--step").err,
+        "fettle: error: no step stands out from the noise of the section, --step auto, give a --width to "
+        "average over, or the edge's length as --step A\n");
 TEST(SectionCommand, NeverWritesTextOverAScan) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), keep = folder.file("keep.tif");
