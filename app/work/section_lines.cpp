@@ -19,6 +19,12 @@ std::string shownStretch(const Report& stretch, const ReadAs& unit) {
   return fmt::format("{:.6g} to {}", stretch[0].get<double>() / unit.size, shownLength(stretch[1], unit));
 }
 
+// " +- 3 um" of a key of a section; empty where there is none, as in a session of before it was stated.
+std::string plusError(const Report& of, const char* key, const ReadAs& unit) {
+  if (!of.contains(key) || of[key].is_null()) return "";
+  return fmt::format(" +- {:.2g} {}", of[key].get<double>() / unit.size, unit.name);
+}
+
 // Why a profile does not determine a parameter.
 const char* reasonWithout(const engine::RoughnessInfo& info) {
   if (info.unit == engine::RoughnessInfo::Unit::kRatio) return "the core has no height";
@@ -60,23 +66,27 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
   }
   if (of.contains("step")) {
     const Report& step = of["step"];
-    row("step", fmt::format("{}, edge at {}, by {} and {}, rms {}", shownEstimate(step, "step", "mm", height),
-                            shownLength(step["edge_mm"], along), shownStretch(step["before"], along),
+    row("step", fmt::format("{}, edge at {}{}, by {} and {}, rms {}",
+                            shownEstimate(step, "step", "mm", height), shownLength(step["edge_mm"], along),
+                            plusError(step, "edge_error_mm", along), shownStretch(step["before"], along),
                             shownStretch(step["after"], along), shownLength(step["rms_mm"], height)));
   }
   if (of.contains("groove")) {
     const Report& groove = of["groove"];
     row("groove",
-        fmt::format("depth {}, width {} from {} to {}, rms {}", shownEstimate(groove, "depth", "mm", height),
-                    shownLength(groove["width_mm"], along), shownLength(groove["edges"][0], along),
+        fmt::format("depth {}, width {}{} from {} to {}, rms {}",
+                    shownEstimate(groove, "depth", "mm", height), shownLength(groove["width_mm"], along),
+                    plusError(groove, "width_error_mm", along), shownLength(groove["edges"][0], along),
                     shownLength(groove["edges"][1], along), shownLength(groove["rms_mm"], height)));
   }
   if (of.contains("angle")) {
     const Report& angle = of["angle"];
-    row("angle", fmt::format("turn {}, included {} degrees, lines meet at {}, height {}",
+    row("angle", fmt::format("turn {}, included {} degrees, lines meet at {}{}, height {}{}",
                              shownEstimate(angle, "turn", "deg", kDegrees),
                              shownNumber(angle["included_deg"]), shownLength(angle["meet_along_mm"], along),
-                             shownHeight(angle["meet_height_mm"], height)));
+                             plusError(angle, "meet_along_error_mm", along),
+                             shownHeight(angle["meet_height_mm"], height),
+                             plusError(angle, "meet_height_error_mm", height)));
   }
   if (of.contains("arc")) {
     const Report& arc = of["arc"];
@@ -117,6 +127,8 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
       if (const Report& without = r[keys.without], &error = r[keys.error]; !without.is_null()) {
         const double by = error.get<double>() / in.size;
         text += fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);
+      } else if (r.contains(keys.reason) && !r[keys.value].is_null()) {
+        text += fmt::format(", without noise not stated: {}", r[keys.reason].get<std::string>());
       }
       row("", fmt::format("{:<5} {}", keys.symbol, text));
     }
@@ -125,5 +137,3 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
 }
 
 }  // namespace fettle::app
-      } else if (r.contains(keys.reason) && !r[keys.value].is_null()) {
-        text += fmt::format(", without noise not stated: {}", r[keys.reason].get<std::string>());

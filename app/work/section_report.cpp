@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/uncertainty/edge_place.h"
 #include "engine/uncertainty/roughness_noise.h"
 
 namespace fettle::app {
@@ -103,7 +104,9 @@ class SectionMeasurement {
       return engine::inputError("no step stands out from the noise of the section", "--step auto",
                                 "give a --width to average over, or the edge's length as --step A");
     addMarks({edge}, "step", marks);
-    Report report{{"edge_mm", edge}};
+    Report report{{"edge_mm", edge},
+                  {"edge_error_mm",
+                   options_.step == "auto" ? numberOrNull(engine::edgeError(section, *figures)) : Report()}};
     addEstimate(report, "step", "mm", figures->step_mm);
     addEstimate(report, "inclination", "deg", figures->inclination_deg);
     report.update({{"before", stretchOf(figures->before)},
@@ -128,7 +131,12 @@ class SectionMeasurement {
           "no groove or ridge stands out from the noise of the section", "--groove auto",
           "give a --width to average over, or the lengths of both edges as --groove A,B");
     addMarks({edges.from_mm, edges.to_mm}, "groove", marks);
-    Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
+    const bool found = options_.groove == "auto";
+    const double error = found ? engine::edgeError(section, *figures) : std::nan("");
+    Report report{{"edges", stretchOf(edges)},
+                  {"edges_error_mm", numberOrNull(error)},
+                  {"width_mm", edges.to_mm - edges.from_mm},
+                  {"width_error_mm", numberOrNull(std::sqrt(2.0) * error)}};
     addEstimate(report, "depth", "mm", figures->step_mm);
     addEstimate(report, "inclination", "deg", figures->inclination_deg);
     report.update({{"before", stretchOf(figures->before)},
@@ -146,8 +154,8 @@ class SectionMeasurement {
     Report report;
     addEstimate(report, "turn", "deg", figures->turn_deg);
     report["included_deg"] = figures->included_deg.value;
-    report["meet_along_mm"] = numberOrNull(figures->meet_along_mm);
-    report["meet_height_mm"] = numberOrNull(figures->meet_height_mm);
+    addEstimate(report, "meet_along", "mm", figures->meet_along_mm);
+    addEstimate(report, "meet_height", "mm", figures->meet_height_mm);
     report["first"] = lineReport(figures->first);
     report["second"] = lineReport(figures->second);
     return report;
@@ -180,6 +188,7 @@ class SectionMeasurement {
       report[keys.value] = numberOrNull((*figures).*infos[f].figure);
       report[keys.without] = numberOrNull((*noise)[f].without);
       report[keys.error] = numberOrNull((*noise)[f].error);
+      if (!(*noise)[f].why.empty()) report[keys.reason] = (*noise)[f].why;
     }
     return report;
   }
@@ -188,7 +197,6 @@ class SectionMeasurement {
   engine::SectionNoise noise_;
 };
 
-      if (!(*noise)[f].why.empty()) report[keys.reason] = (*noise)[f].why;
 }  // namespace
 
 Report numberOrNull(double value) {

@@ -324,10 +324,16 @@ Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, 
   const double error = std::sqrt(std::max(0.0, variance)) * kDegrees;
   figures.turn_deg = {inclinationDeg(b) - inclinationDeg(a), error};
   figures.included_deg = {180.0 - std::abs(figures.turn_deg.value), error};
-  figures.meet_along_mm = figures.meet_height_mm = kUnknown;
+  figures.meet_along_mm = figures.meet_height_mm = {kUnknown, kUnknown};
   if (a != b) {
-    figures.meet_along_mm = (fit->x[0] - a * parts[0].middle - fit->x[2] + b * parts[1].middle) / (b - a);
-    figures.meet_height_mm = fit->x[0] + a * (figures.meet_along_mm - parts[0].middle);
+    const double at = (fit->x[0] - a * parts[0].middle - fit->x[2] + b * parts[1].middle) / (b - a);
+    // How the place follows heights and slopes of both lines; the height follows as on the first one.
+    const double first_away = at - parts[0].middle, second_away = at - parts[1].middle;
+    const Eigen::Vector4d along = Eigen::Vector4d(1.0, first_away, -1.0, -second_away) / (b - a);
+    const Eigen::Vector4d height = Eigen::Vector4d(1.0, first_away, 0.0, 0.0) + a * along;
+    figures.meet_along_mm = {at, std::sqrt(std::max(0.0, along.dot(fit->covariance * along)))};
+    figures.meet_height_mm = {fit->x[0] + a * first_away,
+                              std::sqrt(std::max(0.0, height.dot(fit->covariance * height)))};
   }
   return figures;
 }

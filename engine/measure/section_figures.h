@@ -43,7 +43,7 @@ struct AngleFigures {
   Estimate turn_deg;  ///< inclination of the second less that of the first: above 0 a concave edge
   Estimate
       included_deg;  ///< the angle between the two lines on the side of the smaller turn, 180 for one line
-  double meet_along_mm = 0.0, meet_height_mm = 0.0;  ///< where the lines meet; NaN for parallel ones
+  Estimate meet_along_mm, meet_height_mm;  ///< where the lines meet; NaN for parallel ones
 };
 /// The angle between the lines fitted to two stretches, with what their heights have in common.
 [[nodiscard]] Result<AngleFigures> angleFigures(const Section& section, const Stretch& first,

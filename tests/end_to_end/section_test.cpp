@@ -40,10 +40,15 @@ TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   EXPECT_NEAR(section["groove"]["edges"][1], 4.95, 1e-9);
   EXPECT_NEAR(section["groove"]["depth_mm"], 0.05, 1e-4);
   EXPECT_GT(section["groove"]["depth_error_mm"].get<double>(), 0.0);
+  // Of two edges, each anywhere between two places of 0.1 mm.
+  EXPECT_NEAR(section["groove"]["edges_error_mm"], 0.1 / std::sqrt(12.0), 1e-6);
+  EXPECT_NEAR(section["groove"]["width_error_mm"], 0.1 / std::sqrt(6.0), 1e-6);
+  EXPECT_TRUE(section["step"]["edge_error_mm"].is_null()) << "it was given";
   EXPECT_NEAR(section["cursors"]["dz_mm"], -0.05, 2e-4);
   const Outcome text =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--groove", "auto"});
   EXPECT_NE(text.out.find("depth 50 +- "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("width 2 mm +- 0.041 mm from 2.95 mm"), std::string::npos) << text.out;
   const Outcome step =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--step", "2.95"});
   EXPECT_NE(step.out.find("by 0 to 1.96667 mm and 3.93333 to 5.9 mm"), std::string::npos) << step.out;
@@ -158,11 +163,6 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   for (const char* const part :
        {"waviness", "cut-off 1.5 mm, from 0.75 to ", "Wq ", "WSm ", "PSm ", "without a cut-off"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << shown.out;
-  const auto refused = [&](std::vector<std::string> more, const char* why) {
-    more.insert(more.begin(), line.begin(), line.end());
-    expectRefused(fettle(more), why);
-  };
-  refused({"--profile", "waviness"}, "add --cutoff");
   // Each figure has one without noise or a reason.
   for (const char* const name : {"roughness", "primary", "waviness"})
     for (const auto& [key, value] : all[name].items())
@@ -171,6 +171,11 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
       }
   EXPECT_EQ(all["waviness"]["wk_reason"], "the scan has no noise that was found");
   EXPECT_NE(shown.out.find("without noise not stated: the scan has no noise"), std::string::npos) << shown.out;
+  const auto refused = [&](std::vector<std::string> more, const char* why) {
+    more.insert(more.begin(), line.begin(), line.end());
+    expectRefused(fettle(more), why);
+  };
+  refused({"--profile", "waviness"}, "add --cutoff");
   refused({"--profile", "primary", "--cutoff", "1.5"}, "--cutoff");
   // Letters are the words.
   EXPECT_EQ(with({"--cutoff", "1.5", "--profile", "R,P,W"}), all);
@@ -311,15 +316,15 @@ TEST(SectionCommand, StatesNoEdgeWhereNoneStandsOut) {
       return fettle({"section", scan, "--unit", "mm", "--start", "0,10", "--end", "119,10", option, "auto"});
     };
     expectRefused(section("--step"), "stands out");
+    EXPECT_EQ(
+        section("--step").err,
+        "fettle: error: no step stands out from the noise of the section, --step auto, give a --width to "
+        "average over, or the edge's length as --step A\n");
     expectRefused(section("--groove"), "stands out");
   }
 }
 
 // A slip of the hand in a name must not cost a scan.
-    EXPECT_EQ(
-        section("--step").err,
-        "fettle: error: no step stands out from the noise of the section, --step auto, give a --width to "
-        "average over, or the edge's length as --step A\n");
 TEST(SectionCommand, NeverWritesTextOverAScan) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), keep = folder.file("keep.tif");

@@ -156,8 +156,8 @@ TEST(SectionFigures, OfLinesAreThoseOfTheLines) {
   // Heights are floats of up to 2.5: 1.2e-7 over 4 mm of 41 places.
   EXPECT_NEAR(angle->turn_deg.value, turn, 1e-5);
   EXPECT_NEAR(angle->included_deg.value, 180.0 + turn, 1e-5);
-  EXPECT_NEAR(angle->meet_along_mm, 5.0, 1e-6);
-  EXPECT_NEAR(angle->meet_height_mm, 2.5, 1e-6);
+  EXPECT_NEAR(angle->meet_along_mm.value, 5.0, 1e-6);
+  EXPECT_NEAR(angle->meet_height_mm.value, 2.5, 1e-6);
   EXPECT_NEAR(angle->first.slope.value, 0.5, 1e-7);
   EXPECT_NEAR(angle->first.height_mm.value, 1.25, 1e-6);
   EXPECT_NEAR(angle->second.inclination_deg.value, std::atan(-0.25) * kDegree, 1e-5);
