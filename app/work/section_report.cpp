@@ -93,12 +93,23 @@ class SectionMeasurement {
     addMarks(options_.line, "line", marks);
     return lineReport(*figures);
   }
+  // Where a step is sought: of a groove or a ridge up to its other wall, behind which no side of the step goes on; the wall with
+  // more surface beside it.
+  Stretch aroundStep(const Section& section) const {
+    const Stretch all = within(section), groove = engine::grooveIn(section, all);
+    if (std::isnan(groove.from_mm)) return all;
+    const double clear_mm = (groove.to_mm - groove.from_mm) / 3.0;
+    return groove.from_mm - all.from_mm >= all.to_mm - groove.to_mm
+               ? Stretch{all.from_mm, groove.to_mm - clear_mm}
+               : Stretch{groove.from_mm + clear_mm, all.to_mm};
+  }
   engine::Result<Report> step(const Section& section, std::vector<SectionMark>& marks) const {
-    double edge = engine::edgeIn(section, within(section));
+    const Stretch around = options_.step == "auto" ? aroundStep(section) : within(section);
+    double edge = engine::edgeIn(section, around);
     if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
     if (std::isnan(edge))
       return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
-    const auto figures = engine::stepFigures(section, edge, within(section), noise_);
+    const auto figures = engine::stepFigures(section, edge, around, noise_);
     if (!figures) return tl::unexpected(figures.error());
     if (options_.step == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no step stands out from the noise of the section", "--step auto",

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +53,22 @@ TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   const Outcome step =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--step", "2.95"});
   EXPECT_NE(step.out.find("by 0 to 1.96667 mm and 3.93333 to 5.9 mm"), std::string::npos) << step.out;
+}
+
+// The step sought on a groove is one of its walls, and no line of it goes on behind the other one.
+TEST(SectionCommand, AStepSoughtOnAGrooveIsOneOfItsWalls) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  for (const auto& [from, to, edge, height] :
+       {std::tuple{"0,2", "7.9,2", 2.95, -0.05}, {"2,2", "7.9,2", 2.95, 0.05}, {"0,2", "6,2", 2.95, -0.05}}) {
+    const auto report = fettleJson(
+        {"section", scan, "--unit", "mm", "--start", from, "--end", to, "--width", "1", "--step", "auto"});
+    const auto& step = report["sections"][0]["step"];
+    EXPECT_NEAR(step["step_mm"], height, 1e-4) << from << ' ' << to;
+    EXPECT_NEAR(step["edge_mm"], edge, 1e-9) << from << ' ' << to;
+    EXPECT_LT(step["rms_mm"].get<double>(), 1e-4);
+  }
 }
 
 TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
@@ -170,7 +187,8 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
         EXPECT_TRUE(all[name].contains(key.substr(0, at) + "_reason")) << key;
       }
   EXPECT_EQ(all["waviness"]["wk_reason"], "the scan has no noise that was found");
-  EXPECT_NE(shown.out.find("without noise not stated: the scan has no noise"), std::string::npos) << shown.out;
+  EXPECT_NE(shown.out.find("without noise not stated: the scan has no noise"), std::string::npos)
+      << shown.out;
   const auto refused = [&](std::vector<std::string> more, const char* why) {
     more.insert(more.begin(), line.begin(), line.end());
     expectRefused(fettle(more), why);
