@@ -32,8 +32,8 @@ constexpr double kMostOfProfile = 0.33;
 
 NoiseGrowth growthOf(const RoughnessInfo& info) {
   // The greatest of many, or what such a one decides.
-  for (const auto figure :
-       {&Roughness::rz, &Roughness::rzx, &Roughness::rp, &Roughness::rv, &Roughness::rt, &Roughness::rc, &Roughness::rsm})
+  for (const auto figure : {&Roughness::rz, &Roughness::rzx, &Roughness::rp, &Roughness::rv, &Roughness::rt,
+                            &Roughness::rc, &Roughness::rsm})
     if (info.figure == figure) return NoiseGrowth::kExtreme;
   for (const auto figure : {&Roughness::rk, &Roughness::rpk, &Roughness::rvk})
     if (info.figure == figure) return NoiseGrowth::kRank;
