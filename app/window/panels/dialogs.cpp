@@ -13,7 +13,6 @@
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/result_files.h"
-#include "engine/filter/catalogue.h"
 
 namespace fettle::app {
 namespace {

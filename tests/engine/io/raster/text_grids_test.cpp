@@ -263,9 +263,9 @@ TEST(Formats, TheTableNamesWhatCanBeReadAndWritten) {
     ASSERT_FALSE(info.extensions.empty());
     EXPECT_EQ(info.extensions.front().front(), '.');
   }
-  EXPECT_EQ(
-      table,
-      "GTiff rw PNG rw PLY rw PCD r LAS r SUR r X3P rw SDF rw EXR rw STL rw AAIGrid rw Fettle rw Matrix r XYZ rw ");
+  EXPECT_EQ(table,
+            "GTiff rw PNG rw PLY rw PCD r LAS r SUR r X3P rw SDF rw EXR rw STL rw AAIGrid rw Fettle rw "
+            "Matrix r XYZ rw ");
 }
 
 TEST(AsciiGrid, ThatIsCutInsideItsLastNumberIsWarnedOf) {
