@@ -212,6 +212,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"rms_change", filtered->report.rms_change}});
   addWeightless(report, filter, filtered->report, shownInput(task.in));
   warnOfCutoff(spec, field.grid(), shownInput(task.in));
+  warnOfBroughtBack(spec, filtered->report, field.grid(), shownInput(task.in));
   report.update(
       {{"seconds", seconds}, {"samples_per_second", samples / seconds}, {"hash", hashOf(filtered->field)}});
   if (!options.residual.empty()) report["residual"] = options.residual;

@@ -15,4 +15,15 @@ void warnOfCutoff(const engine::FilterSpec& spec, const engine::Grid& grid, cons
   if (const std::string warning = engine::warningOf(spec, grid); !warning.empty()) warn(of + ": " + warning);
 }
 
+void warnOfBroughtBack(const engine::FilterSpec& spec, const engine::FilterReport& done,
+                       const engine::Grid& grid, const std::string& of) {
+  // A filter under a limit moves nothing farther than that from where it was within it.
+  if (!spec.max_change || !(done.max_change > 2.0 * *spec.max_change)) return;
+  warn(
+      fmt::format("{}: --max-change counts from the scan as it was opened: what earlier steps moved farther, "
+                  "as an outlier "
+                  "that was taken out, came back, by up to {:.6g} {}",
+                  of, done.max_change, grid.height_unit.name));
+}
+
 }  // namespace fettle::app

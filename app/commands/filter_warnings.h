@@ -15,4 +15,8 @@ void addWeightless(Report& report, const engine::Filter& filter, const engine::F
 /// A warning where a filter's cut-off is longer than the field.
 void warnOfCutoff(const engine::FilterSpec& spec, const engine::Grid& grid, const std::string& of);
 
+/// A warning where a limit of the change from the scan as it was opened brought back what earlier steps had moved farther.
+void warnOfBroughtBack(const engine::FilterSpec& spec, const engine::FilterReport& done,
+                       const engine::Grid& grid, const std::string& of);
+
 }  // namespace fettle::app

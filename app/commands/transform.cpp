@@ -82,6 +82,12 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
   if (auto status = saveField(result->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(result->field);
+  if (summary.no_data == grid.samples() &&
+      engine::summarize(imported->field).no_data < imported->field.grid().samples())
+    warn(fmt::format(
+        "{}: every new sample is a hole, since the old one nearest to it is: fill single holes first, or "
+        "choose another spacing",
+        shownInput(task.in)));
   Report report{{"width", grid.width},
                 {"height", grid.height},
                 {"spacing_x", grid.spacing_x},

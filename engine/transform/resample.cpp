@@ -159,11 +159,15 @@ class Sampler {
     const float nearest = old_.height(static_cast<std::int32_t>(std::floor(p.x + 0.5)),
                                       static_cast<std::int32_t>(std::floor(p.y + 0.5)));
     if (std::isnan(nearest)) return nearest;
-    bool complete = false;
-    const double z = sum(p, method_, static_cast<double>(nearest), complete);
-    return static_cast<float>(complete || method_ != Resampling::kCubic
-                                  ? z
-                                  : sum(p, Resampling::kLinear, static_cast<double>(nearest), complete));
+    const double base = nearest;
+    Mean mean = meanAround(p, method_, base);
+    if (!mean.complete && method_ == Resampling::kCubic) mean = meanAround(p, Resampling::kLinear, base);
+    // The mean is the surface's height where its samples lie on average, beside the place where some of them are missing or the
+    // kernel is symmetric about no sample: from there along the slope.
+    constexpr double kHere = 1e-9;  // samples: rounding
+    if (std::max(std::abs(mean.away.x), std::abs(mean.away.y)) > kHere)
+      mean.height -= glm::dot(slopeAround(p, base), mean.away);
+    return static_cast<float>(base + mean.height);
   }
 
   [[nodiscard]] bool markedAt(const glm::dvec2& p) const {
@@ -176,27 +180,78 @@ class Sampler {
   }
 
  private:
-  // About the nearest height, which keeps the digits of heights far from 0. `complete`: all samples had heights.
-  [[nodiscard]] double sum(const glm::dvec2& p, Resampling method, double base, bool& complete) {
-    tapsAt(p.x, stretch_.x, method, x_);
-    tapsAt(p.y, stretch_.y, method, y_);
-    complete = true;
-    double total = 0.0, weights = 0.0;
+  // Of the samples that a kernel sees; heights about a base, which keeps the digits of those far from 0.
+  struct Mean {
+    double height = 0.0;
+    glm::dvec2 away{0.0};   // where they lie on average, from the place of the kernel [samples]
+    bool complete = false;  // all have heights; of kCubic the rest counts only then
+  };
+
+  // Calls f(weight, from the place, height about `base`) for each sample of a kernel, NaN for one without a height.
+  template <class F>
+  void eachAround(const glm::dvec2& p, const glm::dvec2& stretch, Resampling method, double base, F&& f) {
+    tapsAt(p.x, stretch.x, method, x_);
+    tapsAt(p.y, stretch.y, method, y_);
     for (std::size_t r = 0; r < y_.weights.size(); ++r)
       for (std::size_t c = 0; c < x_.weights.size(); ++c) {
         const double weight = x_.weights[c] * y_.weights[r];
         if (weight == 0.0) continue;
-        const float z =
-            old_.height(x_.first + static_cast<std::int32_t>(c), y_.first + static_cast<std::int32_t>(r));
-        if (std::isnan(z)) {
-          complete = false;
-          if (method == Resampling::kCubic) return base;
-          continue;
-        }
-        total += weight * (static_cast<double>(z) - base);
-        weights += weight;
+        const std::int32_t column = x_.first + static_cast<std::int32_t>(c),
+                           row = y_.first + static_cast<std::int32_t>(r);
+        f(weight, glm::dvec2(column, row) - p, static_cast<double>(old_.height(column, row)) - base);
       }
-    return base + total / weights;
+  }
+
+  [[nodiscard]] Mean meanAround(const glm::dvec2& p, Resampling method, double base) {
+    Mean mean{.complete = true};
+    double weights = 0.0;
+    eachAround(p, stretch_, method, base, [&](double weight, const glm::dvec2& from, double z) {
+      if (std::isnan(z)) {
+        mean.complete = false;
+        return;
+      }
+      mean.height += weight * z;
+      mean.away += weight * from;
+      weights += weight;
+    });
+    mean.height /= weights;
+    mean.away /= weights;
+    return mean;
+  }
+
+  // Of the plane through the samples of a triangle that is a sample wider, by weighted least squares; along a direction in which
+  // all lie at one place there is none.
+  [[nodiscard]] glm::dvec2 slopeAround(const glm::dvec2& p, double base) {
+    double n = 0.0, z1 = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+    glm::dvec2 middle{0.0}, by{0.0};
+    const auto each = [&](auto&& take) {
+      eachAround(p, stretch_ + 1.0, Resampling::kLinear, base,
+                 [&](double weight, const glm::dvec2& from, double z) {
+                   if (!std::isnan(z)) take(weight, from, z);
+                 });
+    };
+    each([&](double weight, const glm::dvec2& from, double z) {
+      n += weight;
+      middle += weight * from;
+      z1 += weight * z;
+    });
+    middle /= n;
+    z1 /= n;
+    each([&](double weight, const glm::dvec2& from, double z) {
+      const glm::dvec2 d = from - middle;
+      xx += weight * d.x * d.x;
+      xy += weight * d.x * d.y;
+      yy += weight * d.y * d.y;
+      by += weight * (z - z1) * d;
+    });
+    constexpr double kNone = 1e-9;  // of the other direction, or of the weights
+    if (const double det = xx * yy - xy * xy; det > kNone * xx * yy && det > 0.0)
+      return glm::dvec2(yy * by.x - xy * by.y, xx * by.y - xy * by.x) / det;
+    // On a line: along it.
+    const glm::dvec2 along = xx >= yy ? glm::dvec2(xx, xy) : glm::dvec2(xy, yy);
+    const double length = xx + yy;
+    if (!(length > kNone * n)) return glm::dvec2(0.0);
+    return along * (glm::dot(by, along) / (glm::dot(along, along) * length));
   }
 
   const OldSamples& old_;
@@ -211,8 +266,11 @@ void resampleTile(const FieldReader& field, const Places& places, Resampling met
   const double most = std::max(places.stretch.x, places.stretch.y);
   // A part of the tile whose old samples take a few megabytes.
   const auto side = static_cast<std::int32_t>(std::clamp(1024.0 / most, 1.0, double{kTileSide}));
-  const double reach_x = reachOf(method, places.stretch.x) + 1.0,
-               reach_y = reachOf(method, places.stretch.y) + 1.0;
+  // The slope's kernel is a triangle that is a sample wider.
+  const auto reach = [&](double stretch) {
+    return std::max(reachOf(method, stretch), reachOf(Resampling::kLinear, stretch + 1.0)) + 1.0;
+  };
+  const double reach_x = reach(places.stretch.x), reach_y = reach(places.stretch.y);
   OldSamples old;
   Sampler sampler(old, method, places.stretch);
   std::vector<float> z;

@@ -34,7 +34,10 @@ struct ResampleOptions {
 /// middle, and the result holds all of it: what lies outside are holes, and there is no coordinate system.
 ///
 /// A new sample is a hole where the old one nearest to it is, or none is. Elsewhere samples without a height do not count
-/// and the weights of the others are normalised, of cubic by those of linear. Heights: sums in double, rounded to float once.
+/// and the weights of the others are normalised, of cubic by those of linear. Where the samples that count lie beside the new place
+/// on average - at borders, beside holes, and where a new spacing is no whole multiple of the old one - the mean is moved to it along
+/// the slope of the plane through the samples around it, so that a plane stays one by every method, everywhere. Heights: sums in
+/// double, rounded to float once.
 /// Marked where an old marked sample is within half a footprint of s x s. Edge lines go along, points inserted where they
 /// would be too far apart, with their figures in new samples.
 ///
