@@ -1,5 +1,7 @@
 #include "app/commands/filter_warnings.h"
 
+#include <fmt/format.h>
+
 #include "app/terminal.h"
 
 namespace fettle::app {
