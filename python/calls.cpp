@@ -32,7 +32,10 @@ py::object writtenTo(const app::MemoryPlace& place, const Scan* source) {
   if (place.lines) return py::cast(rowsOf(*place.lines));
   if (!place.scan) return py::none();
   Scan scan{*place.scan};
-  if (!scan.data.original && source != nullptr) scan.data.original = source->original();
+  if (!scan.data.original && source != nullptr) {
+    const engine::Grid &made = scan.data.field.grid(), &before = source->original().grid();
+    if (made.width == before.width && made.height == before.height) scan.data.original = source->original();
+  }
   return py::cast(std::move(scan));
 }
 

@@ -66,6 +66,8 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
   if (!known) return tl::unexpected(known.error());
   known->didToBoth(RecipeTransform{options.what});
   known->note(writing);
+  // Changes are limited from here on, also in Python: the scan before lies elsewhere.
+  writing.original = result->field;
   if (imported->original) {
     // What the session began with goes along, so that changes and filled samples stay known.
     auto original = transformed(*imported->original, options.what, job);

@@ -212,6 +212,11 @@ class Hashes(unittest.TestCase):
         done = run("mosaic", *paths, self.path("mosaic.tif"), "--moves", "shift", "--blend", "mean")
         made = fettle.mosaic(parts, moves="shift", blend="mean")
         self.same("mosaic", done["hash"], made.hash)
+        # Of parts of a scan what they began with goes along.
+        for part in parts:
+            self.assertEqual(part.original.shape, part.shape)
+        mirrored = scan.transformed(mirror="x")
+        self.assertEqual(mirrored.original.hash, mirrored.hash)
         self.same("mosaic of files", done["hash"], fettle.mosaic(paths, moves="shift", blend="mean").hash)
         self.assertEqual(made.shape, scan.shape)
         self.assertLess(made.compare(scan)["max_abs"], 0.05)
