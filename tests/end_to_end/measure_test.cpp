@@ -517,7 +517,8 @@ TEST(Measure, CsvHasARowPerScanAndParameter) {
   int rows = 0;
   while (std::getline(in, line)) ++rows, all += line + "\n";
   EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark,without_noise,error,layer\n"));
-  EXPECT_EQ(rows, 1 + 2 * (34 + 2));
+  // 34 parameters; Smc, Vm and Vv at two ratios each.
+  EXPECT_EQ(rows, 1 + 2 * (34 + 3 * 2));
   EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat,,,\n"), std::string::npos)
       << all;
   EXPECT_NE(all.find(",height,Sq,0.0014"), std::string::npos) << all;

@@ -288,7 +288,8 @@ TEST(FitUncertainty, StatesWhatNoiseMovesFiguresByOnAverage) {
                 scatter * std::sqrt(seeds));
     if (!countsCoverage()) continue;
     EXPECT_NEAR(stated, mean, 0.1 * std::abs(mean) + 3.0 * scatter) << one.of.name << ' ' << one.name;
-    if (!one.options.vertical) {
+    // Where so many seeds tell what is stated from none, it is there; of the cap 400 do.
+    if (!one.options.vertical && std::abs(stated) > 4.0 * scatter) {
       EXPECT_GT(std::abs(mean), 3.0 * scatter) << one.of.name << ' ' << one.name;
     }
   }

@@ -76,7 +76,9 @@ TEST(EdgePlace, ErrorIsThatOfTheSpacingAndOfNoise) {
         }
       }
       if (!stated) continue;
-      EXPECT_LE(open, tests::coverageSeeds() / 100);
+      // One in a hundred, and what so many seeds scatter about that.
+      const double share = tests::coverageSeeds() / 100.0;
+      EXPECT_LE(open, share + 2.0 * std::sqrt(share));
       char name[60];
       std::snprintf(name, sizeof name, "edge, noise %.4f width %.2f", noise, width);
       expectStated(of_edge, name);
