@@ -123,6 +123,7 @@ DrawnNoise drawnNoise(const Section& section, const SectionNoise& noise, std::ui
   if (off && !section.source.field.empty()) {
     const Grid& grid = section.source.field.grid();
     std::vector<Section::LineOffsets> offsets;
+    offsets.reserve(static_cast<std::size_t>(draws));
     for (int k = 0; k < draws; ++k)
       offsets.push_back(drawnOffsets(grid, noise, seed + static_cast<std::uint64_t>(k)));
     drawn.heights = section.offBy(offsets);
