@@ -40,7 +40,7 @@ void cell(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-constexpr int kCaptionLines = 3;
+constexpr int kCaptionLines = 2;
 
 // "52.7 +- 0.3" in a narrow column; whole as its tip.
 void withoutNoise(const std::string& text) {
@@ -108,8 +108,8 @@ void caption(MeasureTool& measure) {
     writeWrapped(trFormat("ISO 25178-2, {} samples{}", figures->samples,
                           measure.outdated() ? tr("; the field has changed since") : ""));
     // Both kinds of figures are of one noise model, and a filtered field has next to no finest detail.
-    if (figures->options.noise && figures->before)
-      writeIn(render::PanelColour::kMuted, "noise that filters spread over neighbours is in no error");
+    if (figures->options.noise && figures->before && !measure.outdated())
+      writeIn(render::PanelColour::kMuted, "errors know no noise that filters spread");
   } else {
     writeIn(render::PanelColour::kMuted, "surface texture by ISO 25178-2");
   }
