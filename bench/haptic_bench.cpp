@@ -92,7 +92,7 @@ engine::Version makeGround(const HardGround& ground, std::int32_t side, double s
 
 constexpr std::size_t kTimedTicks = 100'000;
 
-std::uint64_t mixed(std::uint64_t hash, double value) noexcept {
+std::uint64_t hashWith(std::uint64_t hash, double value) noexcept {
   return std::rotl(hash, 7) ^ std::bit_cast<std::uint64_t>(value);
 }
 
@@ -116,7 +116,7 @@ std::uint64_t mixed(std::uint64_t hash, double value) noexcept {
       const haptic::ForceSample felt = tick.run(timed[i]);
       ns[i] = std::min(ns[i], watch.ns());
       for (const glm::dvec3& of : {felt.force_n, felt.proxy_mm})
-        hash = mixed(mixed(mixed(hash, of.x), of.y), of.z);
+        hash = hashWith(hashWith(hashWith(hash, of.x), of.y), of.z);
     }
     if (pass == 0) first = hash;
     if (hash != first) return false;
@@ -196,7 +196,7 @@ engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
     for (const haptic::StrokeSample& sample : strokes) {
       const glm::dvec3 force = search.tick(sample.tip_mm, stiffness);
       row.contact_ticks += force.z != 0.0 ? 1 : 0;
-      row.hash = mixed(row.hash, force.z);
+      row.hash = hashWith(row.hash, force.z);
     }
     rates.push_back(static_cast<double>(strokes.size()) / watch.seconds());
     search.reset();

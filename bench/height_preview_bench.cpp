@@ -113,7 +113,7 @@ engine::Status benchHeightPreviews(std::int32_t side, bool fill, bool level,
       [](const engine::SampleRect& rect, double* out) {
         for (std::int32_t r = 0; r < rect.rows; ++r)
           std::fill_n(out + r * engine::kTileSide, rect.columns,
-                      0.05 * (mixed(1, rect.row + r) * 0x1p-32 - 0.5));
+                      0.05 * (randomBits(1, rect.row + r) * 0x1p-32 - 0.5));
       },
       job);
   if (!striped) return tl::unexpected(striped.error());

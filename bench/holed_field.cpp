@@ -11,7 +11,7 @@
 
 namespace fettle::bench {
 
-std::uint32_t mixed(std::int32_t c, std::int32_t r) noexcept {
+std::uint32_t randomBits(std::int32_t c, std::int32_t r) noexcept {
   std::uint32_t h = static_cast<std::uint32_t>(c) * 0x9E3779B1U ^ static_cast<std::uint32_t>(r) * 0x85EBCA77U;
   h = (h ^ (h >> 15)) * 0x2C1B3C6DU;
   h = (h ^ (h >> 12)) * 0x297A2D39U;
@@ -21,11 +21,11 @@ std::uint32_t mixed(std::int32_t c, std::int32_t r) noexcept {
 namespace {
 
 constexpr HoleKind kHoleKinds[] = {
-    {"single", [](std::int32_t c, std::int32_t r, std::int32_t) { return mixed(c, r) % 20 == 0; }},
+    {"single", [](std::int32_t c, std::int32_t r, std::int32_t) { return randomBits(c, r) % 20 == 0; }},
     {"discs",
      [](std::int32_t c, std::int32_t r, std::int32_t) {
        constexpr std::int32_t kCell = 32;
-       const auto radius = static_cast<std::int32_t>(2 + mixed(c / kCell, r / kCell) % 5);
+       const auto radius = static_cast<std::int32_t>(2 + randomBits(c / kCell, r / kCell) % 5);
        const std::int32_t x = c % kCell - kCell / 2, y = r % kCell - kCell / 2;
        return x * x + y * y <= radius * radius;
      }},

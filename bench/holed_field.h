@@ -9,7 +9,7 @@
 namespace fettle::bench {
 
 /// A number that looks random, of a place.
-[[nodiscard]] std::uint32_t mixed(std::int32_t c, std::int32_t r) noexcept;
+[[nodiscard]] std::uint32_t randomBits(std::int32_t c, std::int32_t r) noexcept;
 
 struct HoleKind {
   const char* name;
