@@ -123,7 +123,7 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
 
 // The curves of all states over each other. They are no reason to refuse a report: without gnuplot, or where there was
 // no memory for an autocorrelation, a sentence stands in their place.
-engine::Status addCurves(ReportDraft& draft, const MeasuredStates& found) {
+engine::Status addCurvePictures(ReportDraft& draft, const MeasuredStates& found) {
   draft.page.parts.emplace_back(ReportPage::Heading{"Curves"});
   draft.report["curves"] = 0;
   if (const auto able = plotsCanBeMade(); !able) {
@@ -192,7 +192,7 @@ engine::Status addTextureAndCurves(ReportDraft& draft) {
   MeasuredStates found;
   if (auto status = addTexture(draft, found); !status) return status;
   draft.noise_trials = found.trials;
-  return addCurves(draft, found);
+  return addCurvePictures(draft, found);
 }
 
 }  // namespace fettle::app

@@ -22,7 +22,7 @@ constexpr double kDeviationAmbient = 0.80;
 // hills look like hills (Imhof 1965, "Kartographische Gelaendedarstellung").
 constexpr double kLightUp = 0.70710678118654752;
 
-engine::Status check(const PictureSpec& spec) {
+engine::Status checkSpec(const PictureSpec& spec) {
   const View& v = spec.view;
   const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
   if (!in(v.width, kSmallestPicture, kLargestPicture) || !in(v.height, kSmallestPicture, kLargestPicture))
@@ -138,7 +138,7 @@ PictureSpans negated(const PictureSpans& spans) noexcept {
 
 engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
                                         const PictureSpans& spans, Layout layout) {
-  if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
+  if (engine::Status ok = checkSpec(spec); !ok) return tl::unexpected(ok.error());
   PicturePlan plan;
   plan.layout = std::move(layout);
   // Geometry. All fields share the reference and the unit of height of the first one.

@@ -11,7 +11,7 @@ namespace fettle::render {
 namespace {
 
 // Corners of a letter's square in the font's image, exact: the same floats go into the vertices.
-std::uint64_t keyOf(float u, float v) {
+std::uint64_t cornerKey(float u, float v) {
   // The image has fewer than 2^16 texels a side.
   return static_cast<std::uint64_t>(std::lround(static_cast<double>(u) * (1 << 20))) << 32U |
          static_cast<std::uint32_t>(std::lround(static_cast<double>(v) * (1 << 20)));
@@ -27,7 +27,7 @@ Letters lettersOf(const ImFontAtlas& atlas) {
   Letters letters;
   for (const ImFont* font : atlas.Fonts)
     for (const ImFontGlyph& glyph : font->Glyphs)
-      if (glyph.Visible != 0) letters.emplace(keyOf(glyph.U0, glyph.V0), Letter{font, &glyph});
+      if (glyph.Visible != 0) letters.emplace(cornerKey(glyph.U0, glyph.V0), Letter{font, &glyph});
   return letters;
 }
 
@@ -110,7 +110,7 @@ std::vector<PanelText> textsOf(const ImDrawData& drawn) {
         const bool square = index[i + 1] == a + 1 && index[i + 2] == a + 2 && index[i + 3] == a &&
                             index[i + 4] == a + 2 && index[i + 5] == a + 3;
         const ImDrawVert& corner = list.VtxBuffer[static_cast<int>(a + command.VtxOffset)];
-        const auto found = square ? letters.find(keyOf(corner.uv.x, corner.uv.y)) : letters.end();
+        const auto found = square ? letters.find(cornerKey(corner.uv.x, corner.uv.y)) : letters.end();
         if (found != letters.end()) {
           const ImDrawVert& opposite = list.VtxBuffer[static_cast<int>(a + 2 + command.VtxOffset)];
           reader.letter(found->second, corner, opposite.pos.x, command.ClipRect);
