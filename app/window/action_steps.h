@@ -432,7 +432,7 @@ void sectionEnd(Parts& p) {
   const auto at = p.picture.fieldAt(p.cursor, clientOf(p).field(), p.view);
   if (!at) return;
   (p.section.*set)(*at);
-  p.settings.panels["Section"] = true;
+  enterPanel(p, "Section");
   p.picture.requestRedraw();
 }
 template <auto options>
@@ -446,7 +446,7 @@ void previewHeights(Parts& p) {
   if (heightsArePreviewed<options>(p)) {
     p.heights.dropPreview();
   } else {
-    p.settings.panels[panel] = true;
+    enterPanel(p, panel);
     p.heights.preview(p.heights.*options, p.picture.seenPart(clientOf(p).field().grid(), p.view));
   }
   p.picture.requestRedraw();
@@ -471,7 +471,7 @@ inline void openRemoval(Parts& p) {
 template <void (SectionTool::*act)()>
 void withSection(Parts& p) {
   (p.section.*act)();
-  p.settings.panels["Section"] = true;
+  enterPanel(p, "Section");
   p.picture.requestRedraw();
 }
 inline bool hasSection(const Parts& p) {

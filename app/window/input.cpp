@@ -17,6 +17,10 @@ bool linesAreShown(const Parts& parts) {
   return client != nullptr && parts.settings.display.marks && client->field().lines() != nullptr;
 }
 
+SectionDrag::Scope sectionScope(Parts& parts, const LoopClient& client) {
+  return {client.field(), parts.picture, parts.view, parts.section, parts.stylus.on()};
+}
+
 // Whether it clicks on an end of the axes, which lie over the surface.
 bool pressesAxis(const InputEvent& event, const Parts& parts) {
   return event.kind == InputKind::kButtonDown && event.button == render::MouseButton::kLeft &&
@@ -30,6 +34,8 @@ void toStylus(const InputEvent& event, Parts& parts) {
   const Stylus::Hands hands = parts.feedback.questions.pending() ? Stylus::Hands::kNone
                               : parts.radial.active() || parts.drag.active() || pressesAxis(event, parts) ||
                                       parts.brush.active() || parts.line_drag.active() ||
+                                      parts.section_drag.active() ||
+                                      SectionDrag::begins(event, sectionScope(parts, *client)) ||
                                       (LineDrag::begins(event) && linesAreShown(parts))
                                   ? Stylus::Hands::kOther
                                   : Stylus::Hands::kFree;
@@ -141,11 +147,18 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
     return {};
   if (event.kind == InputKind::kKeyDown) {
     // What a key begins is not for a hand that holds a line.
-    const bool dragging = parts.line_drag.active();
+    const bool dragging = parts.line_drag.active() || parts.section_drag.active();
     parts.line_drag.stop();
+    if (event.key == Key::kEscape)
+      parts.section_drag.cancel(parts.section);
+    else
+      parts.section_drag.stop();
     return dragging && event.key == Key::kEscape ? Request{} : handleKey(event, parts);
   }
   if (!dialog && pressesAxis(event, parts)) return {parts.axisAt({event.x, event.y}), std::nullopt};
+  if (client != nullptr && !dialog && !parts.marking.lasso().active() &&
+      parts.section_drag.handle(event, sectionScope(parts, *client)))
+    return {};
   if (client != nullptr && !dialog && !parts.marking.lasso().active() &&
       parts.line_drag.handle(
           event, {*client, parts.picture, parts.marking, parts.stylus.on(), linesAreShown(parts)}))

@@ -89,6 +89,7 @@ void Parts::chooseTool(std::optional<haptic::Tool> tool) {
 void Parts::releaseHands() {
   drag.stop();
   line_drag.stop();
+  section_drag.stop();
   radial.close();
   shows_before = false;
   marking.release();
@@ -126,6 +127,7 @@ void Parts::dropCoarse() {
   flight.stop();
   drag.stop();
   line_drag.stop();
+  section_drag.stop();
 }
 
 std::string Parts::scenePathToSave() const {

@@ -23,6 +23,7 @@
 #include "app/window/result_writing.h"
 #include "app/window/saving.h"
 #include "app/window/scene_files.h"
+#include "app/window/section_drag.h"
 #include "app/window/settings.h"
 #include "app/window/spared_shadow.h"
 #include "app/window/stylus.h"
@@ -91,6 +92,7 @@ struct Parts {
 
   Marking marking;
   LineDrag line_drag;
+  SectionDrag section_drag;
   PictureClick plane_click;  ///< that sets a point
   FilterPreview filters;
   FilterSuggester suggester;

@@ -77,7 +77,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   // Under a hand that presses, and behind a question, the view stays where it is.
   const bool busy_hand =
-      p.held() || p.line_drag.active() || p.brush.active() || p.feedback.questions.pending();
+      p.held() || p.line_drag.active() || p.section_drag.active() || p.brush.active() || p.feedback.questions.pending();
   if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
     if (const auto framing = p.picture.framing())
       p.flyTo(viewOfPlace(p.viewToCome(), *framing, client.field().reader(),

@@ -226,7 +226,7 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
                                         {textOf("from y"), "##section from y", &section.from.y},
                                         {textOf("to x"), "##section to x", &section.to.x},
                                         {textOf("to y"), "##section to y", &section.to.y}})
-    (void)field(name, "The ends of the section in the scan's own coordinates.",
+    (void)field(name, "The ends of the section in the scan's own coordinates. Their discs in the picture can be dragged.",
                 [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
   (void)field(
       "mean across",

@@ -8,6 +8,9 @@
 namespace fettle::app {
 namespace {
 
+// Of the panels' height: a panel that begins above it shows what one came for.
+constexpr float kInSight = 0.5F;
+
 // A section of the panels that can be collapsed; its state is stored in the settings. Names of fields are its own: a text field and
 // a list of one name in two sections would be one item, which ends the program when the field is typed into.
 template <class Panel>
@@ -15,7 +18,9 @@ void section(Parts& parts, const char* name, bool open_at_first, const Panel& pa
   Settings& settings = parts.settings;
   const auto known = settings.panels.find(name);
   if (parts.enter_panel == name) {
-    ImGui::SetScrollHereY(0.0F);
+    // A panel in sight stays where the hand is.
+    const float below = ImGui::GetCursorScreenPos().y - ImGui::GetWindowPos().y;
+    if (below < 0.0F || below > kInSight * ImGui::GetWindowHeight()) ImGui::SetScrollHereY(0.0F);
     parts.enter_panel.clear();
   }
   // In each frame: an action opens a panel by its setting, too.
