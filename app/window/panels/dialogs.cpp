@@ -199,7 +199,7 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
       "  left button              the stylus, while a tool is on; the wheel then sets how deep it presses\n"
       "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
       "  Alt + left button        turn the view\n"
-      "  Ctrl + Shift + left      drag an edge line; a click chooses one where no tool is on"));
+      "  Ctrl + Shift + left      drag an edge line or a section; a click chooses one where no tool is on"));
   return left ? std::optional(Choice::kBack) : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
+#include "app/window/panels/slider.h"
 #include "render/plan/material.h"
 
 namespace fettle::app {
@@ -14,10 +15,7 @@ namespace {
 // A share of 0 to 1; 0 reads "off".
 void shareSlider(const char* label, const char* id, double& share, const char* tip) {
   auto value = static_cast<float>(share);
-  if (field(label, tip, [&] {
-        return ImGui::SliderFloat(id, &value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : tr("off"),
-                                  ImGuiSliderFlags_AlwaysClamp);
-      }))
+  if (field(label, tip, [&] { return slider(id, value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : tr("off")); }))
     share = static_cast<double>(value);
 }
 
@@ -82,9 +80,9 @@ void penFields(PenUse& pen) {
   ImGui::BeginDisabled(!pen.presses);
   auto firmness = static_cast<float>(pen.firmness);
   if (field("", "Above 1 the hand has to press more for the same depth, below 1 less.", [&] {
-        return ImGui::SliderFloat("##firmness", &firmness, static_cast<float>(PenUse::kSoftest),
-                                  static_cast<float>(PenUse::kFirmest), trPrintf("firmness %.2f"),
-                                  ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+        return slider("##firmness", firmness, static_cast<float>(PenUse::kSoftest),
+                      static_cast<float>(PenUse::kFirmest), trPrintf("firmness %.2f"),
+                      ImGuiSliderFlags_Logarithmic);
       }))
     pen.firmness = std::round(100.0 * static_cast<double>(firmness)) / 100.0;
   ImGui::EndDisabled();
@@ -133,37 +131,29 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
               return chooseWord("##eyes", mode, {"one eye", "two, side by side", "two, red-cyan glasses"});
             }))
     display.stereo = static_cast<render::StereoMode>(mode);
-  constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
   (void)field("marks", "How strongly marked samples are tinted; 0 leaves the colours of the values.", [&] {
-    return ImGui::SliderFloat("##opacity", &display.marks_opacity, 0.0F, 1.0F, trPrintf("opacity %.2f"),
-                              kClamp);
+    return slider("##opacity", display.marks_opacity, 0.0F, 1.0F, trPrintf("opacity %.2f"));
   });
   (void)field(
       "light from",
       "Where the light comes from, counted from the picture's right over its top. A material has light of "
       "its own.",
-      [&] {
-        return ImGui::SliderFloat("##azimuth", &display.light_azimuth_deg, 0.0F, 360.0F, trPrintf("%.0f deg"),
-                                  kClamp);
-      });
-  (void)field("light above",
-              "How high the light stands: low light shows faint slopes. A material has light of its own.",
-              [&] {
-                return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F,
-                                          trPrintf("%.0f deg"), kClamp);
-              });
+      [&] { return slider("##azimuth", display.light_azimuth_deg, 0.0F, 360.0F, trPrintf("%.0f deg")); });
+  (void)field(
+      "light above",
+      "How high the light stands: low light shows faint slopes. A material has light of its own.",
+      [&] { return slider("##elevation", display.light_elevation_deg, 5.0F, 90.0F, trPrintf("%.0f deg")); });
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
   shareSlider("hollows", "##cavity", display.form.cavity,
               "How much darker hollows and how much brighter ridges are at most.");
   materialFields(display.form);
   ImGui::BeginDisabled(display.stereo == render::StereoMode::kOff);
-  (void)field("depth",
-              "Between the eyes, as a share of their distance from the field: more depth, harder to fuse.",
-              [&] {
-                return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F,
-                                          trPrintf("eyes %.3f apart"), kClamp);
-              });
+  (void)field(
+      "depth", "Between the eyes, as a share of their distance from the field: more depth, harder to fuse.",
+      [&] {
+        return slider("##eye_separation", display.eye_separation, 0.005F, 0.1F, trPrintf("eyes %.3f apart"));
+      });
   ImGui::EndDisabled();
   (void)field("heights",
               "Factor on heights in the picture, never on the numbers; 0 chooses one that makes the relief "

@@ -3,6 +3,7 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/slider.h"
 
 namespace fettle::app {
 
@@ -17,27 +18,21 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   if (field("scale",
             "Over how many samples an edge may rise: larger scales see through noise and lose fine edges.",
             [&] {
-              return ImGui::SliderFloat("##scale", &sigma, static_cast<float>(EdgeResponse::kSmallestSigma),
-                                        static_cast<float>(EdgeResponse::kLargestSigma),
-                                        trPrintf("%.2f samples"),
-                                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+              return slider("##scale", sigma, static_cast<float>(EdgeResponse::kSmallestSigma),
+                            static_cast<float>(EdgeResponse::kLargestSigma), trPrintf("%.2f samples"),
+                            ImGuiSliderFlags_Logarithmic);
             }))
     edges.sigma = static_cast<double>(sigma);
   const bool scale_done = ImGui::IsItemDeactivatedAfterEdit();
   auto sensitivity = static_cast<float>(edges.choice.sensitivity);
-  if (field("sensitivity", "How faint an edge may be that is still suggested: 1 suggests most.", [&] {
-        return ImGui::SliderFloat("##sensitivity", &sensitivity, 0.0F, 1.0F, "%.2f",
-                                  ImGuiSliderFlags_AlwaysClamp);
-      })) {
+  if (field("sensitivity", "How faint an edge may be that is still suggested: 1 suggests most.",
+            [&] { return slider("##sensitivity", sensitivity, 0.0F, 1.0F, "%.2f"); })) {
     edges.choice.sensitivity = static_cast<double>(sensitivity);
     edges.redraw(context.client);
   }
   auto thickness = static_cast<float>(edges.choice.thickness);
   if (field("thickness", "How wide the marks along an edge become; within them heights stay as they are.",
-            [&] {
-              return ImGui::SliderFloat("##thickness", &thickness, 0.0F, 16.0F, trPrintf("%.1f samples"),
-                                        ImGuiSliderFlags_AlwaysClamp);
-            })) {
+            [&] { return slider("##thickness", thickness, 0.0F, 16.0F, trPrintf("%.1f samples")); })) {
     edges.choice.thickness = static_cast<double>(thickness);
     edges.redraw(context.client);
   }

@@ -7,6 +7,7 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/slider.h"
 
 namespace fettle::app {
 namespace {
@@ -166,8 +167,7 @@ void soundControls(LoopClient& client, Loudness& loudness) {
   beginFields();
   constexpr const char* kSays = textOf("How loud the surface is; kept for the next start.");
   fieldName("volume", kSays);
-  if (ImGui::SliderInt("##volume", &percent, 0, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp))
-    loudness.volume = 0.01F * static_cast<float>(percent);
+  if (slider("##volume", percent, 0, 100, "%d %%")) loudness.volume = 0.01F * static_cast<float>(percent);
   explain(kSays);
   endFields();
   tickBox("mute", loudness.muted, "Silent without changing the scene or the volume.");

@@ -6,6 +6,7 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/slider.h"
 
 namespace fettle::app {
 
@@ -78,9 +79,8 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   beginFields();
   fieldName("hand off by", kHand);
   auto hand = static_cast<float>(lines.options.hand_deviation);
-  if (ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
-                         static_cast<float>(engine::LocateOptions::kMostHand), trPrintf("%.2f samples"),
-                         ImGuiSliderFlags_AlwaysClamp))
+  if (slider("##hand", hand, static_cast<float>(engine::LocateOptions::kLeastHand),
+             static_cast<float>(engine::LocateOptions::kMostHand), trPrintf("%.2f samples")))
     lines.options.hand_deviation = static_cast<double>(hand);
   explain(kHand);
   endFields();

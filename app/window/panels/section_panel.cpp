@@ -226,8 +226,10 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
                                         {textOf("from y"), "##section from y", &section.from.y},
                                         {textOf("to x"), "##section to x", &section.to.x},
                                         {textOf("to y"), "##section to y", &section.to.y}})
-    (void)field(name, "The ends of the section in the scan's own coordinates. Their discs in the picture can be dragged.",
-                [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
+    (void)field(
+        name,
+        "The ends of the section in the scan's own coordinates. Their discs in the picture can be dragged.",
+        [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
   (void)field(
       "mean across",
       "Heights within this width across the line are averaged: a wide one has less noise. 0: the line alone.",

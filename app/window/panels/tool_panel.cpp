@@ -7,6 +7,7 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/slider.h"
 #include "app/window/scene_edits.h"
 
 namespace fettle::app {
@@ -100,9 +101,8 @@ void spacingField(const PanelContext& context) {
       "moved by "
       "so many radii of the brush.");
   const bool changed = field("spacing", kSays, [&] {
-    return ImGui::SliderFloat("##spacing", &spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
-                              spacing > 0.0F ? trPrintf("%.2f radii") : tr("all the time"),
-                              ImGuiSliderFlags_AlwaysClamp);
+    return slider("##spacing", spacing, 0.0F, static_cast<float>(haptic::kMaxBrushSpacing),
+                  spacing > 0.0F ? trPrintf("%.2f radii") : tr("all the time"));
   });
   if (!changed) return;
   scene.brush_spacing = std::round(100.0 * static_cast<double>(spacing)) / 100.0;
@@ -132,8 +132,8 @@ void brushFields(const PanelContext& context) {
   beginFields();
   auto radius = static_cast<float>(samples);
   if (field("radius", "How far the brush reaches around the tip; [ and ] change it, too.", [&] {
-        return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
-                                  trPrintf("%.0f samples"), ImGuiSliderFlags_AlwaysClamp);
+        return slider("##radius", radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
+                      trPrintf("%.0f samples"));
       }))
     setBrushRadius(client, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
@@ -151,10 +151,7 @@ void brushFields(const PanelContext& context) {
     auto depth = static_cast<float>(client.mouse()->pressMm() / cell);
     if (field("depth",
               "How far below the surface the mouse presses the tip; the wheel changes it while it presses.",
-              [&] {
-                return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, trPrintf("%.2f cells"),
-                                          ImGuiSliderFlags_AlwaysClamp);
-              }))
+              [&] { return slider("##depth", depth, 0.0F, 4.0F, trPrintf("%.2f cells")); }))
       setPressDepth(client, static_cast<double>(depth) * cell);
   }
   haptic::Scene scene = client.scene();

@@ -148,6 +148,9 @@ TEST_F(HandTools, falloff_spacing_and_shift_are_kept_to_the_bit) {
   program->until("a falloff", [](const State& s) { return s["falloff"] == "smooth"; });
   const State spaced = user.click("all the time");  // the middle of the slider
   EXPECT_GT(spaced["spacing"], 0.5);
+  // A double click types into a slider.
+  EXPECT_EQ(user.enter("radius", "7")["brush"], 7.0);
+  EXPECT_EQ(user.enter("radius", "9")["brush"], 9.0);
   (void)user.look("the brush's panel");
   EXPECT_EQ(user.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
 
