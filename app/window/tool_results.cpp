@@ -16,7 +16,12 @@ void noteHeights(Parts& p) {
   // Limits of other heights mean nothing in these.
   p.heights.remove = {.heights = engine::RemoveOptions::Heights::kOutside, .low = heights.low};
   p.colours.clear(p.settings.display);
-  p.units = render::fieldUnits(original.grid(), heights.low, heights.high);
+  const engine::Grid& grid = original.grid();
+  p.units = render::fieldUnits(grid, heights.low, heights.high);
+  const auto asRead = [](const render::ShownUnit& shown, const engine::LengthUnit& unit) {
+    return ReadAs{shown.name, unit.mm / shown.per_unit};
+  };
+  p.section.writeIn({asRead(p.units.length, grid.lateral_unit), asRead(p.units.height, grid.height_unit)});
   if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
 }
 
@@ -76,8 +81,8 @@ std::optional<std::string> ToolResults::take(Parts& p) {
   if (auto kept = p.section.takeKept()) p.document.keepSections(*std::move(kept));
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   // Under a hand that presses, and behind a question, the view stays where it is.
-  const bool busy_hand =
-      p.held() || p.line_drag.active() || p.section_drag.active() || p.brush.active() || p.feedback.questions.pending();
+  const bool busy_hand = p.held() || p.line_drag.active() || p.section_drag.active() || p.brush.active() ||
+                         p.feedback.questions.pending();
   if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
     if (const auto framing = p.picture.framing())
       p.flyTo(viewOfPlace(p.viewToCome(), *framing, client.field().reader(),

@@ -9,6 +9,7 @@ namespace fettle::app {
 struct ReadAs {
   std::string name;
   double size = 1.0;
+  friend bool operator==(const ReadAs&, const ReadAs&) = default;
 };
 
 /// The unit for lengths up to `length`, kept in a unit of `unit_mm` millimetres called `unit`: of metric ones m, mm, um or

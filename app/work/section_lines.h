@@ -11,6 +11,7 @@ namespace fettle::app {
 /// In which unit figures of a section are written: lengths along the line, and heights.
 struct SectionUnits {
   ReadAs along{"mm", 1.0}, height{"mm", 1.0};
+  friend bool operator==(const SectionUnits&, const SectionUnits&) = default;
 };
 /// In which lengths up to `longest_mm` and heights that span `span_mm` read at ease.
 [[nodiscard]] SectionUnits sectionUnits(double longest_mm, double span_mm);

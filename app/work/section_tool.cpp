@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "app/work/section_noise.h"
 
@@ -16,14 +15,6 @@ double firstCutoff(double length_mm) {
   for (const double cutoff : kSeries_mm)
     if (6.0 * cutoff <= length_mm) return cutoff;
   return length_mm / 6.0;
-}
-
-void addSpanOf(const engine::Section& section, double& low, double& high) {
-  for (const double z : section.height)
-    if (!std::isnan(z)) {
-      low = std::min(low, z);
-      high = std::max(high, z);
-    }
 }
 
 // Each figure, or why there is none.
@@ -76,6 +67,12 @@ void SectionTool::set(const KeptSection& section) {
     lineChanged();
   else
     figures_due_ = profiles_.has_value();
+}
+
+void SectionTool::writeIn(const SectionUnits& units) {
+  if (units == units_) return;
+  units_ = units;
+  figures_due_ = profiles_.has_value();
 }
 
 void SectionTool::lineChanged() {
@@ -175,19 +172,15 @@ void SectionTool::start(const LoopClient& client) {
 
 void SectionTool::startFigures() {
   figures_due_ = false;
-  measuring_.replace(
-      [profiles = *profiles_, wants = wantsOf(*section())](engine::JobControl&) -> engine::Result<Figures> {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        addSpanOf(profiles.now, low, high);
-        addSpanOf(profiles.before, low, high);
-        const SectionUnits units = sectionUnits(profiles.now.lengthMm(), low < high ? high - low : 0.0);
-        Figures figures;
-        Report unused;
-        figures.now = linesOf(wants, profiles.now, profiles.noise, units, figures.report);
-        if (profiles.before.size() > 0)
-          figures.before = linesOf(wants, profiles.before, profiles.noise, units, unused);
-        return figures;
-      });
+  measuring_.replace([profiles = *profiles_, wants = wantsOf(*section()),
+                      units = units_](engine::JobControl&) -> engine::Result<Figures> {
+    Figures figures;
+    Report unused;
+    figures.now = linesOf(wants, profiles.now, profiles.noise, units, figures.report);
+    if (profiles.before.size() > 0)
+      figures.before = linesOf(wants, profiles.before, profiles.noise, units, unused);
+    return figures;
+  });
 }
 
 bool SectionTool::poll(const LoopClient& client, std::vector<Notice>& notices) {

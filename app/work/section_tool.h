@@ -79,6 +79,9 @@ class SectionTool {
   /// Differs whenever a line does, or the choice.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
+  /// Figures are written in these units from now on.
+  void writeIn(const SectionUnits& units);
+
   /// Moves the nearest cursor of the chosen section to a length along it.
   void moveCursor(double along_mm);
 
@@ -98,6 +101,7 @@ class SectionTool {
   bool due_ = false, figures_due_ = false;
   engine::Version taken_;  // that the profiles are of, or that is being worked on
   std::optional<Profiles> profiles_;
+  SectionUnits units_;
   Figures figures_;
   engine::Version noise_of_;
   std::optional<engine::SectionNoise> noise_;  // of noise_of_

@@ -6,7 +6,6 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
-#include "app/work/read_units.h"
 
 namespace fettle::app {
 namespace {
@@ -141,7 +140,7 @@ void previewSoFar(const FilterPreview& filters) {
                           so_far.step, so_far.step));
 }
 
-void previewList(bool anything_marked, FilterPreview& filters) {
+void previewList(bool anything_marked, const render::ShownUnit& change, FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -152,12 +151,10 @@ void previewList(bool anything_marked, FilterPreview& filters) {
     // Broken here, or a narrow panel would break a number at its point.
     const bool nothing_marked =
         v.spec.scope == engine::FilterScope::kOnlyMarks && v.result.report.changed == 0 && !anything_marked;
-    const engine::LengthUnit& unit = v.base.grid().height_unit;
-    const ReadAs as = readOnScreenAs(v.result.report.max_change, unit.mm, unit.name);
     const std::string came =
         nothing_marked ? tr("nothing is marked: with \"only marks\" nothing changes")
                        : trFormat("{} change, by up to {:.3g} {}", v.result.report.changed,
-                                  v.result.report.max_change / as.size, as.name) +
+                                  v.result.report.max_change * change.per_unit, change.name) +
                              (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
                                   ? ";\n" + std::string(tr("the limit counts from the scan as it was opened"))
                                   : std::string());
@@ -197,7 +194,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   previewSoFar(filters);
   if (filters.variants().empty() && !isRunning(filters))
     writeIn(render::PanelColour::kMuted, "A preview says here what it changes.");
-  previewList(context.client.field().reader().root().marked_children != 0, filters);
+  previewList(context.client.field().reader().root().marked_children != 0, context.units.change, filters);
   endPlace();
 }
 

@@ -118,12 +118,17 @@ TEST_F(WindowTest, a_scan_without_units_is_cleaned_and_exported_in_some_forty_ac
     EXPECT_TRUE(program->now()["filter"].get<std::string>().starts_with(filter));
   };
   choose("Outliers");
-  EXPECT_GT(click("Preview")["variants"].size(), 0U);
+  // By its key: the panel of holes, which came into sight, has a button of that name, too.
+  const auto preview = [&] {
+    ++actions;
+    return user.key("p");
+  };
+  EXPECT_GT(preview()["variants"].size(), 0U);
   (void)user.look("outliers");
   EXPECT_EQ(click("Apply")["steps"], 2);
   choose("Median");
   enter("window", "5");
-  click("Preview");
+  (void)preview();
   (void)user.look("median");
   EXPECT_EQ(click("Apply")["steps"], 3);
   (void)user.look("clean");
