@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,14 +20,19 @@
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
+#include "app/work/read_units.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
+#include "engine/field/seen_field.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise_model.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/measure/form_kind.h"
+#include "engine/measure/form_onto.h"
 #include "engine/measure/moved_onto.h"
 #include "engine/nominal/nominal_surface.h"
+#include "engine/transform/form_along.h"
 
 namespace fettle::app {
 
@@ -85,11 +92,32 @@ engine::Status warnOfRemainder(const engine::Alignment& alignment, const engine:
   return {};
 }
 
+// Where the form over B is left, and where it is not quite that of B.
+void warnOfForm(const engine::NominalForm& form, const std::optional<engine::FormOnto>& along,
+                const engine::Version& moved, const std::string& b) {
+  const std::string_view word = engine::infoOf(form).word;
+  if (!along)
+    return warn(fmt::format(
+        "{}: the form {} that lies over it has no place over the samples of A: OUT has the heights with it",
+        shownInput(b), word));
+  // What rounding to float makes of heights anyway.
+  const engine::FieldSummary heights = engine::summarize(moved);
+  const double rounding =
+      0x1p-24 * std::max(std::abs(heights.min), std::abs(heights.max)) * moved.grid().height_unit.mm;
+  if (!(along->off_mm > rounding)) return;
+  const ReadAs off = readLengthAs(along->off_mm, 1.0, "mm");
+  warn(fmt::format("{}: tilted, the form {} that lies over it is one of its degree only to {:.2g} {}",
+                   shownInput(b), word, along->off_mm / off.size, off.name));
+}
+
 engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::Imported& read,
                                     engine::JobControl& job) {
   const engine::Version& a = read.field;
-  const auto b = loadSamples(options.b, options.reading, job);
+  auto b = options.out.empty() ? loadSamples(options.b, options.reading, job)
+                               : loadScan(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
+  const engine::FieldForm form = engine::formOfHeights(b->field);
+  if (auto status = takeSamples(*b, job); !status) return tl::unexpected(status.error());
   auto foreseen = foreseeAlign(
       options, a, plannedAlignment(a, b->field, options.how),
       [&](const engine::SampleRect& r, engine::JobControl& own) {
@@ -110,13 +138,20 @@ engine::Result<PlacedB> alignedScan(const AlignCommand& options, const engine::I
   if (options.out.empty()) return placed;
   auto moved = engine::movedOnto(b->field, alignment->motion, a.grid(), job);
   if (!moved) return tl::unexpected(moved.error());
-  placed.moved = *std::move(moved);
+  const auto along =
+      form == nullptr ? std::nullopt : engine::formOnto(*form, b->field.grid(), alignment->motion, a.grid());
+  if (form != nullptr) warnOfForm(*form, along, *moved, options.b);
+  auto seen = engine::seenUnder(*moved, along ? std::optional(along->form) : std::nullopt, job);
+  if (!seen) return tl::unexpected(seen.error());
+  placed.moved = *std::move(seen);
   if (!filled) return placed;
   const auto measured = engine::withoutFilled(b->field, *b->original, job);
   if (!measured) return tl::unexpected(measured.error());
   auto known = engine::movedOnto(*measured, alignment->motion, a.grid(), job);
   if (!known) return tl::unexpected(known.error());
-  placed.measured = *std::move(known);
+  auto known_seen = engine::seenUnder(*known, along ? std::optional(along->form) : std::nullopt, job);
+  if (!known_seen) return tl::unexpected(known_seen.error());
+  placed.measured = *std::move(known_seen);
   return placed;
 }
 
@@ -238,7 +273,9 @@ void addAlign(Command root, Chosen& chosen) {
       "fewer "
       "than half. A motion that the surface does not decide, as a shift along a cylinder, is refused by its "
       "name. "
-      "Heights of B between its samples are bilinear; compare both through one filter where that matters.\n"
+      "Heights of B between its samples are bilinear; compare both through one filter where that matters. "
+      "Both are compared with the forms that lie over them; that of B is moved with it and lies over OUT, a "
+      "session.\n"
       "Of a mesh B the matrix takes millimetres from its least x and y; OUT has the heights of its topmost "
       "surface.");
   command.examples(

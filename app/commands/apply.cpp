@@ -195,15 +195,11 @@ engine::Status take(const RecipeRemove& step, Applied& at, engine::JobControl& j
 
 engine::Status take(const RecipeTransform& step, Applied& at, engine::JobControl& job) {
   const bool shared = at.original == at.field;
-  // Of a field under a form the samples are moved, as by fettle transform.
-  const auto samples = engine::restored(at.field, job);
-  if (!samples) return tl::unexpected(samples.error());
-  auto field = transformed(*samples, step.what, job);
+  auto field = transformed(at.field, step.what, job);
   if (!field) return tl::unexpected(field.error());
   // What changes are limited from goes along.
-  const auto measured = shared ? samples : engine::restored(at.original, job);
-  if (!measured) return tl::unexpected(measured.error());
-  auto original = shared ? field : transformed(*measured, step.what, job);
+  warnOfFormLeft(at.field, field->field, at.task.in);
+  auto original = shared ? field : transformed(at.original, step.what, job);
   if (!original) return tl::unexpected(original.error());
   at.field = std::move(field->field);
   at.original = std::move(original->field);

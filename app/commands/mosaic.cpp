@@ -21,10 +21,12 @@
 #include "app/terminal.h"
 #include "app/work/estimate_text.h"
 #include "app/work/memory_places.h"
+#include "app/work/mosaic_form.h"
 #include "app/work/outputs.h"
 #include "app/work/read_units.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
+#include "engine/field/seen_field.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/mosaic/blended.h"
@@ -199,9 +201,13 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
   if (auto status = checkCompress(options.writing, {{options.files.front(), out, options.to}}); !status)
     return tl::unexpected(status.error());
   std::vector<engine::Version> scans;
+  std::vector<engine::FieldForm> forms;
+  forms.reserve(options.scans().size());
   for (const std::string& path : options.scans()) {
-    auto scan = loadSamples(path, options.reading, job);
+    auto scan = loadScan(path, options.reading, job);
     if (!scan) return tl::unexpected(scan.error());
+    forms.push_back(engine::formOfHeights(scan->field));
+    if (auto status = takeSamples(*scan, job); !status) return tl::unexpected(status.error());
     if (scan->field.lines() != nullptr)
       warn(fmt::format("{}: its edge lines do not go along", shownInput(path)));
     if (const std::int64_t filled = scan->original ? engine::countFilled(scan->field, *scan->original) : 0;
@@ -241,9 +247,12 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
           "the pairs agree only to {:.2g} of their standard errors: some of the scans lie elsewhere; state "
           "their places with --layout",
           misfit));
+  const auto formed = underCommonForm(*joined, scans, forms, how.names, job);
+  if (!formed) return tl::unexpected(formed.error());
+  if (!formed->left_out.empty()) warn(formed->left_out);
   engine::ExportOptions writing = options.writing;
-  writing.original = joined->field;
-  if (auto status = saveField(joined->field, out, job, writing, options.to); !status)
+  writing.original = formed->field;
+  if (auto status = saveField(formed->field, out, job, writing, options.to); !status)
     return tl::unexpected(status.error());
 
   Report report{{"width", joined->field.grid().width},
@@ -365,7 +374,9 @@ void addMosaic(Command root, Chosen& chosen) {
       "to those from "
       "the first's. The result has the first scan's samples and continues them; heights of the others are "
       "bilinear "
-      "between theirs. Holes of one scan are filled by the others. Marks go along, edge lines do not.");
+      "between theirs. Holes of one scan are filled by the others. Marks go along, edge lines do not. Where "
+      "a form lies over every scan and all are one form, within the noise of the first scan, it lies over "
+      "the result, a session.");
   command.examples(
       {{"fettle mosaic west.tif east.tif both.tif", "Two scans, by the places that the files state"},
        {"fettle mosaic west.tif east.tif both.tif --layout 2x1 --overlap 40 --blend mean",

@@ -108,13 +108,18 @@ engine::Result<engine::Imported> loadSamples(const std::string& path, const Scan
   auto imported = loadScan(path, options, job);
   if (!imported || imported->field.seenOf() == nullptr) return imported;
   warn(fmt::format("{}: its heights are taken with the form that lies over it", shownInput(path)));
-  for (engine::Version* version : {&imported->field, imported->original ? &*imported->original : nullptr}) {
+  if (auto status = takeSamples(*imported, job); !status) return tl::unexpected(status.error());
+  return imported;
+}
+
+engine::Status takeSamples(engine::Imported& imported, engine::JobControl& job) {
+  for (engine::Version* version : {&imported.field, imported.original ? &*imported.original : nullptr}) {
     if (version == nullptr) continue;
     auto samples = engine::withoutLayer(*version, job);
     if (!samples) return tl::unexpected(samples.error());
     *version = *std::move(samples);
   }
-  return imported;
+  return {};
 }
 
 engine::Result<engine::Version> withMarks(const engine::Version& field, const std::string& picture,

@@ -25,6 +25,9 @@ namespace fettle::app {
                                                            const ScanOptions& options,
                                                            engine::JobControl& job);
 
+/// Field and original of what was loaded without any form over them; nothing is done where none lies over them.
+[[nodiscard]] engine::Status takeSamples(engine::Imported& imported, engine::JobControl& job);
+
 /// A field with the marks of a picture; without a picture, empty, the field itself. "-" is standard input, read once
 /// for all scans of a command.
 [[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,

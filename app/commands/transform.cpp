@@ -53,7 +53,7 @@ engine::Result<Foreseen> foreseeTransform(const TransformRun& options, const Bat
 
 engine::Result<Report> transformOne(const TransformRun& options, const BatchTask& task,
                                     engine::JobControl& job) {
-  const auto imported = loadSamples(task.in, options.reading, job);
+  const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   engine::Result<Foreseen> foreseen;
   if (memoryPlace(task.out) == nullptr) foreseen = foreseeTransform(options, task, *imported, job);
@@ -61,6 +61,7 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
   if (foreseen->only) return *std::move(foreseen->only);
   const auto result = transformed(imported->field, options.what, job);
   if (!result) return tl::unexpected(result.error());
+  warnOfFormLeft(imported->field, result->field, task.in);
   engine::ExportOptions writing = options.writing;
   auto known = KnownSteps::of(*imported, task, job);
   if (!known) return tl::unexpected(known.error());
@@ -180,7 +181,8 @@ void addTransform(Command root, Chosen& chosen) {
       "Steps are done in the order of this list. Where samples get farther apart by a factor s, every kernel "
       "is "
       "s times as wide, so that what is finer than the new spacing is averaged.\n"
-      "Marks, edge lines, and of a session the scan that it began with go along. A new sample is a hole "
+      "Marks, edge lines, the form that lies over a session and the scan that it began with go along. A new "
+      "sample is a hole "
       "where the "
       "old one nearest to it is; elsewhere holes do not count, and cubic becomes linear beside them. It is "
       "marked "

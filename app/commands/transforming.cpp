@@ -8,10 +8,13 @@
 #include <fmt/format.h>
 
 #include "app/commands/typed_values.h"
+#include "app/terminal.h"
+#include "app/work/streams.h"
 #include "engine/field/grid.h"
 #include "engine/field/piece.h"
 #include "engine/field/sample_rect.h"
 #include "engine/marks/chosen_marks.h"
+#include "engine/measure/form_kind.h"
 #include "engine/transform/rearrange.h"
 
 namespace fettle::app {
@@ -126,6 +129,13 @@ engine::Result<Transformed> transformed(const engine::Version& field, const Tran
     return Transformed{*std::move(result), resampling->method};
   }
   return Transformed{std::move(now), std::nullopt};
+}
+
+void warnOfFormLeft(const engine::Version& field, const engine::Version& made, const std::string& scan) {
+  if (field.formOver() == nullptr || made.formOver() != nullptr) return;
+  warn(fmt::format(
+      "{}: the form {} that lies over it has no place over the new samples: they have their heights with it",
+      shownInput(scan), engine::infoOf(*field.formOver()).word));
 }
 
 engine::Result<engine::Grid> transformedGrid(const engine::Grid& grid, const TransformArguments& options) {

@@ -35,11 +35,14 @@ struct Transformed {
   std::optional<engine::Resampling> method;  ///< where samples came between others
 };
 
-/// Errors (kInput): a rectangle without a sample, a spacing that is no length above 0, more than two; those of
+/// Of a field that is seen under a form what is seen of it at its new places (engine/transform). Errors (kInput): a rectangle without a sample, a spacing that is no length above 0, more than two; those of
 /// engine::resampled.
 [[nodiscard]] engine::Result<Transformed> transformed(const engine::Version& field,
                                                       const TransformArguments& options,
                                                       engine::JobControl& job);
+
+/// Says on standard error that a form lay over a field, and none over what was made of it.
+void warnOfFormLeft(const engine::Version& field, const engine::Version& made, const std::string& scan);
 
 /// Size and spacing of what becomes of a field with this grid. Errors: as transformed.
 [[nodiscard]] engine::Result<engine::Grid> transformedGrid(const engine::Grid& grid,

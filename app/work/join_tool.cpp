@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/work/mosaic_form.h"
 #include "app/work/read_units.h"
 #include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
@@ -52,7 +53,9 @@ void JoinTool::write(const LoopClient& client, std::string path) {
   working_.start([field = client.newest(), others = scans_, what = options,
                   path = std::move(path)](engine::JobControl& job) -> engine::Result<Work> {
     if (others.empty()) return engine::inputError("there is no other scan to join", "", "add one");
-    // Without a form over them: each was taken out of its scan alone.
+    std::vector<engine::FieldForm> forms;
+    forms.reserve(others.size() + 1);
+    forms.push_back(engine::formOfHeights(field));
     auto own = engine::withoutLayer(field, job);
     if (!own) return tl::unexpected(own.error());
     std::vector<engine::Version> scans{*std::move(own)};
@@ -62,6 +65,7 @@ void JoinTool::write(const LoopClient& client, std::string path) {
       if (!import) return tl::unexpected(import.error());
       const auto read = engine::importField(other.path, *import, job);
       if (!read) return tl::unexpected(read.error());
+      forms.push_back(engine::formOfHeights(read->field));
       auto samples = engine::withoutLayer(read->field, job);
       if (!samples) return tl::unexpected(samples.error());
       scans.push_back(*std::move(samples));
@@ -72,13 +76,15 @@ void JoinTool::write(const LoopClient& client, std::string path) {
     how->names = std::move(names);
     const auto joined = engine::joinScans(scans, *how, job);
     if (!joined) return tl::unexpected(joined.error());
+    const auto formed = underCommonForm(*joined, scans, forms, how->names, job);
+    if (!formed) return tl::unexpected(formed.error());
     engine::ExportOptions writing;
-    writing.original = joined->field;
+    writing.original = formed->field;
     writing.recipe = writing.steps =
         "recipe = 1\n# Left out: what made the scan of step 0: the window joined scans\n";
-    if (auto done = engine::exportField(joined->field, path, writing, job); !done)
+    if (auto done = engine::exportField(formed->field, path, writing, job); !done)
       return tl::unexpected(done.error());
-    return Work{path, outcomeOf(*joined, scans.size())};
+    return Work{path, outcomeOf(*joined, scans.size()), formed->left_out};
   });
 }
 
@@ -88,6 +94,7 @@ std::optional<std::string> JoinTool::poll(std::vector<Notice>& notices) {
   if (!done || dropped) return std::nullopt;
   if (*done) {
     notices.push_back({(*done)->outcome, ""});
+    if (!(*done)->left_out.empty()) notices.push_back({(*done)->left_out, ""});
     return std::move((*done)->path);
   }
   if (done->error().kind != engine::ErrorKind::kCancelled) notices.push_back(noticeOf(done->error()));

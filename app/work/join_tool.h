@@ -54,6 +54,7 @@ class JoinTool {
   struct Work {
     std::string path;
     std::string outcome;
+    std::string left_out;  // why no form lies over it; empty: nothing is to be said
   };
   std::vector<Scan> scans_;
   Background<Work> working_;

@@ -49,12 +49,14 @@ void TransformTool::write(const LoopClient& client, const engine::SampleRect& se
       return engine::inputError("nothing is to be done", "", "choose a crop, a turn or a spacing");
     if (what.crop && (seen.columns <= 0 || seen.rows <= 0))
       return engine::inputError("nothing of the field is visible", "", "move the view to it");
-    // Without a form over it: that has the place of the samples before.
-    const auto samples = engine::withoutLayer(field, job);
-    if (!samples) return tl::unexpected(samples.error());
-    const auto made = transformedBy(*samples, what, seen, job);
+    const auto made = transformedBy(field, what, seen, job);
     if (!made) return tl::unexpected(made.error());
-    auto original = transformedBy(scan, what, seen, job);
+    // What the session begins with lies under the same form.
+    const engine::FieldForm& form = field.formOver();
+    const auto first = form == nullptr ? engine::Result<engine::Version>(scan)
+                                       : engine::seenNear(scan.withForm(form), field, job);
+    if (!first) return tl::unexpected(first.error());
+    auto original = transformedBy(*first, what, seen, job);
     if (!original) return tl::unexpected(original.error());
     engine::ExportOptions writing;
     writing.original = *std::move(original);

@@ -291,6 +291,12 @@ Result<Version> sharingEqualTiles(const Version& version, const Version& with) {
   return withTiles(version, places, tiles, version);
 }
 
+FieldForm formOfHeights(const Version& field) {
+  const FieldForm& form = field.formOver();
+  if (form == nullptr || field.reader().sign() > 0.0F) return form;
+  return std::make_shared<const NominalForm>(form->inverted());
+}
+
 Result<Version> withoutLayer(const Version& field, JobControl& job) {
   auto samples = restored(field, job);
   if (!samples || samples->form() == nullptr) return samples;

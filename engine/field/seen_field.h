@@ -83,6 +83,10 @@ class StoredStates {
 /// the tiles that the two do not share. Errors: kFailed without memory. Thread: any.
 [[nodiscard]] Result<Version> sharingEqualTiles(const Version& version, const Version& with);
 
+/// The form under which a field is stored, upside down where the field is: that of the heights which its reader() gives.
+/// Null without a form. Throws std::bad_alloc.
+[[nodiscard]] FieldForm formOfHeights(const Version& field);
+
 /// restored() without any form over it: the samples as they are.
 [[nodiscard]] Result<Version> withoutLayer(const Version& field, JobControl& job);
 

@@ -14,6 +14,19 @@ constexpr double kMostRise = 16.0;  // [diagonals of the field]
 constexpr double kLeastAcross =
     1e-3;  // of a cone, the cosine of the angle between normal and plane across the axis
 
+// m of a shape, and of a cone what its nappe is known by: m n.a.
+struct AlongAxis {
+  double m = 0.0, nappe = 0.0;
+
+  explicit AlongAxis(const ShapeForm& form) noexcept {
+    if (form.shape == FormShape::kCylinder) m = form.curvature;
+    if (form.shape != FormShape::kCone) return;
+    const glm::dvec3 across = glm::cross(form.normal, form.axis);
+    m = form.curvature / glm::dot(across, across);
+    nappe = m * glm::dot(form.normal, form.axis);
+  }
+};
+
 // The equation A z^2 - 2 h z + C = 0 for the height z above the foot at (x, y) from it [mm]: A is `bend`, h grows by
 // slope_x, slope_y, C is quadratic.
 struct Quadric {
@@ -26,13 +39,7 @@ struct Quadric {
     const double k = form.curvature;
     const glm::dvec3& n = form.normal;
     const glm::dvec3& a = form.axis;
-    double m = 0.0, nappe = 0.0;
-    if (form.shape == FormShape::kCylinder) m = k;
-    if (form.shape == FormShape::kCone) {
-      const glm::dvec3 across = glm::cross(n, a);
-      m = k / glm::dot(across, across);
-      nappe = m * glm::dot(n, a);
-    }
+    const auto [m, nappe] = AlongAxis(form);
     bend = k - m * a.z * a.z;
     normal_z = n.z;
     slope_x = m * a.x * a.z;
@@ -91,6 +98,25 @@ void ShapeForm::readHeights(const SampleRect& rect, double* out, std::ptrdiff_t 
 bool ShapeForm::beyondOutline(double at_column, double at_row) const noexcept {
   const Quadric quadric(*this);
   return quadric.at((at_column - column) * spacing_x_mm, (at_row - row) * spacing_y_mm).beyond;
+}
+
+std::optional<ShapeForm> ShapeForm::aboutFootAt(double at_column, double at_row) const noexcept {
+  const Quadric quadric(*this);
+  const double dx = (at_column - column) * spacing_x_mm, dy = (at_row - row) * spacing_y_mm;
+  const Quadric::At there = quadric.at(dx, dy);
+  if (there.beyond || !(std::abs(there.z) < quadric.most)) return std::nullopt;
+  // Half the gradient of the equation at d, which is as long as the normal but on a cone, where k and m grow to the apex.
+  const glm::dvec3 d(dx, dy, there.z);
+  const glm::dvec3 up = normal - curvature * d + AlongAxis(*this).m * glm::dot(axis, d) * axis;
+  const double length = glm::length(up);
+  if (!(up.z >= kLeastUpwards * length && length > 0.0)) return std::nullopt;
+  ShapeForm moved = *this;
+  moved.column = at_column;
+  moved.row = at_row;
+  moved.base = base + there.z / height_mm;
+  moved.normal = up / length;
+  moved.curvature = curvature / length;
+  return moved;
 }
 
 double ShapeForm::radius() const noexcept {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <glm/vec3.hpp>
 
@@ -53,6 +54,9 @@ struct ShapeForm {
   [[nodiscard]] double radius() const noexcept;
   /// Of a cone [rad].
   [[nodiscard]] double halfAngle() const noexcept;
+  /// The same shape about the point of its surface over a place: the same heights, but for rounding and for the bound of 16 diagonals,
+  /// which counts from there. None beyond the outline, and where the normal is no longer upwards by kLeastUpwards.
+  [[nodiscard]] std::optional<ShapeForm> aboutFootAt(double at_column, double at_row) const noexcept;
   /// The form of the field upside down: the heights of this one, negated.
   [[nodiscard]] ShapeForm inverted() const noexcept;
   /// Whether the numbers are such that heights can be computed: lengths of 1, a normal upwards and, of a cylinder, across the

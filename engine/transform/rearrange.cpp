@@ -13,6 +13,8 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/piece.h"
+#include "engine/field/seen_field.h"
+#include "engine/transform/form_along.h"
 
 namespace fettle::engine {
 
@@ -96,11 +98,7 @@ EdgeLines numberedOnce(const EdgeLines& runs) {
   return numbered;
 }
 
-}  // namespace
-
-Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl& job) {
-  assert(!rect.empty() && field.grid().contains(rect.column, rect.row) &&
-         rect.column + rect.columns <= field.grid().width && rect.row + rect.rows <= field.grid().height);
+Result<Version> croppedSamples(const Version& field, const SampleRect& rect, JobControl& job) {
   Grid grid = field.grid();
   grid.width = rect.columns;
   grid.height = rect.rows;
@@ -116,8 +114,7 @@ Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl
   return piece->withLines(numberedOnce(linesOfPiece(*field.lines(), rect)));
 }
 
-Result<Version> turned(const Version& field, const Turning& turning, JobControl& job) {
-  assert(turning.quarters >= 0 && turning.quarters < 4);
+Result<Version> turnedSamples(const Version& field, const Turning& turning, JobControl& job) {
   Grid grid = field.grid();
   const Origin at = originOf(turning, grid.width, grid.height);
   const double middle_x = grid.origin_x + 0.5 * (grid.width - 1) * grid.spacing_x;
@@ -155,6 +152,37 @@ Result<Version> turned(const Version& field, const Turning& turning, JobControl&
       });
   if (!result || field.lines() == nullptr) return result;
   return result->withLines(turnedLines(*field.lines(), at, turning.mirror_x != turning.mirror_y));
+}
+
+// What is seen of the samples under the form, both moved by `move`, which is `places` of it.
+template <class Move>
+Result<Version> movedWithForm(const Version& field, const PlaceMap& places, JobControl& job, Move&& move) {
+  const auto samples = restored(field, job);
+  if (!samples) return samples;
+  const auto moved = move(*samples);
+  if (!moved) return moved;
+  return seenUnder(*moved, formAlong(field, places, moved->grid().width, moved->grid().height), job);
+}
+
+}  // namespace
+
+Result<Version> cropped(const Version& field, const SampleRect& rect, JobControl& job) {
+  assert(!rect.empty() && field.grid().contains(rect.column, rect.row) &&
+         rect.column + rect.columns <= field.grid().width && rect.row + rect.rows <= field.grid().height);
+  if (field.formOver() == nullptr) return croppedSamples(field, rect, job);
+  return movedWithForm(field, {.first = glm::dvec2(rect.column, rect.row)}, job,
+                       [&](const Version& samples) { return croppedSamples(samples, rect, job); });
+}
+
+Result<Version> turned(const Version& field, const Turning& turning, JobControl& job) {
+  assert(turning.quarters >= 0 && turning.quarters < 4);
+  if (field.formOver() == nullptr) return turnedSamples(field, turning, job);
+  const Origin at = originOf(turning, field.grid().width, field.grid().height);
+  const PlaceMap places{.first = glm::dvec2(at.c0, at.r0),
+                        .per_column = glm::dvec2(at.cc, at.rc),
+                        .per_row = glm::dvec2(at.cr, at.rr)};
+  return movedWithForm(field, places, job,
+                       [&](const Version& samples) { return turnedSamples(samples, turning, job); });
 }
 
 }  // namespace fettle::engine

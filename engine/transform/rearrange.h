@@ -8,7 +8,9 @@
 namespace fettle::engine {
 
 // Fields whose samples are those of another one, at other places: no height is changed by a bit. Signs are applied, marks
-// and edge lines go with the samples. Errors of all: kCancelled, kFailed without memory. Thread: any; long jobs on all
+// and edge lines go with the samples. Of what is seen under a form the samples are moved, and the result is what is seen of them
+// under the form at its new place (moved_form.h): a form that has none there is left out, and Version::seenOf() of the result is
+// null. Errors of all: kCancelled, kFailed without memory. Thread: any; long jobs on all
 // workers of the arena; the same for any number of threads.
 
 /// The samples of a rectangle, which lies in the field, where they are in the world: the origin is that of the first one.

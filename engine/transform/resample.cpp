@@ -14,26 +14,18 @@
 #include <glm/geometric.hpp>
 
 #include "engine/field/builder.h"
+#include "engine/field/place_map.h"
 #include "engine/field/sample_rect.h"
+#include "engine/field/seen_field.h"
+#include "engine/transform/form_along.h"
 
 namespace fettle::engine {
 
 namespace {
 
-// Where new samples are among the old ones: position = first + column * per_column + row * per_row.
-struct Places {
-  glm::dvec2 first{0.0}, per_column{1.0, 0.0}, per_row{0.0, 1.0};
+// And how wide kernels are there.
+struct Places : PlaceMap {
   glm::dvec2 stretch{1.0};  // of the kernel along the old rows and columns, >= 1
-
-  [[nodiscard]] glm::dvec2 at(double column, double row) const {
-    return first + column * per_column + row * per_row;
-  }
-  // The new place of an old one.
-  [[nodiscard]] glm::dvec2 newPlace(const glm::dvec2& old) const {
-    const glm::dvec2 d = old - first;
-    const double det = per_column.x * per_row.y - per_column.y * per_row.x;
-    return {(d.x * per_row.y - d.y * per_row.x) / det, (per_column.x * d.y - per_column.y * d.x) / det};
-  }
 };
 
 Places placesOf(const Grid& old, const ResampleOptions& options, Grid& grid) {
@@ -344,6 +336,30 @@ EdgeLine resampledLine(const EdgeLine& line, const Places& places) {
   return moved;
 }
 
+Result<Version> resampledSamples(const Version& field, const Places& places, const Grid& grid,
+                                 Resampling method, JobControl& job) {
+  Result<FieldBuilder> builder = FieldBuilder::create(grid, "the resampled field");
+  if (!builder) return tl::unexpected(builder.error());
+  const TileRange tiles = allTiles(grid);
+  const FieldReader from = field.reader();
+  job.begin("resampling", static_cast<std::uint64_t>(tiles.tiles()));
+  tbb::parallel_for(std::int64_t{0}, tiles.tiles(), [&](std::int64_t i) {
+    if (job.cancelled()) return;
+    SampleRect rect{static_cast<std::int32_t>(i % tiles.columns) * kTileSide,
+                    static_cast<std::int32_t>(i / tiles.columns) * kTileSide, 0, 0};
+    rect.columns = std::min(kTileSide, grid.width - rect.column);
+    rect.rows = std::min(kTileSide, grid.height - rect.row);
+    resampleTile(from, places, method, rect, *builder);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  const Version result = std::move(*builder).build();
+  if (field.lines() == nullptr) return result;
+  auto lines = std::make_shared<std::vector<EdgeLine>>();
+  for (const EdgeLine& line : *field.lines()) lines->push_back(resampledLine(line, places));
+  return result.withLines(std::move(lines));
+}
+
 }  // namespace
 
 Grid resampledGrid(const Grid& grid, const ResampleOptions& options) {
@@ -361,26 +377,18 @@ Result<Version> resampled(const Version& field, const ResampleOptions& options, 
     return inputError(
         fmt::format("the new spacing is more than {:g} times the old one", ResampleOptions::kMostCoarser),
         "the spacing", "do it in two steps");
-  Result<FieldBuilder> builder = FieldBuilder::create(grid, "the resampled field");
-  if (!builder) return tl::unexpected(builder.error());
-  const TileRange tiles = allTiles(grid);
-  const FieldReader from = field.reader();
-  job.begin("resampling", static_cast<std::uint64_t>(tiles.tiles()));
-  tbb::parallel_for(std::int64_t{0}, tiles.tiles(), [&](std::int64_t i) {
-    if (job.cancelled()) return;
-    SampleRect rect{static_cast<std::int32_t>(i % tiles.columns) * kTileSide,
-                    static_cast<std::int32_t>(i / tiles.columns) * kTileSide, 0, 0};
-    rect.columns = std::min(kTileSide, grid.width - rect.column);
-    rect.rows = std::min(kTileSide, grid.height - rect.row);
-    resampleTile(from, places, options.method, rect, *builder);
-    job.advance();
-  });
-  if (job.cancelled()) return cancelled();
-  const Version result = std::move(*builder).build();
-  if (field.lines() == nullptr) return result;
-  auto lines = std::make_shared<std::vector<EdgeLine>>();
-  for (const EdgeLine& line : *field.lines()) lines->push_back(resampledLine(line, places));
-  return result.withLines(std::move(lines));
+  if (field.formOver() == nullptr) return resampledSamples(field, places, grid, options.method, job);
+  const auto form = formAlong(field, places, grid.width, grid.height);
+  // A form over samples is one of what is seen of them, too.
+  const auto from = form && field.seenOf() == nullptr ? seenNear(field, field, job)
+                    : form                            ? Result<Version>(field)
+                                                      : withoutLayer(field, job);
+  if (!from) return from;
+  const auto heights = resampledSamples(*from, places, grid, options.method, job);
+  if (!heights || !form) return heights;
+  const auto raised = raisedUnder(*heights, *form, job);
+  if (!raised) return raised;
+  return seenUnder(*raised, form, job);
 }
 
 }  // namespace fettle::engine

@@ -41,6 +41,11 @@ struct ResampleOptions {
 /// Marked where an old marked sample is within half a footprint of s x s. Edge lines go along, points inserted where they
 /// would be too far apart, with their figures in new samples.
 ///
+/// Of what is seen under a form heights come about of what is seen, and the form is taken at the new places (moved_form.h), so that
+/// nothing between samples is off by how it bends there: the result is what is seen of both together, rounded to float
+/// once more. A form that has no place there is left out, heights come about of the samples, and Version::seenOf() of the
+/// result is null.
+///
 /// Errors: more than kMostCoarser, more samples than a field may have (kInput); kCancelled; kFailed without memory. Thread:
 /// any; a long job on all workers of the arena; the same bits for any number of threads.
 [[nodiscard]] Result<Version> resampled(const Version& field, const ResampleOptions& options,

@@ -226,13 +226,96 @@ TEST_F(Layer, FilledSamplesLieOnWhatIsSeenAndStayKnown) {
   EXPECT_EQ(compared["only_b"], filled["filled"]);
 }
 
-TEST_F(Layer, WhatMeansTheSamplesTakesThemWithTheForm) {
-  const Outcome turned = fettle({"transform", session_, file("t.fettle"), "--turn", "90"});
-  EXPECT_EQ(turned.status, 0);
-  EXPECT_NE(turned.err.find("with the form"), std::string::npos) << turned.err;
-  runWhole({"transform", scan_, file("t.tif"), "--turn", "90"});
-  EXPECT_EQ(engine::contentHash(fieldOf(file("t.fettle"))), engine::contentHash(fieldOf(file("t.tif"))));
-  EXPECT_EQ(fettleJson({"align", scan_, session_, "--moves", "level"})["schema"], "fettle.align/1");
+// Heights of two files, `bound` apart at most; holes at the same places.
+void expectHeights(const std::string& path_a, const std::string& path_b, double bound) {
+  const engine::Version a = fieldOf(path_a), b = fieldOf(path_b);
+  ASSERT_EQ(a.grid().width, b.grid().width);
+  ASSERT_EQ(a.grid().height, b.grid().height);
+  for (int r = 0; r < a.grid().height; ++r)
+    for (int c = 0; c < a.grid().width; ++c) {
+      const float x = a.reader().heightAt(c, r), y = b.reader().heightAt(c, r);
+      ASSERT_EQ(std::isnan(x), std::isnan(y)) << c << ' ' << r;
+      if (!std::isnan(x)) {
+        ASSERT_NEAR(x, y, bound) << c << ' ' << r;
+      }
+    }
+}
+
+// What is levelled and then transformed, and what is transformed and then levelled by the form that went along, are one.
+TEST_F(Layer, GoesAlongWithATransform) {
+  runWhole({"level", session_, file("level.tif"), "--layer", "bake"});
+  const std::vector<std::vector<std::string>> moves = {{"--crop-samples", "10,20,60,90"},
+                                                       {"--turn", "90"},
+                                                       {"--mirror", "x", "--crop", "1,1,4,3"},
+                                                       {"--angle", "20"},
+                                                       {"--to-spacing", "0.13mm"}};
+  for (const std::vector<std::string>& move : moves) {
+    SCOPED_TRACE(move.front());
+    const auto run = [&](const std::string& in, const char* out) {
+      std::vector<std::string> words{"transform", in, file(out), "--force"};
+      words.insert(words.end(), move.begin(), move.end());
+      const Outcome outcome = fettle(words);
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_EQ(outcome.err.find("form"), std::string::npos) << outcome.err;
+    };
+    run(session_, "t.fettle");
+    run(file("level.tif"), "level_t.tif");
+    EXPECT_EQ(fettleJson({"info", file("t.fettle")})["form"], "poly2");
+    // Heights of some mm, rounded to float twice.
+    expectHeights(file("t.fettle"), file("level_t.tif"), 1e-6);
+    if (move.front() == "--angle" || move.front() == "--to-spacing") continue;
+    // Where no height is made, the samples are those of the scan, bit by bit, and the session begins with them.
+    run(scan_, "t.tif");
+    runWhole({"level", file("t.fettle"), file("back.fettle"), "--layer", "remove", "--force"});
+    EXPECT_EQ(engine::contentHash(fieldOf(file("back.fettle"))), engine::contentHash(fieldOf(file("t.tif"))));
+  }
+  // A recipe does the same.
+  std::ofstream(file("turn.toml"))
+      << "recipe = 1\n[[step]]\ndo = \"form\"\nlayer = \"put\"\nform = \"poly2\"\n"
+         "[[step]]\ndo = \"transform\"\nturn = 90\n";
+  runWhole({"apply", file("turn.toml"), scan_, file("applied.fettle")});
+  runWhole({"transform", session_, file("turned.fettle"), "--turn", "90"});
+  EXPECT_EQ(fettleJson({"info", file("applied.fettle")})["form"], "poly2");
+  EXPECT_EQ(engine::contentHash(fieldOf(file("applied.fettle"))),
+            engine::contentHash(fieldOf(file("turned.fettle"))));
+}
+
+TEST_F(Layer, GoesAlongWithAnAlignment) {
+  const auto lifted = [&](const char* out) {
+    const Outcome moved = fettle({"align", scan_, session_, file(out), "--moves", "level"});
+    EXPECT_EQ(moved.status, 0) << moved.err;
+    return moved.err;
+  };
+  EXPECT_EQ(lifted("moved.fettle").find("form"), std::string::npos);
+  EXPECT_EQ(fettleJson({"info", file("moved.fettle")})["form"], "poly2");
+  // The scan lies on itself: what is seen is what was seen, by a motion of its error.
+  runWhole({"level", session_, file("level.tif"), "--layer", "bake"});
+  expectHeights(file("moved.fettle"), file("level.tif"), 2e-3);
+  EXPECT_NE(lifted("moved.tif").find("written with the form"), std::string::npos);
+  const Outcome alone = fettle({"align", scan_, session_, "--moves", "level"});
+  EXPECT_NE(alone.err.find("heights are taken with the form"), std::string::npos) << alone.err;
+}
+
+TEST_F(Layer, OfPiecesLiesOverTheirMosaic) {
+  runWhole({"synth", file("one.tif"), "--size", "200x150", "--noise", "0.002", "--seed", "4"});
+  runWhole({"level", file("one.tif"), file("one.fettle"), "--layer", "put", "--form", "poly3"});
+  runWhole({"transform", file("one.fettle"), file("west.fettle"), "--crop-samples", "0,0,150,130"});
+  runWhole({"transform", file("one.fettle"), file("east.fettle"), "--crop-samples", "0,70,150,130"});
+  const Outcome joined = fettle({"mosaic", file("west.fettle"), file("east.fettle"), file("both.fettle")});
+  ASSERT_EQ(joined.status, 0) << joined.err;
+  EXPECT_EQ(joined.err.find("form"), std::string::npos) << joined.err;
+  EXPECT_EQ(fettleJson({"info", file("both.fettle")})["form"], "poly3");
+  // Another form over one of them, or none: the heights, and what to do.
+  runWhole({"level", file("east.fettle"), file("other.fettle"), "--layer", "put", "--form", "plane"});
+  runWhole({"level", file("east.fettle"), file("none.fettle"), "--layer", "remove"});
+  for (const char* second : {"other.fettle", "none.fettle"}) {
+    const Outcome without =
+        fettle({"mosaic", file("west.fettle"), file(second), file("both.fettle"), "--force"});
+    ASSERT_EQ(without.status, 0) << without.err;
+    EXPECT_NE(without.err.find("put one over it (fettle level --layer put)"), std::string::npos)
+        << without.err;
+    EXPECT_FALSE(fettleJson({"info", file("both.fettle")}).contains("form"));
+  }
 }
 
 // Who has a figure must see that it is of what is left when the form is taken out.
