@@ -1,12 +1,11 @@
 #include "app/commands/form_option.h"
 
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/vec3.hpp>
 
 #include "app/terminal.h"
+#include "app/work/form_figures.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
 
@@ -144,15 +143,7 @@ void addForm(Report& report, const FormArguments& arguments, const engine::Fitte
   report["robust"] = arguments.robust;
   report["region"] = arguments.region;
   if (fit.fit) {
-    const engine::Shape& shape = fit.fit->shape;
-    const auto vector = [](const glm::dvec3& v) { return Report::array({v.x, v.y, v.z}); };
-    report["point_mm"] = vector(shape.point);
-    if (shape.kind != engine::ShapeKind::kSphere) report["direction"] = vector(shape.direction);
-    if (shape.kind == engine::ShapeKind::kCone)
-      report["half_angle_deg"] = shape.half_angle * 180.0 / std::numbers::pi;
-    else
-      report["radius_mm"] = shape.radius;
-    report["hollow"] = shape.hollow;
+    addShape(report, fit.fit->shape);
     report["left_out"] = fit.fit->left_out;
     report["beyond"] = fit.beyond;
     return;

@@ -16,6 +16,8 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
 #include "app/terminal.h"
+#include "app/work/form_figures.h"
+#include "engine/field/seen_field.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/inspect/histogram.h"
 #include "engine/inspect/noise.h"
@@ -71,6 +73,11 @@ void printOne(Report report) {
     const std::string wkt = report["crs"];
     const std::size_t open = wkt.find('"');
     if (open != std::string::npos) report["crs"] = wkt.substr(open + 1, wkt.find('"', open + 1) - open - 1);
+  }
+  if (report.contains("form_figures")) {
+    report["form"] = fmt::format("{}, {}", report["form"].get<std::string>(),
+                                 formFiguresText(report["form_figures"], report["unit"]));
+    report.erase("form_figures");
   }
   printReport(report);
   printHistogram(histogram, report["unit"]);
@@ -202,6 +209,10 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
   if (imported->original) report["filled"] = engine::countFilled(imported->field, *imported->original);
   if (const auto* formed = imported->field.seenOf(); formed != nullptr)
     report["form"] = formWordOf(*formed->form());
+  if (const engine::FieldForm form = engine::formOfHeights(imported->field); form != nullptr) {
+    report["form_figures"] = Report::object();
+    addFormFigures(report["form_figures"], *form, grid);
+  }
   if (imported->field.lines() != nullptr) report["lines"] = imported->field.lines()->size();
   if (!options.at.empty()) report["at"] = *samples;
   if (!options.picture.empty()) report["picture"] = options.picture;

@@ -12,7 +12,7 @@
 #include "app/plots/gnuplot.h"
 #include "app/terminal.h"
 #include "app/work/areal_table.h"
-#include "app/work/form_change.h"
+#include "app/work/form_figures.h"
 #include "app/work/layer_over.h"
 #include "app/work/surface_numbers.h"
 
@@ -101,7 +101,8 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
     }
     found.measured.push_back(*std::move(parameters));
     draft.report[reports.size() == draft.states.size() ? "sq" : "sq_before"] = reports.back()["sq"];
-    if (limited->fit.fit) tilt += fmt::format(" {}: {}.", state.name, formFigures(limited->fit.form));
+    if (limited->fit.fit)
+      tilt += fmt::format(" {}: {}.", state.name, formFigures(limited->fit.form, state.field.grid()));
     if (reports.back().contains("tilt_x"))
       tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                           reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());

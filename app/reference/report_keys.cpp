@@ -120,24 +120,29 @@ Keys form() {
 }
 
 Keys formFigures() {
-  return {{"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
-          {"tilt_y?", "number", "degrees"},
-          {"tilt_x_error?", "number", "of three points, standard error; null: each has one sample"},
-          {"tilt_y_error?", "number", "the same; null: each has one sample"},
-          {"through?",
-           "[object]",
-           "of three points: the means the plane goes through",
-           {{"x", "number", "mm from the lower left sample"},
-            {"y", "number", ""},
-            {"height", "number", "height unit"},
-            {"samples", "integer", "around it"}}},
-          {"point_mm?", "[number]", "of a shape, as the next ones: centre, on the axis, apex; x, y, z"},
+  return joined(
+      joined({{"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
+              {"tilt_y?", "number", "degrees"},
+              {"tilt_x_error?", "number", "of three points, standard error; null: each has one sample"},
+              {"tilt_y_error?", "number", "the same; null: each has one sample"},
+              {"through?",
+               "[object]",
+               "of three points: the means the plane goes through",
+               {{"x", "number", "mm from the lower left sample"},
+                {"y", "number", ""},
+                {"height", "number", "height unit"},
+                {"samples", "integer", "around it"}}}},
+             shapeFigures()),
+      {{"left_out?", "integer", "samples that did not count, with robust"},
+       {"beyond?", "integer", "samples that counted beyond the outline"}});
+}
+
+Keys shapeFigures() {
+  return {{"point_mm?", "[number]", "of a shape, as the next ones: centre, on the axis, apex; x, y, z"},
           {"direction?", "[number]", "of an axis; from the apex into the cone"},
           {"radius_mm?", "number", ""},
           {"half_angle_deg?", "number", "of a cone"},
-          {"hollow?", "boolean", "seen from inside"},
-          {"left_out?", "integer", "samples that did not count, with robust"},
-          {"beyond?", "integer", "samples that counted beyond the outline"}};
+          {"hollow?", "boolean", "seen from inside"}};
 }
 
 }  // namespace fettle::app::reports

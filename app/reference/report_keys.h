@@ -37,6 +37,8 @@ using Keys = std::vector<ReportKey>;
 /// What is taken out of a surface before it is measured.
 [[nodiscard]] Keys form();
 [[nodiscard]] Keys formFigures();
+/// Of a form that is a sphere, cylinder or cone.
+[[nodiscard]] Keys shapeFigures();
 
 /// Of info, measure, features, fit, lines, journal, recipe, devices.
 [[nodiscard]] std::vector<ReportSchema> inspecting();

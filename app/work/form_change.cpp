@@ -1,6 +1,5 @@
 #include "app/work/form_change.h"
 
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,15 +25,6 @@ std::string stepName(FormStep step, const engine::NominalForm& form) {
 
 std::string formName(const engine::NominalForm& form) {
   return std::string(engine::infoOf(form).title);
-}
-
-std::string formFigures(const engine::NominalForm& form) {
-  const engine::ShapeForm* shape = form.shape();
-  if (shape == nullptr) return {};
-  const char* hollow = shape->curvature > 0.0 ? ", hollow" : "";
-  if (shape->shape == engine::FormShape::kCone)
-    return fmt::format("half angle {:.4g} degrees{}", shape->halfAngle() * 180.0 / std::numbers::pi, hollow);
-  return fmt::format("radius {:.5g} mm{}", shape->radius(), hollow);
 }
 
 engine::Status FormChange::moveTo(const engine::Version& field, engine::JobControl& job) {

@@ -14,8 +14,6 @@ namespace fettle::app {
 
 /// "plane", "polynomial of degree 2", "mean height", "sphere".
 [[nodiscard]] std::string formName(const engine::NominalForm& form);
-/// What a shape is like, "radius 12.5 mm, hollow", "half angle 30.1 degrees"; empty for a polynomial.
-[[nodiscard]] std::string formFigures(const engine::NominalForm& form);
 
 /// What is done to the form over a field.
 enum class FormStep : std::uint8_t {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/texts/texts.h"
+#include "app/work/form_figures.h"
 #include "app/work/through_noise.h"
 #include "engine/measure/form_surface.h"
 
@@ -24,10 +25,15 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
   }
   if (auto status = addThroughNoise(*fit, *samples, options, job); !status)
     return tl::unexpected(status.error());
-  return FormTool::Fit{options,      std::make_shared<const engine::NominalForm>(fit->form),
-                       fit->samples, fit->rms,
-                       fit->open,    fit->leaves,
-                       fit->beyond,  engine::tiltOf(*fit, field.grid())};
+  return FormTool::Fit{options,
+                       std::make_shared<const engine::NominalForm>(fit->form),
+                       fit->samples,
+                       fit->rms,
+                       fit->open,
+                       fit->leaves,
+                       fit->beyond,
+                       engine::tiltOf(*fit, field.grid()),
+                       formFigures(fit->form, field.grid())};
 }
 
 }  // namespace

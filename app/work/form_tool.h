@@ -31,6 +31,7 @@ class FormTool {
     std::string open, leaves;               ///< as those of FittedForm
     std::int64_t beyond = 0;                ///< samples that count beyond the outline of a shape
     std::optional<engine::Tilt> tilt = {};  ///< of a polynomial; with errors of a plane through three points
+    std::string figures = {};               ///< formFigures()
   };
 
   /// A form before it is taken out: what is seen less `surface` is what would be seen without it. Nothing else changes.

@@ -174,17 +174,16 @@ Result<ShapeForm> formOfShape(const ShapeFit& fit, const Grid& grid) {
 }
 
 std::optional<Tilt> tiltOf(const FittedForm& fit, const Grid& grid) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const auto degrees = [](double radians) { return radians * 180.0 / std::numbers::pi; };
-  const PolynomialForm* form = fit.form.polynomial();
-  if (form == nullptr || form->degree == 0) return std::nullopt;
-  const PolynomialForm::Gradient gradient = form->gradient();
-  const double slope_x = gradient.by_column * grid.height_unit.mm / grid.spacingXMm(),
-               slope_y = gradient.by_row * grid.height_unit.mm / grid.spacingYMm();
-  const auto errorOf = [&](double slope, double error) { return degrees(error / (1.0 + slope * slope)); };
-  return Tilt{degrees(std::atan(slope_x)), degrees(std::atan(slope_y)),
-              errorOf(slope_x, fit.through ? fit.through->slope_x_error : kNone),
-              errorOf(slope_y, fit.through ? fit.through->slope_y_error : kNone)};
+  auto tilt = tiltOf(fit.form, grid);
+  if (!tilt || !fit.through) return tilt;
+  const auto errorOf = [](double angle_deg, double error) {
+    // A slope of t is atan(t), which grows by 1 / (1 + t^2).
+    const double slope = std::tan(angle_deg * std::numbers::pi / 180.0);
+    return error / (1.0 + slope * slope) * 180.0 / std::numbers::pi;
+  };
+  tilt->x_error_deg = errorOf(tilt->x_deg, fit.through->slope_x_error);
+  tilt->y_error_deg = errorOf(tilt->y_deg, fit.through->slope_y_error);
+  return tilt;
 }
 
 Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice, JobControl& job) {

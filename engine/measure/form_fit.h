@@ -8,6 +8,7 @@
 #include "engine/field/nominal_form.h"
 #include "engine/field/version.h"
 #include "engine/measure/fit.h"
+#include "engine/measure/form_figures.h"
 #include "engine/measure/form_kind.h"
 #include "engine/measure/region.h"
 #include "engine/measure/three_points.h"
@@ -58,13 +59,7 @@ struct FittedForm {
 [[nodiscard]] Result<FittedForm> fitNominalForm(const Version& field, const FormChoice& choice,
                                                 JobControl& job);
 
-/// How a polynomial is tilted in the middle of its field [degrees], up to higher x and y.
-struct Tilt {
-  double x_deg = 0.0, y_deg = 0.0;
-  /// Standard errors, of a plane through three points; else NaN, as where each has but one sample.
-  double x_error_deg = 0.0, y_error_deg = 0.0;
-};
-/// None of a shape, and of a mean height.
+/// How a fitted form is tilted, with errors of a plane through three points; none of a shape, and of a mean height.
 [[nodiscard]] std::optional<Tilt> tiltOf(const FittedForm& fit, const Grid& grid);
 
 /// The form that a fitted sphere, cylinder or cone is over a field of this grid. Errors: one that is too steep (kInput).

@@ -84,6 +84,14 @@ TEST_F(Layer, GoesInAndOutAndChangesNoSample) {
   EXPECT_EQ(removed["form"], "poly2");
   EXPECT_EQ(engine::contentHash(fieldOf(file("back.fettle"))), hash);
   EXPECT_FALSE(fettleJson({"info", file("back.fettle")}).contains("form"));
+  EXPECT_FALSE(fettleJson({"info", scan_}).contains("form_figures"));
+  const auto put = fettleJson({"level", scan_, file("tilted.fettle"), "--layer", "put"});
+  const auto figures = fettleJson({"info", file("tilted.fettle")})["form_figures"];
+  EXPECT_EQ(figures["tilt_x"], put["tilt_x"]);
+  EXPECT_EQ(figures["tilt_y"], put["tilt_y"]);
+  runWhole({"level", scan_, file("mean.fettle"), "--layer", "put", "--form", "mean"});
+  EXPECT_NEAR(fettleJson({"info", file("mean.fettle")})["form_figures"]["level"].get<double>(),
+              fettleJson({"info", scan_})["mean"].get<double>(), 1e-6);
   // Another form instead, of the samples and not of what is seen.
   const auto again = fettleJson({"level", session_, file("plane.fettle"), "--layer", "put"});
   EXPECT_EQ(again["rms"], fettleJson({"level", scan_, file("plane.tif")})["rms"]);
@@ -130,6 +138,15 @@ TEST_F(Layer, ShapesGoInAndOutAndChangeNoSample) {
   EXPECT_EQ(level["hollow"], false);
   EXPECT_EQ(level["beyond"], 0);
   EXPECT_FALSE(level.contains("tilt_x"));
+  // The session states at any time what was printed when the form was put over it.
+  runWhole({"level", file("ball.tif"), file("s.fettle"), "--layer", "put", "--form", "sphere", "--robust",
+            "--force"});
+  const auto figures = fettleJson({"info", file("s.fettle")})["form_figures"];
+  EXPECT_NEAR(figures["radius_mm"].get<double>(), level["radius_mm"].get<double>(), 1e-9);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(figures["point_mm"][k].get<double>(), level["point_mm"][k].get<double>(), 1e-9);
+  EXPECT_EQ(figures["hollow"], false);
+  EXPECT_NE(fettle({"info", file("s.fettle")}).out.find("sphere, radius 40"), std::string::npos);
   // As fettle fit has it.
   const auto fit = fettleJson({"fit", file("ball.tif"), "--shape", "sphere", "--robust"});
   EXPECT_EQ(fit["fits"][0]["radius_mm"], level["radius_mm"]);

@@ -420,6 +420,14 @@ class Level(unittest.TestCase):
             fettle.Field(np.zeros((50, 60)), spacing=0.1, unit="mm").level(form="sphere")
 
 
+        # The sphere goes along, and says what it is at any time.
+        turned = formed.transformed(turn=90)
+        np.testing.assert_allclose(np.asarray(turned), np.rot90(np.asarray(formed), -1), atol=2e-6)
+        self.assertEqual(turned.level(layer="remove").hash, ball.transformed(turn=90).hash)
+        coarse = formed.transformed(to_spacing=0.3)
+        self.assertLess(float(np.abs(np.asarray(coarse)).max()), 1e-5)
+        for field in (formed, turned, coarse):
+            self.assertAlmostEqual(field.info()["form_figures"]["radius_mm"], 20.0, places=3)
 class ElsewhereAndBack(unittest.TestCase):
     def test_a_field_goes_through_pickle_as_it_is(self):
         field = fettle.synth(size=(96, 64), seed=7).mark(edges=True, lines_out=True).filter("median")

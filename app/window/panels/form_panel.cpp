@@ -9,6 +9,7 @@
 #include "app/texts/texts.h"
 #include "app/window/action_tips.h"
 #include "app/window/panels/panels.h"
+#include "app/work/form_figures.h"
 
 namespace fettle::app {
 namespace {
@@ -93,8 +94,7 @@ std::string tiltText(const engine::Tilt& tilt) {
 
 std::string fitText(const FormTool::Fit& fit, const render::FieldUnits& units) {
   std::string text = trFormat("{} of {} samples\n", formName(*fit.form), fit.samples);
-  if (const std::string figures = formFigures(*fit.form); !figures.empty()) text += figures + "\n";
-  if (fit.options.through && fit.tilt) text += tiltText(*fit.tilt);
+  text += fit.options.through && fit.tilt ? tiltText(*fit.tilt) : fit.figures + "\n";
   text += trFormat("rms of what is left {}", lengthText(fit.rms, units.height, 3));
   if (fit.beyond > 0)
     text += trFormat("\n{} samples lie beyond its outline: there it is continued by a plane", fit.beyond);
@@ -142,8 +142,8 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
       writeWrapped(trFormat("preview, from means of {} x {} samples: {}", preview->coarse->step,
                             preview->coarse->step, coarseFormState(*preview->coarse)));
   } else {
-    if (over != nullptr && over->shape() != nullptr)
-      writeWrapped(trFormat("taken out: {}", formFigures(*over)));
+    if (over != nullptr)
+      writeWrapped(trFormat("taken out: {}", formFigures(*over, context.client.field().grid())));
     if (previewed) writeWrapped("preview: colours are heights without the form, touch is with it");
     if (const auto& fit = form.fit()) writeWrapped(fitText(*fit, context.units));
   }
