@@ -6,10 +6,12 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "app/commands/value_checks.h"
 #include "app/reference/help_text.h"
+#include "app/work/typed_lengths.h"
 
 namespace fettle::app {
 
@@ -76,6 +78,16 @@ CLI::Option* optionFor(CLI::App& app, const Parameter& p) {
       p.to);
 }
 
+// A length or place in millimetres with another unit behind it, as the number that a row of millimetres takes; a plain number stays as it is typed.
+// What is wrong with it, or an empty text.
+std::string inMillimetres(std::string& typed) {
+  const auto length = typedLengthOf(typed);
+  if (!length || length->unit.empty()) return {};  // the parser says what is no number
+  if (!length->unit_mm) return lengthProblem(typed);
+  typed = fmt::format("{}", length->value * *length->unit_mm);
+  return {};
+}
+
 void addToParser(CLI::App& app, const Parameter& p) {
   CLI::Option* option = optionFor(app, p);
   if (option == nullptr) return;
@@ -86,6 +98,8 @@ void addToParser(CLI::App& app, const Parameter& p) {
   // Of values in one word the words after it are others: "--crop 0,0,5,5 IN OUT", "--only height SCAN".
   if (p.one_word || p.between != '\0') option->allow_extra_args(false);
   for (const std::string& other : p.excludes) option->excludes(app.get_option(other));
+  if (p.kind == ValueKind::kNumber && p.unit == kMillimetres)
+    option->transform(CLI::Validator(inMillimetres, ""));
   for (const auto& problem : problemsOf(p)) option->check(problem, "");
 }
 

@@ -23,6 +23,7 @@
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
+#include "app/work/typed_lengths.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
 
@@ -50,9 +51,9 @@ struct FitArguments : RegionArguments {
 engine::Status checkFit(const FitArguments& options) {
   if (auto status = checkRegion(options); !status) return status;
   for (const std::string& text : options.at)
-    if (numbersOf(text, 2).empty())
+    if (lengthsOf(text, 2).empty())
       return engine::inputError(fmt::format("'{}' is no place", text), "--at",
-                                "give X,Y in mm from the lower left sample");
+                                "give X,Y in mm from the lower left sample, or as 12.5mm,3mm");
   if (!options.between.empty() && options.between[0] == options.between[1])
     return engine::inputError("nothing lies between a fit and itself", "--between",
                               "name two regions, as 1,2");
@@ -107,7 +108,7 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
   std::vector<engine::FitRegion> chosen;
   std::vector<int> numbers;
   for (const std::string& text : options.at) {
-    const std::vector<double> xy = numbersOf(text, 2);
+    const std::vector<double> xy = lengthsOf(text, 2);
     const int found =
         engine::regionAt(*regions, {xy[0] / field.grid().spacingXMm(), xy[1] / field.grid().spacingYMm()});
     if (found < 0)
@@ -276,8 +277,8 @@ void addFit(Command root, Chosen& chosen) {
         .otherwise = "100"},
        {.name = "--at",
         .to = &options->at,
-        .text =
-            "Only the connected region around this place, in mm from the lower left sample; may be repeated",
+        .text = "Only the connected region around this place, from the lower left sample",
+        .unit = "mm",
         .shown = "X,Y",
         .one_word = true}},
       kRegionGroup);

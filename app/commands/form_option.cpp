@@ -53,8 +53,8 @@ void addFormOptions(Command command, FormArguments& arguments) {
   command.add({
       {.name = "--through",
        .to = &arguments.through,
-       .text = "The plane through the mean heights around three points instead, mm from the lower left "
-               "sample",
+       .text = "The plane through the mean heights around three points instead, from the lower left sample",
+       .unit = "mm",
        .shown = "X,Y:X,Y:X,Y"},
       {.name = "--probe",
        .to = &arguments.probe_mm,
@@ -89,7 +89,7 @@ engine::Status checkForm(const FormArguments& arguments) {
   if (arguments.through.empty()) return {};
   if (!throughOf(arguments))
     return engine::inputError(fmt::format("'{}' is not three points", arguments.through), "--through",
-                              "give X,Y:X,Y:X,Y in mm from the lower left sample");
+                              "give X,Y:X,Y:X,Y from the lower left sample, in mm or as 12.5mm,3mm");
   if (arguments.form != engine::infoOf(engine::FormKind::kPlane).word)
     return engine::inputError("three points are those of a plane", "--form", "omit it, or take plane");
   if (arguments.robust)

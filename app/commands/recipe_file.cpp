@@ -19,6 +19,7 @@
 #include "app/commands/region_option.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
+#include "app/work/typed_lengths.h"
 #include "engine/filter/catalogue.h"
 #include "engine/io/import.h"
 #include "engine/session/session.h"
@@ -149,10 +150,11 @@ class StepReader {
       read.value = *number;
       is_length = true;
     } else if (node.is_string()) {
-      const std::string typed = node.value_or(std::string());
-      const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), read.value);
-      read.unit = engine::lengthUnitFromName(std::string(end, typed.data() + typed.size()));
-      is_length = error == std::errc{} && read.unit.has_value();
+      if (const auto typed = typedLengthOf(node.value_or(std::string()))) {
+        read.value = typed->value;
+        read.unit = engine::lengthUnitFromName(typed->unit);
+      }
+      is_length = read.unit.has_value();
     }
     if (is_length && std::isfinite(read.value) && read.value >= least) return read;
     complain(node, is_length ? fmt::format("{} is below {:g} or not finite", key, least)

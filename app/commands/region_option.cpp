@@ -16,9 +16,9 @@
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
-#include "app/work/section_report.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
+#include "app/work/typed_lengths.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/input_file.h"
 #include "engine/marks/chosen_marks.h"
@@ -44,11 +44,12 @@ constexpr RegionRow kRegions[] = {
     {"unmarked", RegionBy::kMarks, engine::Region::kUnmarked, false, "those that are not"},
     {"measured", RegionBy::kMeasured, engine::Region::kAll, false, "those of a session that were not filled"},
     {"rectangle", RegionBy::kRectangle, engine::Region::kMarked, false,
-     "\"rectangle X,Y,X,Y\", those between two corners, in mm from the lower left sample"},
+     "\"rectangle X,Y,X,Y\", those between two corners, from the lower left sample in mm, or each with its "
+     "unit, 12.5mm"},
     {"polygon", RegionBy::kPolygon, engine::Region::kMarked, false,
      "\"polygon X,Y X,Y X,Y\", those inside, corner after corner, three or more"},
     {"world-rectangle", RegionBy::kRectangle, engine::Region::kMarked, true,
-     "the same in the coordinates of the scan's world, in its unit"},
+     "the same in the coordinates of the scan's world, in its unit or another that is named"},
     {"world-polygon", RegionBy::kPolygon, engine::Region::kMarked, true, "likewise"},
 };
 
@@ -66,8 +67,8 @@ bool isShaped(const RegionRow& row) {
   return row.by == RegionBy::kRectangle || row.by == RegionBy::kPolygon;
 }
 
-// The corners of a shape as typed; none where they are no numbers.
-std::vector<glm::dvec2> shapeCorners(const RegionRow& row, std::string_view typed) {
+// The corners of a shape as typed, in units of `plain_mm`, that of those without one; none where they are no lengths.
+std::vector<glm::dvec2> shapeCorners(const RegionRow& row, std::string_view typed, double plain_mm) {
   typed.remove_prefix(firstWordOf(typed).size());
   std::vector<glm::dvec2> corners;
   while (true) {
@@ -75,7 +76,7 @@ std::vector<glm::dvec2> shapeCorners(const RegionRow& row, std::string_view type
     if (typed.empty()) return corners;
     const std::string_view word = firstWordOf(typed);
     typed.remove_prefix(word.size());
-    const std::vector<double> numbers = numbersOf(word, row.by == RegionBy::kRectangle ? 4 : 2);
+    const std::vector<double> numbers = lengthsOf(word, row.by == RegionBy::kRectangle ? 4 : 2, plain_mm);
     if (numbers.empty()) return {};
     for (std::size_t k = 0; k < numbers.size(); k += 2) corners.emplace_back(numbers[k], numbers[k + 1]);
   }
@@ -156,7 +157,7 @@ std::string regionProblem(const std::string& typed, const std::vector<Word>& kno
                        meant);
   }
   if (!isShaped(*row)) return typed == row->word ? "" : fmt::format("{} takes no coordinates", row->word);
-  const std::vector<glm::dvec2> corners = shapeCorners(*row, typed);
+  const std::vector<glm::dvec2> corners = shapeCorners(*row, typed, 1.0);
   if (row->by == RegionBy::kRectangle)
     return corners.size() == 2
                ? ""
@@ -223,7 +224,8 @@ engine::Result<engine::Version> countedOf(const engine::Version& field,
                       arguments.marks_option, arguments.option));
     return engine::withoutFilled(field, *original, job);
   }
-  std::vector<glm::dvec2> corners = shapeCorners(*row, arguments.region);
+  std::vector<glm::dvec2> corners =
+      shapeCorners(*row, arguments.region, row->world ? field.grid().lateral_unit.mm : 1.0);
   const engine::Grid& grid = field.grid();
   if (row->world)
     for (glm::dvec2& corner : corners)

@@ -203,7 +203,8 @@ void addFigureRows(const std::string& key, const Report& figure, std::size_t sta
 void addSectionOptions(Command command, ReportSections& sections) {
   command.add({{.name = "--section",
                 .to = &sections.lines,
-                .text = "A polyline along which heights are shown, mm; give it again for another",
+                .text = "A polyline along which heights are shown; give it again for another",
+                .unit = "mm",
                 .shown = "X,Y:X,Y[:...]",
                 .group = kSectionGroup,
                 .one_word = true},

@@ -30,6 +30,7 @@
 #include "app/work/streams.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
+#include "app/work/typed_lengths.h"
 #include "engine/measure/around.h"
 #include "engine/measure/probe.h"
 #include "engine/measure/section.h"
@@ -175,7 +176,7 @@ engine::Result<Report> probed(const SectionArguments& options, const ReadScan& s
   const engine::Grid& grid = scan.field.grid();
   const double radius = options.probe_radius.value_or(engine::usualProbeRadiusMm(grid));
   for (const std::string& text : options.probes) {
-    const std::vector<double> at = numbersOf(text, 2);
+    const std::vector<double> at = lengthsOf(text, 2);
     const auto figures =
         engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region, scan.noise);
     if (!figures) return tl::unexpected(figures.error());

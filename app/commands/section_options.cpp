@@ -10,6 +10,7 @@
 
 #include "app/plots/gnuplot.h"
 #include "app/work/interpolation_words.h"
+#include "app/work/typed_lengths.h"
 #include "engine/measure/roughness.h"
 
 namespace fettle::app {
@@ -47,7 +48,7 @@ engine::Status checkProfiles(const SectionArguments& options) {
 }
 
 constexpr const char* kLineGroup = "The line";
-constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
+constexpr const char* kFigureGroup = "What is measured (lengths along the line, from its first point)";
 
 // An option that would have no effect beside the others, and what it needs.
 engine::Status checkEffects(const SectionArguments& options) {
@@ -86,15 +87,17 @@ engine::Status checkEffects(const SectionArguments& options) {
 
 engine::Status checkSectionWords(const SectionArguments& options) {
   if (auto status = checkEffects(options); !status) return status;
-  if (!options.step.empty() && options.step != "auto" && numbersOf(options.step, 1).empty())
+  if (!options.step.empty() && options.step != "auto" && lengthsOf(options.step, 1).empty())
     return engine::inputError(fmt::format("'{}' is no length", options.step), "--step",
-                              "give the edge's length along the line in mm, or auto");
-  if (!options.groove.empty() && options.groove != "auto" && numbersOf(options.groove, 2).empty())
-    return engine::inputError(fmt::format("'{}' is not two lengths", options.groove), "--groove",
-                              "give the lengths of both edges along the line in mm, A,B, or auto");
+                              "give the edge's length along the line in mm or as 0.5mm, or auto");
+  if (!options.groove.empty() && options.groove != "auto" && lengthsOf(options.groove, 2).empty())
+    return engine::inputError(
+        fmt::format("'{}' is not two lengths", options.groove), "--groove",
+        "give the lengths of both edges along the line, A,B, in mm or as 1mm,2.5mm, or auto");
   for (const std::string& probe : options.probes)
-    if (numbersOf(probe, 2).empty())
-      return engine::inputError(fmt::format("'{}' is no point", probe), "--probe", "give X,Y in mm");
+    if (lengthsOf(probe, 2).empty())
+      return engine::inputError(fmt::format("'{}' is no point", probe), "--probe",
+                                "give X,Y in mm, or as 12.5mm,3mm");
   for (const auto& [numbers, option] : {std::pair(&options.within, "--within"),
                                         {&options.line, "--fit-line"},
                                         {&options.angle, "--angle"},
@@ -113,19 +116,22 @@ void addLineOptions(Command command, SectionArguments& options) {
       {
           {.name = "--start",
            .to = &options.from,
-           .text = "First point, mm from the lower left sample",
+           .text = "First point, from the lower left sample",
+           .unit = "mm",
            .shown = "X,Y",
            .values = 2,
            .between = ','},
           {.name = "--end",
            .to = &options.to,
            .text = "Last point",
+           .unit = "mm",
            .shown = "X,Y",
            .values = 2,
            .between = ','},
           {.name = "--line",
            .to = &options.polylines,
            .text = "A polyline; give it again for another section",
+           .unit = "mm",
            .shown = "X,Y:X,Y[:...]",
            .one_word = true},
           {.name = "--lines",
@@ -160,6 +166,7 @@ void addFigureOptions(Command command, SectionArguments& options) {
       {{.name = "--within",
         .to = &options.within,
         .text = "Stretch for --step, --groove, --cutoff and --profile",
+        .unit = "mm",
         .shown = "A,B",
         .otherwise = "the whole line",
         .values = 2,
@@ -167,32 +174,38 @@ void addFigureOptions(Command command, SectionArguments& options) {
        {.name = "--cursors",
         .to = &options.cursors,
         .text = "Distance, height difference and slope between two places",
+        .unit = "mm",
         .shown = "A,B",
         .values = 2,
         .between = ','},
        {.name = "--fit-line",
         .to = &options.line,
         .text = "Least-squares line of a stretch",
+        .unit = "mm",
         .shown = "A,B",
         .values = 2,
         .between = ','},
        {.name = "--step",
         .to = &options.step,
         .text = "Step height at an edge; auto finds the edge",
+        .unit = "mm",
         .shown = "A|auto"},
        {.name = "--groove",
         .to = &options.groove,
         .text = "Depth of a groove between two edges, ISO 5436-1; below 0 a ridge; auto finds them",
+        .unit = "mm",
         .shown = "A,B|auto"},
        {.name = "--angle",
         .to = &options.angle,
         .text = "Angle between the lines of two stretches",
+        .unit = "mm",
         .shown = "A,B,C,D",
         .values = 4,
         .between = ','},
        {.name = "--arc",
         .to = &options.arc,
         .text = "Radius of the circle of a stretch",
+        .unit = "mm",
         .shown = "A,B",
         .values = 2,
         .between = ','},
@@ -219,6 +232,7 @@ void addFigureOptions(Command command, SectionArguments& options) {
        {.name = "--probe",
         .to = &options.probes,
         .text = "Height, slope and curvature around a point of the scan; give it again for another",
+        .unit = "mm",
         .shown = "X,Y",
         .one_word = true},
        {.name = "--probe-radius",

@@ -34,7 +34,7 @@ engine::Result<engine::SampleRect> cropOf(const TransformArguments& options, con
     return engine::SampleRect{column, grid.height - row - rows, columns, rows};
   }
   if (std::ranges::any_of(options.crop, [](double v) { return !std::isfinite(v); }))
-    return engine::inputError("a corner is no number", "--crop", "give X,Y,X,Y in mm");
+    return engine::inputError("a corner is no number", "--crop", "give X,Y,X,Y in mm, or as 12.5mm,3mm");
   if (options.crop.empty()) return engine::SampleRect{0, 0, grid.width, grid.height};
   const engine::SampleRect rect =
       engine::samplesBetween(grid, {options.crop[0], options.crop[1]}, {options.crop[2], options.crop[3]});

@@ -1,13 +1,13 @@
 #include "app/commands/typed_values.h"
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/work/typed_lengths.h"
 #include "engine/io/import.h"
 #include "engine/scanner/part.h"
 
@@ -15,20 +15,15 @@ namespace fettle::app {
 
 engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
                                    const std::string& option) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || !std::isfinite(value) || value < 0.0)
+  const auto typed = typedLengthOf(text);
+  if (!typed || typed->value < 0.0)
     return engine::inputError(fmt::format("{} is not a length", text), option,
                               "give a number at or above 0, such as 0.5 or 20um");
-  const char* unit_begin = end;
-  while (unit_begin != text.data() + text.size() && *unit_begin == ' ') ++unit_begin;
-  const std::string suffix(unit_begin, text.data() + text.size());
-  if (suffix.empty()) return value;
-  const auto unit = engine::lengthUnitFromName(suffix);
-  if (!unit)
-    return engine::inputError(fmt::format("unknown unit {}", suffix), option,
+  if (typed->unit.empty()) return typed->value;
+  if (!typed->unit_mm)
+    return engine::inputError(fmt::format("unknown unit {}", typed->unit), option,
                               fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
-  return value * unit->mm / grid.height_unit.mm;
+  return typed->value * *typed->unit_mm / grid.height_unit.mm;
 }
 
 engine::Result<double> parseSignedHeight(const std::string& text, const engine::Grid& grid,

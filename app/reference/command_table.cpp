@@ -176,6 +176,8 @@ std::string factsOf(const Parameter& p) {
   if (const std::string range = rangeText(p); !range.empty()) facts.push_back(range);
   if (p.kind == ValueKind::kLength)
     facts.emplace_back(p.unit.empty() ? "in the scan's unit, or as 20um" : "or as 20um");
+  else if (p.unit == kMillimetres)
+    facts.emplace_back("or as 20um");
   if (p.several() && p.one_word && p.between == '\0') facts.emplace_back("may be repeated");
   if (!p.otherwise.empty())
     facts.push_back("without it: " + p.otherwise);

@@ -82,7 +82,8 @@ struct Parameter {
   std::string text = {};  ///< what it does; no period at the end
   ValueKind kind = ValueKind::kByTarget;
   std::optional<Range> range = {};
-  std::string unit = {};  ///< of a number, in the plural: "samples"; of a length not the scan's
+  /// Of a number, in the plural: "samples"; of a length not the scan's. A number of kMillimetres may be typed with another unit behind it.
+  std::string unit = {};
   std::vector<Word> words =
       {};  ///< the only ones that are taken; of a text those that it begins with, and `problem` checks it
   /// Words that completion offers among others that are taken; `problem` or the command refuses a wrong one.
@@ -123,6 +124,9 @@ struct CommandTable {
   std::vector<Example> examples = {};
   std::deque<CommandTable> commands = {};
 };
+
+/// The unit of rows whose lengths and places are millimetres, or in another unit that is typed behind them.
+inline constexpr const char* kMillimetres = "mm";
 
 /// The heading of the rows that every command has.
 inline constexpr const char* kReportGroup = "Report and help";

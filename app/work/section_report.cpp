@@ -1,14 +1,13 @@
 #include "app/work/section_report.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "app/work/typed_lengths.h"
 #include "engine/uncertainty/edge_place.h"
 #include "engine/uncertainty/roughness_noise.h"
 
@@ -106,7 +105,7 @@ class SectionMeasurement {
   engine::Result<Report> step(const Section& section, std::vector<SectionMark>& marks) const {
     const Stretch around = options_.step == "auto" ? aroundStep(section) : within(section);
     double edge = engine::edgeIn(section, around);
-    if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
+    if (options_.step != "auto") edge = lengthsOf(options_.step, 1).front();
     if (std::isnan(edge))
       return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
     const auto figures = engine::stepFigures(section, edge, around, noise_);
@@ -129,7 +128,7 @@ class SectionMeasurement {
   engine::Result<Report> groove(const Section& section, std::vector<SectionMark>& marks) const {
     Stretch edges = engine::grooveIn(section, within(section));
     if (options_.groove != "auto") {
-      const std::vector<double> typed = numbersOf(options_.groove, 2);
+      const std::vector<double> typed = lengthsOf(options_.groove, 2);
       edges = {typed[0], typed[1]};
     }
     if (std::isnan(edges.from_mm))
@@ -226,30 +225,14 @@ void addEstimate(Report& report, const std::string& key, const std::string& unit
   report[key + "_error" + ending] = numberOrNull(estimate.error);
 }
 
-std::vector<double> numbersOf(std::string_view text, std::size_t count) {
-  std::vector<double> numbers;
-  while (numbers.size() < count) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !std::isfinite(value)) return {};
-    numbers.push_back(value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (numbers.size() < count) {
-      if (!text.starts_with(',')) return {};
-      text.remove_prefix(1);
-    }
-  }
-  return text.empty() ? numbers : std::vector<double>();
-}
-
 engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text, const std::string& option) {
   std::vector<glm::dvec2> points;
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t end = std::min(text.find(':', from), text.size());
-    const std::vector<double> xy = numbersOf(std::string_view(text).substr(from, end - from), 2);
+    const std::vector<double> xy = lengthsOf(std::string_view(text).substr(from, end - from), 2);
     if (xy.empty())
       return engine::inputError(fmt::format("'{}' is no polyline", text), option,
-                                "give X,Y:X,Y with as many points as you like, in mm");
+                                "give X,Y:X,Y with as many points as you like, in mm or with a unit, 12.5mm");
     points.emplace_back(xy[0], xy[1]);
     from = end + 1;
   }

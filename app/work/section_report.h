@@ -61,9 +61,7 @@ struct FailedFigure {
                                     const engine::SectionNoise& noise, std::vector<SectionMark>& marks,
                                     std::vector<FailedFigure>& failed);
 
-/// Numbers with commas between them, exactly so many; none when the text is something else.
-[[nodiscard]] std::vector<double> numbersOf(std::string_view text, std::size_t count);
-/// The points of "X,Y:X,Y", two or more. Errors (kInput): another text, naming the option.
+/// The points of "X,Y:X,Y" [mm], as lengthsOf() reads them, two or more. Errors (kInput): another text, naming the option.
 [[nodiscard]] engine::Result<std::vector<glm::dvec2>> polylineOf(const std::string& text,
                                                                  const std::string& option);
 

@@ -56,7 +56,10 @@ const std::vector<std::string> kSameRegions = {
     "polygon 0.95,1.9 4.05,1.9 4.05,8.1 0.95,8.1",
     "polygon  0.95,8.1 4.05,8.1  4.05,1.9 0.95,1.9 ",
     "world-rectangle 5000001,5000002,5000004,5000008",
-    "world-polygon 5000000.95,5000001.9 5000004.05,5000001.9 5000004.05,5000008.1 5000000.95,5000008.1"};
+    "world-polygon 5000000.95,5000001.9 5000004.05,5000001.9 5000004.05,5000008.1 5000000.95,5000008.1",
+    "rectangle 1mm,0.2cm,4000um,8",
+    "polygon 950um,1.9mm 4.05mm,1.9 4.05,8.1 0.095cm,8.1mm",
+    "world-rectangle 5.000001km,5000002,5000004mm,5000.008m"};
 
 class RegionOption : public testing::Test {
  protected:

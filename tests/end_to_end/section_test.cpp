@@ -200,6 +200,44 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   refused({"--profile", "w"}, "--profile");
 }
 
+// Each place may be typed in its own unit; one that is none is refused by name.
+TEST(SectionCommand, TakesPlacesInAnyUnitOfLength) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), out = folder.file("t.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "120x100", "--seed", "2"}).status, 0);
+  const auto plain = fettleJson({"section", scan, "--start", "1,2", "--end", "5,2.5", "--width", "0.2",
+                                 "--cursors", "1,3", "--probe", "2,2", "--step", "2"});
+  const auto typed =
+      fettleJson({"section", scan, "--start", "1mm,2000um", "--end", "0.5cm,2.5", "--width", "200um",
+                  "--cursors", "1000um,3mm", "--probe", "2mm,0.2cm", "--step", "2mm"});
+  EXPECT_NEAR(plain["sections"][0]["length_mm"], std::hypot(4.0, 0.5), 1e-9);
+  for (const char* key : {"sections", "probes"}) EXPECT_EQ(typed[key], plain[key]) << key;
+  EXPECT_EQ(fettleJson({"section", scan, "--line", "1mm,2000um:0.5cm,2.5"})["sections"][0]["length_mm"],
+            plain["sections"][0]["length_mm"]);
+  EXPECT_EQ(fettleJson({"transform", scan, out, "--crop", "1mm,1mm,0.4cm,3000um"})["hash"],
+            fettleJson({"transform", scan, out, "--crop", "1,1,4,3"})["hash"]);
+  EXPECT_EQ(
+      fettleJson({"level", scan, out, "--through", "1mm,1mm:4000um,1:2,3mm", "--probe", "300um",
+                  "--force"})["tilt_x"],
+      fettleJson({"level", scan, out, "--through", "1,1:4,1:2,3", "--probe", "0.3", "--force"})["tilt_x"]);
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--start", "1q,2", "--end", "5,2.5"},
+      {"--line", "1mm,2q:3,4"},
+      {"--start", "1,2", "--end", "5,2.5", "--width", "2parsec"},
+      {"--probe", "1mm"}};
+  for (const std::vector<std::string>& options : wrong) {
+    std::vector<std::string> words{"section", scan};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = fettle(words);
+    EXPECT_EQ(outcome.status, 2) << options.back();
+    EXPECT_NE(
+        outcome.err.find(options.size() > 2 ? options[options.size() - 2] == "--end" ? "--start" : "--width"
+                                            : options.front()),
+        std::string::npos)
+        << outcome.err;
+  }
+}
+
 TEST(SectionCommand, AFigureThatIsNotDeterminedLeavesTheOthers) {
   const TempFolder folder;
   const std::string scan = folder.file("groove.asc");
