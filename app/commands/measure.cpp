@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/areal_option.h"
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
@@ -46,9 +47,7 @@ struct MeasureArguments {
   std::vector<std::string> groups;  // empty: all
   std::vector<std::string> at_heights;
   std::vector<double> at_ratios;
-  std::vector<double> volumes;     // p and q [%]; empty: the usual ones
-  std::vector<double> difference;  // of Sdc [%]; empty: none
-  double prune = 5.0;              // [% of Sz]
+  ArealArguments areal;
   std::string csv, surface;
   CurveFiles curves;
   int noise_trials = kUsualTrials;
@@ -95,8 +94,9 @@ engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& opti
   areal.at_heights = *heights;
   const std::vector<double>& ratios = options.at_ratios.empty() ? kUsualRatios : options.at_ratios;
   for (const double ratio : ratios) areal.at_ratios.push_back(ratio / 100.0);
-  if (!options.volumes.empty()) areal.volumes = {options.volumes[0] / 100.0, options.volumes[1] / 100.0};
-  areal.prune = options.prune / 100.0;
+  ArealChoice choice = choiceOf(options.areal);
+  choice.difference.reset();  // trials do not measure it
+  choose(choice, areal);
   return areal;
 }
 
@@ -119,7 +119,9 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!areal) return tl::unexpected(areal.error());
   engine::ArealOptions wanted = *areal;
   wanted.at_volumes = areal->at_ratios;
-  for (const double ratio : options.difference) wanted.at_ratios.push_back(ratio / 100.0);
+  const ArealChoice choice = choiceOf(options.areal);
+  if (choice.difference)
+    wanted.at_ratios.insert(wanted.at_ratios.end(), {choice.difference->first, choice.difference->second});
   addCurves(options.curves, wanted);  // their heights are the last ones
   const PlannedWork planned{.field = *marked,
                             .original = *marked,
@@ -161,22 +163,17 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
                                {"height", numberOrNull(measured->heights[i])},
                                {"material_volume", numberOrNull(measured->material[i])},
                                {"void_volume", numberOrNull(measured->voids[i])}});
-    report["volume_ratios"] = Report::array({areal->volumes.peaks, areal->volumes.dales});
-    if (!options.difference.empty()) {
-      const std::size_t first = areal->at_ratios.size();
-      report["sdc"] = {
-          {"ratios", Report::array({options.difference[0] / 100.0, options.difference[1] / 100.0})},
-          {"height", numberOrNull(measured->heights[first] - measured->heights[first + 1])}};
-    }
   }
   // Of a smoothed surface the scan's rounding says nothing.
+  addChosen(report, choice, *measured, areal->at_ratios.size());
+  if (!areal->functional) report.erase("volume_ratios");
+  if (!areal->feature) report.erase("prune");
   if (options.scale.s_filter.empty())
     if (const std::string doubt = engine::roundingDoubt(*marked, *measured); !doubt.empty())
       warn(fmt::format("{}: {}; a zero near the surface keeps more digits", shownInput(scan), doubt));
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;
   stated.heights.resize(areal->at_ratios.size());
-  if (areal->feature) report["prune"] = areal->prune;
   const auto noise =
       noiseOfMeasured({*marked, scan, *imported, options.form, options.scale, *areal, options.noise_trials},
                       *limited, stated, job);
@@ -219,37 +216,20 @@ engine::Result<Report> measureAll(const MeasureArguments& options, const std::ve
   return report;
 }
 
-// Two ratios of which the first is the higher height, and options without the group that they are of.
-engine::Status checkRatios(const MeasureArguments& options, bool functional) {
-  for (const auto& [ratios, option] :
-       {std::pair(&options.volumes, "--ratios"), {&options.difference, "--height-between"}}) {
-    if (ratios->empty()) continue;
-    if (!functional)
-      return engine::inputError("no material ratios are measured without the functional parameters", option,
-                                "add functional to --only");
-    for (const double ratio : *ratios)
-      if (!(ratio >= 0.0 && ratio <= 100.0))
-        return engine::inputError(fmt::format("{:.6g} is no material ratio", ratio), option,
-                                  "give 0 to 100, in per cent");
-    if (!((*ratios)[0] < (*ratios)[1]))
-      return engine::inputError(
-          fmt::format("the ratios {:.6g} and {:.6g} are not in order", (*ratios)[0], (*ratios)[1]), option,
-          "give the smaller one first");
-  }
-  return {};
-}
-
 engine::Result<Report> measure(const MeasureArguments& options, const std::vector<std::string>& arguments,
                                engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   if (auto status = checkNoiseTrials(options.noise_trials); !status) return tl::unexpected(status.error());
   const bool functional =
       options.groups.empty() || std::ranges::find(options.groups, "functional") != options.groups.end();
-  if (!functional && (!options.at_heights.empty() || !options.at_ratios.empty()))
-    return engine::inputError("no material ratios are measured without the functional parameters",
-                              options.at_heights.empty() ? "--at-ratio" : "--at-height",
-                              "add functional to --only");
-  if (auto status = checkRatios(options, functional); !status) return tl::unexpected(status.error());
+  for (const auto& [given, option] : {std::pair(!options.at_heights.empty(), "--at-height"),
+                                      {!options.at_ratios.empty(), "--at-ratio"},
+                                      {!options.areal.volumes.empty(), "--ratios"},
+                                      {!options.areal.difference.empty(), "--height-between"}})
+    if (given && !functional)
+      return engine::inputError("no material ratios are measured without the functional parameters", option,
+                                "add functional to --only");
+  if (auto status = checkAreal(options.areal); !status) return tl::unexpected(status.error());
   if (auto status = checkListShard(options.shard, options.shard_folder); !status)
     return tl::unexpected(status.error());
   // Two inputs cannot both be standard input.
@@ -306,51 +286,34 @@ void addMeasure(Command root, Chosen& chosen) {
       root, chosen, "measure", "Surface texture parameters of ISO 25178-2, about a form",
       [options, &chosen](engine::JobControl& job) { return measure(*options, chosen.arguments, job); },
       printMeasured, Progress::kOwn, batchStatus);
+  command.add({{.name = "SCAN",
+                .to = &options->scans,
+                .text = "The scan, or several, each with a report of its own; - for standard input",
+                .kind = ValueKind::kInput,
+                .required = true},
+               {.name = "--only",
+                .to = &options->groups,
+                .text = "Only these groups, and that of heights: the others need more time and memory",
+                .words = groupWords(),
+                .shown = "GROUP[,GROUP...]",
+                .otherwise = "all groups",
+                .between = ','},
+               {.name = "--at-height",
+                .to = &options->at_heights,
+                .text = "Heights about the mean for the material ratio Smr(c), below it with -: 0,-0.5um",
+                .shown = "C[,C...]",
+                .between = ','},
+               {.name = "--at-ratio",
+                .to = &options->at_ratios,
+                .text = "Material ratios for the height Smc(mr)",
+                .range = Range{0.0, 100.0},
+                .unit = "%",
+                .shown = "MR[,MR...]",
+                .otherwise = "10,80",
+                .between = ','}});
+  addArealOptions(command, options->areal);
   command.add(
-      {{.name = "SCAN",
-        .to = &options->scans,
-        .text = "The scan, or several, each with a report of its own; - for standard input",
-        .kind = ValueKind::kInput,
-        .required = true},
-       {.name = "--only",
-        .to = &options->groups,
-        .text = "Only these groups, and that of heights: the others need more time and memory",
-        .words = groupWords(),
-        .shown = "GROUP[,GROUP...]",
-        .otherwise = "all groups",
-        .between = ','},
-       {.name = "--at-height",
-        .to = &options->at_heights,
-        .text = "Heights about the mean for the material ratio Smr(c), below it with -: 0,-0.5um",
-        .shown = "C[,C...]",
-        .between = ','},
-       {.name = "--at-ratio",
-        .to = &options->at_ratios,
-        .text = "Material ratios for the height Smc(mr)",
-        .range = Range{0.0, 100.0},
-        .unit = "%",
-        .shown = "MR[,MR...]",
-        .otherwise = "10,80",
-        .between = ','},
-       {.name = "--ratios",
-        .to = &options->volumes,
-        .text = "Material ratios where peaks end and dales begin in Vmp, Vmc, Vvc and Vvv, in %",
-        .shown = "P,Q",
-        .otherwise = "10,80",
-        .values = 2,
-        .between = ','},
-       {.name = "--height-between",
-        .to = &options->difference,
-        .text = "Sdc, the height difference between two material ratios, in %",
-        .shown = "P,Q",
-        .values = 2,
-        .between = ','},
-       {.name = "--prune",
-        .to = &options->prune,
-        .text = "Hills and dales that are lower than this over their saddle are no features",
-        .range = Range{0.0, 100.0},
-        .unit = "% of Sz"},
-       {.name = "--csv",
+      {{.name = "--csv",
         .to = &options->csv,
         .text = "Write a row per scan and parameter, in the scan's units",
         .kind = ValueKind::kOutput},

@@ -49,6 +49,7 @@ engine::Result<Foreseen> foreseeReport(const ReportDraft& draft, const std::stri
   areal.region = formChoiceOf(draft.options.form).region;
   areal.at_ratios = curveRatios();
   areal.analysis = true;
+  choose(choiceOf(draft.options.areal), areal);
   PlannedWork planned{
       .field = field,
       .original = field,
@@ -92,6 +93,7 @@ engine::Result<Report> writeReport(const ReportArguments& options, engine::JobCo
     if (auto status = pdfIsPossible(); !status) return tl::unexpected(status.error());
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   if (auto status = checkNoiseTrials(options.noise_trials); !status) return tl::unexpected(status.error());
+  if (auto status = checkAreal(options.areal); !status) return tl::unexpected(status.error());
   if (auto status =
           checkOutputs({{options.out, OutputKind::kPage, *extension}},
                        {options.scan, options.original, options.form.marks}, Replacing::kNoWork, job);
@@ -146,6 +148,7 @@ void addReport(Command root, Chosen& chosen) {
   addSectionOptions(command, options->sections);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
+  addArealOptions(command, options->areal);
   addNoiseOption(command, options->noise_trials);
   addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);

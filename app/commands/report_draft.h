@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/areal_option.h"
 #include "app/commands/form_option.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/report_sections.h"
@@ -29,6 +30,7 @@ struct ReportArguments {
   std::string type;   ///< empty: by the name of `out`, else html
   FormArguments form;
   ScaleArguments scale;
+  ArealArguments areal;
   int noise_trials = kUsualTrials;
   bool estimate = false;
   ReportSections sections;

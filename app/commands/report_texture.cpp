@@ -80,12 +80,15 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
     areal.region = formChoiceOf(draft.options.form).region;
     areal.at_ratios = curveRatios();
     areal.analysis = true;
+    const ArealChoice choice = choiceOf(draft.options.areal);
+    choose(choice, areal);
     areal.fitted = limited->fit.numbers;
     auto parameters = engine::measureAreal(limited->field, limited->form, areal, draft.job);
     if (!parameters) return tl::unexpected(parameters.error());
     addForm(reports.emplace_back(), draft.options.form, limited->fit, state.field.grid());
     addScale(reports.back(), draft.options.scale);
     addAreal(reports.back(), *parameters, {}, state.field.grid());
+    addChosen(reports.back(), choice, *parameters);
     engine::ArealParameters stated = *parameters;
     stated.heights.clear();
     areal.at_ratios.clear();

@@ -186,6 +186,17 @@ std::string textWith(const ArealRow& row, const Report& report) {
   return text;
 }
 
+constexpr const char* kSdcText = textOf("height difference of two material ratios");
+
+std::string sdcText(const Report& sdc) {
+  return fmt::format("height difference of the material ratios {:.5g} and {:.5g} %",
+                     sdc["ratios"][0].get<double>() * 100.0, sdc["ratios"][1].get<double>() * 100.0);
+}
+
+bool isFunctional(const ArealGroup& group) {
+  return std::string_view(group.word) == "functional";
+}
+
 // Why a figure without noise is not stated.
 std::string noWithout(const Report& effect) {
   return effect.is_null() ? "" : effect.value("reason", std::string());
@@ -315,7 +326,7 @@ void printAreal(const Report& report) {
         printRow(row.name, value, row.quantity, shownAs(row.quantity, height, length), textWith(row, report),
                  effectOn(report, row.key), noise);
     }
-    if (std::string_view(group.word) != "functional" || !report.contains("smr")) continue;
+    if (!isFunctional(group) || !report.contains("smr")) continue;
     const Shown ratio = shownAs(Quantity::kRatio, height, length);
     const Shown level = shownAs(Quantity::kHeight, height, length);
     for (const Report& each : report["smr"])
@@ -338,10 +349,7 @@ void printAreal(const Report& report) {
                                each["ratio"].get<double>() * 100.0),
                    noise ? no_trial : Report(), noise);
     if (report.contains("sdc"))
-      printRow("Sdc", report["sdc"]["height"], Quantity::kHeight, level,
-               fmt::format("height difference of the material ratios {:.5g} and {:.5g} %",
-                           report["sdc"]["ratios"][0].get<double>() * 100.0,
-                           report["sdc"]["ratios"][1].get<double>() * 100.0),
+      printRow("Sdc", report["sdc"]["height"], Quantity::kHeight, level, sdcText(report["sdc"]),
                noise ? no_trial : Report(), noise);
   }
 }
@@ -351,11 +359,11 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
   const ReadAs height = readHeightsAs(first);
   const ReadAs length = readAcrossAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
   std::vector<ArealLine> lines;
-  for (const ArealGroup& group : kArealGroups)
+  for (const ArealGroup& group : kArealGroups) {
     for (const ArealRow& row : kArealRows) {
       if (std::string_view(row.group) != group.word || !first.contains(row.key)) continue;
       const Shown shown = shownAs(row.quantity, height, length);
-      ArealLine line{group.heading, row.name, shown.unit, row.text, {}, {}};
+      ArealLine line{group.heading, row.name, shown.unit, textWith(row, first), {}, {}};
       for (const Report& report : reports) {
         line.values.push_back(
             report[row.key].is_null()
@@ -366,15 +374,29 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
       }
       lines.push_back(std::move(line));
     }
+    if (!isFunctional(group) || !first.contains("sdc")) continue;
+    const Shown shown = shownAs(Quantity::kHeight, height, length);
+    ArealLine line{group.heading, "Sdc", shown.unit, sdcText(first["sdc"]), {}, {}};
+    for (const Report& report : reports) {
+      const Report& between = report["sdc"]["height"];
+      line.values.push_back(between.is_null() ? "the samples do not determine it"
+                                              : fmt::format("{:.5g}", between.get<double>() * shown.factor));
+      line.without.emplace_back();  // trials do not measure it
+    }
+    lines.push_back(std::move(line));
+  }
   return lines;
 }
 
-std::vector<ArealLine> arealNames() {
+std::vector<ArealLine> arealNames(WithSdc sdc) {
   std::vector<ArealLine> lines;
-  for (const ArealGroup& group : kArealGroups)
+  for (const ArealGroup& group : kArealGroups) {
     for (const ArealRow& row : kArealRows)
       if (std::string_view(row.group) == group.word)
         lines.push_back({group.heading, row.name, {}, row.text, {}, {}});
+    if (isFunctional(group) && sdc == WithSdc::kYes)
+      lines.push_back({group.heading, "Sdc", {}, kSdcText, {}, {}});
+  }
   return lines;
 }
 

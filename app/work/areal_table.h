@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,11 +49,12 @@ struct ArealLine {
   std::vector<std::string> values;   ///< one for each report: a figure, or the reason why none is stated
   std::vector<std::string> without;  ///< without noise, "12.3 +- 0.2"; empty where it is not stated
 };
-/// The parameters that the reports of addAreal have, in the units in which those of the first read at ease.
+/// The parameters that the reports of addAreal and addChosen have, in the units in which those of the first read at ease.
 [[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports);
 
-/// The same lines without values and units: of parameters that are still to be measured.
-[[nodiscard]] std::vector<ArealLine> arealNames();
+/// The same lines without values and units: of parameters that are still to be measured, with Sdc or without.
+enum class WithSdc : std::uint8_t { kNo, kYes };
+[[nodiscard]] std::vector<ArealLine> arealNames(WithSdc sdc);
 
 /// Rows of kArealHeading of a report of addAreal, in the scan's units, ratios in per cent; the last one is the form that lies
 /// over the scan, `layer` of the report.

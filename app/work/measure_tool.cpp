@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "app/work/areal_choice.h"
 #include "engine/inspect/noise_model.h"
 #include "engine/marks/change_marks.h"
 #include "engine/marks/polygon.h"
@@ -58,6 +61,26 @@ engine::Result<engine::Version> withMarksOf(const engine::Version& field, const 
 
 enum class Curves : std::uint8_t { kWithout, kWith };
 
+ArealChoice choiceOf(const MeasureTool::Options& options) {
+  if (!options.own) return {};
+  ArealChoice choice{.volumes = {options.peaks / 100.0, options.dales / 100.0},
+                     .prune = options.prune / 100.0};
+  if (options.between) choice.difference = {options.from / 100.0, options.to / 100.0};
+  return choice;
+}
+
+engine::Status checkRatios(const MeasureTool::Options& options) {
+  const auto check = [](double low, double high) -> engine::Status {
+    if (low < high) return {};
+    return engine::inputError(
+        fmt::format("the material ratios {:.6g} and {:.6g} are not in order", low, high), "",
+        "give the smaller one first");
+  };
+  if (!options.own) return {};
+  if (auto status = check(options.peaks, options.dales); !status || !options.between) return status;
+  return check(options.from, options.to);
+}
+
 engine::Result<engine::ArealParameters> parametersOf(const engine::Version& field,
                                                      const MeasureTool::Options& options, Curves curves,
                                                      engine::TrialNoise noise, engine::JobControl& job) {
@@ -70,10 +93,14 @@ engine::Result<engine::ArealParameters> parametersOf(const engine::Version& fiel
   engine::ArealOptions areal;
   areal.region = region;
   areal.fitted = fit->numbers;
+  ArealChoice choice = choiceOf(options);
   if (curves == Curves::kWith) {
     areal.at_ratios = curveRatios();
     areal.analysis = true;
+  } else {
+    choice.difference.reset();  // trials do not measure it
   }
+  choose(choice, areal);
   return engine::measureAreal(field, fit->form, engine::optionsOf(areal, noise), job);
 }
 
@@ -88,10 +115,13 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
   if (!measured) return tl::unexpected(measured.error());
   MeasuredState state{Report(), curvesOf(*measured, field.grid())};
   if (std::isnan(measured->sq)) state.curves.heights.clear();
+  Report chosen;
+  addChosen(chosen, choiceOf(options), *measured);
   // The noise says nothing of the curves, whose autocorrelation is as large as the field.
   measured->heights.clear();
   measured->analysis.reset();
   addAreal(state.report, *measured, {}, field.grid());
+  state.report.update(chosen);
   if (!options.noise) return state;
   const auto noise = engine::measureNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
@@ -117,6 +147,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     work.figures.options = what;
     work.figures.before = engine::measureChange(scan, field).tiles > 0;
     engine::Version after = field, before = scan;
+    if (auto status = checkRatios(what); !status) return tl::unexpected(status.error());
     if (what.where == Where::kVisible) {
       if (seen.columns <= 0 || seen.rows <= 0)
         return engine::inputError("nothing of the field is visible", "", "move the view to it");

@@ -22,7 +22,12 @@ class MeasureTool {
     Where where = Where::kAll;
     int degree = 1;  ///< of the form that is taken out
     bool robust = false;
-    bool noise = false;  ///< figures without noise, by 16 trials
+    bool noise = false;                 ///< figures without noise, by 16 trials
+    bool own = false;                   ///< the next ones count, else they are the usual ones
+    double peaks = 10.0, dales = 80.0;  ///< material ratios where peaks end and dales begin [%]
+    double prune = 5.0;                 ///< hills and dales that are lower are no features [% of Sz]
+    bool between = false;               ///< also Sdc, of the next two
+    double from = 10.0, to = 80.0;      ///< material ratios [%]
   };
   Options options;
   /// The curve that the panel shows.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -274,6 +275,35 @@ TEST(ReportPage, OfAFullDiskLeavesNothing) {
     EXPECT_EQ(bytesOf(out.file(name)), "what was there");
     std::filesystem::remove(out.file(name));
   }
+}
+
+// The ratios and the pruning of fettle measure, with its figures.
+TEST(ReportPage, RatiosAndPruningAreThoseAskedFor) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif"), page = folder.file("page.html");
+  ASSERT_EQ(fettle({"synth", scan, "--part", "steps", "--size", "128x96"}).status, 0);
+  const std::vector<std::string> asked = {"--ratios", "5,90", "--height-between", "10,60",
+                                          "--prune",  "12",   "--noise-trials",   "0"};
+  std::vector<std::string> report{"report", scan, page}, measure{"measure", scan};
+  report.insert(report.end(), asked.begin(), asked.end());
+  measure.insert(measure.end(), asked.begin(), asked.end());
+  ASSERT_EQ(fettle(report).status, 0);
+  std::ostringstream html_text;
+  html_text << std::ifstream(page).rdbuf();
+  const std::string html = html_text.str(), text = fettle(measure).out;
+  for (const char* said :
+       {"(5 to 90 %)", "of 12 % of Sz", "height difference of the material ratios 10 and 60 %"}) {
+    EXPECT_NE(html.find(said), std::string::npos) << said;
+    EXPECT_NE(text.find(said), std::string::npos) << said;
+  }
+  // "Sdc   12.345 um   ...": the same figure in the same unit.
+  std::istringstream line(text.substr(text.find("Sdc")));
+  std::string name, figure;
+  line >> name >> figure;
+  EXPECT_NE(html.find(">" + figure + "<", html.find("Sdc")), std::string::npos) << figure;
+  const Outcome wrong = fettle({"report", scan, page, "--ratios", "90,5"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("not in order"), std::string::npos) << wrong.err;
 }
 
 // Curves are no reason to refuse: where gnuplot is not on the path the page says so.

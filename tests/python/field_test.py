@@ -367,6 +367,11 @@ class Level(unittest.TestCase):
         self.assertEqual(full.compare(turned.transformed(turn=270), region="polygon 0.5,0.5 9.5,0.5 9.5,4.5 0.5,4.5")["samples"], 9 * 4)
         with self.assertRaises(fettle.InputError):
             full.measure(region="rectangle 100,0,200,5")
+        self.assertEqual(full.measure(only=["height"], region="rectangle 1cm,0,20000um,5mm")["samples"], 11 * 6)
+        asked = full.measure(ratios=(5, 90), height_between=(10, 60), prune=12, noise_trials=0)
+        np.testing.assert_allclose(asked["volume_ratios"], (0.05, 0.9))
+        np.testing.assert_allclose(asked["sdc"]["ratios"], (0.1, 0.6))
+        self.assertAlmostEqual(asked["prune"], 0.12)
 
     def test_changes_are_limited_from_the_levelled_heights(self):
         scan = fettle.synth(part="steps", size=(96, 80))
@@ -415,11 +420,6 @@ class Level(unittest.TestCase):
             np.testing.assert_array_equal(np.asarray(other), np.asarray(field))
             self.assertEqual(other.info()["form"], "sphere")
             self.assertEqual(other.level(layer="remove").hash, field.level(layer="remove").hash)
-        np.testing.assert_array_equal(np.asarray(formed.level(layer="bake")), np.asarray(ball.level(form="sphere")))
-        with self.assertRaisesRegex(fettle.InputError, "do not determine a sphere"):
-            fettle.Field(np.zeros((50, 60)), spacing=0.1, unit="mm").level(form="sphere")
-
-
         # The sphere goes along, and says what it is at any time.
         turned = formed.transformed(turn=90)
         np.testing.assert_allclose(np.asarray(turned), np.rot90(np.asarray(formed), -1), atol=2e-6)
@@ -428,6 +428,11 @@ class Level(unittest.TestCase):
         self.assertLess(float(np.abs(np.asarray(coarse)).max()), 1e-5)
         for field in (formed, turned, coarse):
             self.assertAlmostEqual(field.info()["form_figures"]["radius_mm"], 20.0, places=3)
+        np.testing.assert_array_equal(np.asarray(formed.level(layer="bake")), np.asarray(ball.level(form="sphere")))
+        with self.assertRaisesRegex(fettle.InputError, "do not determine a sphere"):
+            fettle.Field(np.zeros((50, 60)), spacing=0.1, unit="mm").level(form="sphere")
+
+
 class ElsewhereAndBack(unittest.TestCase):
     def test_a_field_goes_through_pickle_as_it_is(self):
         field = fettle.synth(size=(96, 64), seed=7).mark(edges=True, lines_out=True).filter("median")

@@ -14,6 +14,30 @@
 namespace fettle::app {
 namespace {
 
+// What the functional and the feature parameters are of.
+void ratioFields(MeasureTool::Options& options) {
+  constexpr const char* kPercent = "%.6g %%";
+  beginFields();
+  (void)field("peaks end at", "Material ratio where peaks end and the core begins: of Vmp, Vmc and Vvc.",
+              [&] { return typeNumber("##peaks", options.peaks, 0.0, 100.0, kPercent); });
+  (void)field("dales begin at", "Material ratio where the core ends and dales begin: of Vmc, Vvc and Vvv.",
+              [&] { return typeNumber("##dales", options.dales, 0.0, 100.0, kPercent); });
+  (void)field("features from",
+              "Hills and dales that are lower than this share of Sz over their saddle are no features.",
+              [&] { return typeNumber("##prune", options.prune, 0.0, 100.0, kPercent); });
+  endFields();
+  tickBox("height between two ratios", options.between,
+          "Also Sdc, the difference of the heights at two material ratios.");
+  ImGui::BeginDisabled(!options.between);
+  beginFields();
+  (void)field("from", "The smaller material ratio of Sdc, whose height is the larger one.",
+              [&] { return typeNumber("##from ratio", options.from, 0.0, 100.0, kPercent); });
+  (void)field("to", "The larger material ratio of Sdc.",
+              [&] { return typeNumber("##to ratio", options.to, 0.0, 100.0, kPercent); });
+  endFields();
+  ImGui::EndDisabled();
+}
+
 void measureFields(MeasureTool::Options& options) {
   using Where = MeasureTool::Where;
   beginFields();
@@ -55,7 +79,7 @@ void withoutNoise(const std::string& text) {
 
 // A column for each value; with `noise` a second row for each parameter, with its figures without noise. The table has its
 // rows from when it is asked for: what is below moves by that click, and not when the figures come.
-void arealTable(const MeasureTool& measure, bool noise) {
+void arealTable(const MeasureTool& measure, bool noise, WithSdc sdc) {
   const auto* figures = measure.figures();
   const bool before = figures && figures->before;
   if (!ImGui::BeginTable("parameters", before ? 4 : 3,
@@ -71,7 +95,7 @@ void arealTable(const MeasureTool& measure, bool noise) {
   if (before) cell(tr("scan"));
   cell(before ? tr("now") : tr("value"));
   cell("");
-  for (const ArealLine& line : figures ? figures->lines : arealNames()) {
+  for (const ArealLine& line : figures ? figures->lines : arealNames(sdc)) {
     ImGui::TableNextRow();
     cell(line.name);
     if (ImGui::IsItemHovered()) valueTip(tr(std::string_view(line.text)));
@@ -226,10 +250,16 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   if (pressButton("Measure now", "Surface texture of the field as it is now, and of the scan beside it."))
     measure.measure(context.client, picture.seenRect(context.client.field().grid()));
   ImGui::EndDisabled();
+  sameLineIfFits("own ratios", ItemKind::kTick);
+  tickBox(
+      "own ratios", measure.options.own,
+      "Other material ratios than 10 and 80 %, Sdc between two of them, other features than of 5 % of Sz.");
+  if (measure.options.own) ratioFields(measure.options);
   caption(measure);
   if (measure.asked() == nullptr) return;
   const auto* figures = measure.figures();
-  arealTable(measure, measure.busy() || !figures ? measure.asked()->noise : figures->options.noise);
+  arealTable(measure, measure.busy() || !figures ? measure.asked()->noise : figures->options.noise,
+             measure.asked()->own && measure.asked()->between ? WithSdc::kYes : WithSdc::kNo);
   surfaceCurves(context, measure);
 }
 

@@ -53,6 +53,14 @@ TEST_F(WindowTest, parameters_are_measured_of_what_is_chosen_before_and_after) {
   EXPECT_TRUE(user.reads("ISO 25178-2"));
   user.at({20, 790});
   (void)user.look("all");
+  // Sdc is one more row.
+  EXPECT_FALSE(all["parameters"].contains("Sdc"));
+  (void)user.click("own ratios");
+  (void)user.click("height between two ratios");
+  const State between = user.click("Measure now");
+  EXPECT_TRUE(between["parameters"].contains("Sdc"));
+  EXPECT_EQ(between["parameters"]["Ssk"], all["parameters"]["Ssk"]);
+  (void)user.click("own ratios");
   // Of what is visible: nearer, there is less.
   (void)user.key("7");
   user.at({300, 400});
