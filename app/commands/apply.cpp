@@ -156,6 +156,7 @@ engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& jo
   Report done{{"do", "level"}};
   addLevelling(done, step.lines, step.form, *levelling, at.field.grid());
   done["rms"] = levelling->fit.rms;
+  if (step.form.robust) done["rms_counted"] = levelling->fit.rms_counted;
   at.steps.push_back(std::move(done));
   return {};
 }
@@ -197,8 +198,8 @@ engine::Status take(const RecipeTransform& step, Applied& at, engine::JobControl
   const bool shared = at.original == at.field;
   auto field = transformed(at.field, step.what, job);
   if (!field) return tl::unexpected(field.error());
-  // What changes are limited from goes along.
   warnOfFormLeft(at.field, field->field, at.task.in);
+  // What changes are limited from goes along.
   auto original = shared ? field : transformed(at.original, step.what, job);
   if (!original) return tl::unexpected(original.error());
   at.field = std::move(field->field);
@@ -215,6 +216,7 @@ engine::Status take(const RecipeForm& step, Applied& at, engine::JobControl& job
   if (layered->fit) {
     addForm(done, step.form, *layered->fit, at.field.grid());
     done["rms"] = layered->fit->rms;
+    if (step.form.robust) done["rms_counted"] = layered->fit->rms_counted;
   } else {
     done["form"] = formWordOf(*at.field.formOver());
   }

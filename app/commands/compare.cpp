@@ -16,6 +16,7 @@
 #include "app/commands/list_text.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/region_option.h"
+#include "app/commands/rounding_warning.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/shards/list_shard.h"
@@ -198,6 +199,7 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   if (foreseen->only) return *std::move(foreseen->only);
   Report alignment;
   if (options.aligned) {
+    // Where B was moved, its samples are others than those that were filled.
     warnOfFilled(b->field, b->original, options.b);
     const auto found = alignmentOf(*a, b->field, options.a, options.b, options.align, job);
     if (!found) return tl::unexpected(found.error());
@@ -209,13 +211,14 @@ engine::Result<Report> compareOne(const CompareArguments& options, std::optional
   const auto of_a = chosenOf(a->field, a->original, options.a, options.counted, job);
   if (!of_a) return tl::unexpected(of_a.error());
   warnOfFilled(*of_a, a->original, options.a);
-  if (!options.aligned) warnOfFilled(b->field, b->original, options.b);
   const auto of_b = chosenLike(b->field, *of_a, options.counted, job);
   if (!of_b) return tl::unexpected(of_b.error());
+  if (!options.aligned) warnOfFilled(*of_b, b->original, options.b);
   const auto deviation = engine::compareFields(*of_a, *of_b, job);
   if (!deviation) return tl::unexpected(deviation.error());
   warnOfDifferentGrids(options, a->field.grid(), b->field.grid());
   if (deviation->samples == 0) return tl::unexpected(nothingInCommon(options, *deviation));
+  warnOfRounding({&a->field, &b->field}, deviation->rms, "the rms of the deviation", shownInput(options.b));
   Report report{{"unit", a->field.grid().height_unit.name},
                 {"samples", deviation->samples},
                 {"rms", deviation->rms},

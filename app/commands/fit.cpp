@@ -13,6 +13,7 @@
 #include "app/commands/fit_text.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/region_option.h"
+#include "app/commands/rounding_warning.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_options.h"
@@ -22,8 +23,8 @@
 #include "app/work/memory_places.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
-#include "engine/field/piece.h"
 #include "app/work/typed_lengths.h"
+#include "engine/field/piece.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
 
@@ -191,6 +192,11 @@ engine::Result<Report> fit(const FitArguments& options, engine::JobControl& job)
     if (auto status = addRelation(*fits, options.between[0], options.between[1]); !status)
       return tl::unexpected(status.error());
   const std::vector<FittedRegion>& fitted = fits->fitted;
+  // Of several the one that is left the least of.
+  double least = std::numeric_limits<double>::infinity();
+  for (const FittedRegion& each : fitted) least = std::min(least, each.chosen.fit.rms_mm);
+  warnOfRounding({&imported->field}, least / field->grid().height_unit.mm, "the rms of what a shape leaves",
+                 shownInput(options.scan));
   Report& report = fits->report;
   if (!options.residuals.empty()) {
     const auto map = residualField(*field, fitted, how.vertical, job);

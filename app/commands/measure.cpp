@@ -18,6 +18,7 @@
 #include "app/commands/measuring.h"
 #include "app/commands/noise_option.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/rounding_warning.h"
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -164,13 +165,12 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
                                {"material_volume", numberOrNull(measured->material[i])},
                                {"void_volume", numberOrNull(measured->voids[i])}});
   }
-  // Of a smoothed surface the scan's rounding says nothing.
   addChosen(report, choice, *measured, areal->at_ratios.size());
   if (!areal->functional) report.erase("volume_ratios");
   if (!areal->feature) report.erase("prune");
+  // Of a smoothed surface the scan's rounding says nothing.
   if (options.scale.s_filter.empty())
-    if (const std::string doubt = engine::roundingDoubt(*marked, *measured); !doubt.empty())
-      warn(fmt::format("{}: {}; a zero near the surface keeps more digits", shownInput(scan), doubt));
+    warnOfRounding(engine::roundingDoubt(*marked, *measured), shownInput(scan));
   // Trials measure what is stated, not the curves.
   engine::ArealParameters stated = *measured;
   stated.heights.resize(areal->at_ratios.size());

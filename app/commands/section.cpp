@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/region_option.h"
+#include "app/commands/rounding_warning.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_options.h"
@@ -28,11 +30,12 @@
 #include "app/work/section_noise.h"
 #include "app/work/section_report.h"
 #include "app/work/streams.h"
+#include "app/work/typed_lengths.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
-#include "app/work/typed_lengths.h"
 #include "engine/measure/around.h"
 #include "engine/measure/probe.h"
+#include "engine/measure/roughness.h"
 #include "engine/measure/section.h"
 
 namespace fettle::app {
@@ -230,6 +233,22 @@ engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArgumen
   return planned;
 }
 
+// The least rms that figures of sections have [mm]: of profiles about their mean line, of stretches about a line; infinite without one.
+double leastRmsOf(const Report& sections) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto take = [&least](const Report& figures, const std::string& key) {
+    if (figures.contains(key) && figures[key].is_number())
+      least = std::min(least, figures[key].get<double>());
+  };
+  for (const Report& section : sections) {
+    if (section.contains("line")) take(section["line"], "rms_mm");
+    for (const engine::ProfileInfo& profile : engine::profileInfos())
+      if (const std::string word(profile.word); section.contains(word))
+        take(section[word], fmt::format("{}q_mm", word.front()));
+  }
+  return least;
+}
+
 engine::Result<Report> takeSections(const SectionArguments& options, engine::JobControl& job) {
   if (auto status = checkSectionWords(options); !status) return tl::unexpected(status.error());
   if (auto status =
@@ -307,6 +326,8 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     }
     report["sections"].push_back(std::move(one));
   }
+  warnOfRounding({&scan->field}, leastRmsOf(report["sections"]) / scan->field.grid().height_unit.mm,
+                 "the rms of a profile or of what a line leaves", shownInput(options.scan));
   if (!options.probes.empty()) {
     auto probes = probed(options, *scan);
     if (!probes) return tl::unexpected(probes.error());

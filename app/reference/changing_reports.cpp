@@ -186,6 +186,7 @@ std::vector<ReportSchema> changing() {
                        {"region?", "string", "all, marked, unmarked"}},
                       formFigures()),
                {{"rms?", "number", "of the samples about the form, height unit"},
+                {"rms_counted?", "number", "with robust: of those that count alone"},
                 {"method?", "string", "of a fill, as the next three: curvature or membrane"},
                 {"holes?", "integer", "that there were"},
                 {"filled_holes?", "integer", ""},

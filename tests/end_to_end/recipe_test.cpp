@@ -234,7 +234,7 @@ TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
                            "[[step]]\ndo = \"filter\"\nfilter = \"box\"\nwindow = 5\nmax_change = \"15um\"\n";
   const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
   const auto level = fettleJson({"level", scan, folder.file("l.tif"), "--form", "poly2", "--robust"});
-  for (const char* key : {"form", "robust", "region", "tilt_x", "tilt_y", "rms"})
+  for (const char* key : {"form", "robust", "region", "tilt_x", "tilt_y", "rms", "rms_counted"})
     EXPECT_EQ(report["steps"][0][key], level[key]) << key;
   const auto filtered = fettleJson({"filter", folder.file("l.tif"), folder.file("f.tif"), "--filter", "box",
                                     "--window", "5", "--max-change", "15um"});
@@ -304,7 +304,7 @@ TEST(Recipes, FormsArePutBakedAndRemovedAsByTheCommands) {
     std::ofstream(file("put.toml")) << fettle({"recipe", file("a.fettle")}).out;
     const auto applied = fettleJson({"apply", file("put.toml"), file("s.tif"), file("b.fettle"), "--force"});
     EXPECT_EQ(applied["hash"], put["hash"]);
-    for (const char* key : {"form", "robust", "region", "rms"})
+    for (const char* key : {"form", "robust", "region", "rms", "rms_counted"})
       EXPECT_EQ(applied["steps"][0][key], put[key]) << key;
     EXPECT_EQ(fettleJson({"info", file("b.fettle")})["form"], form);
     EXPECT_EQ(fettle({"recipe", file("b.fettle")}).out, fettle({"recipe", file("a.fettle")}).out);

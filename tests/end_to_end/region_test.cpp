@@ -252,5 +252,19 @@ TEST_F(RegionOption, SaysWhatIsNoRegion) {
   expectRefused(fettle({"remove", scan_, out_, "--region", "measured", "--unit", "mm"}), "is not one of");
 }
 
+// A hole in its middle does not matter, holes alone do: nothing of them could be marked.
+TEST_F(RegionOption, MarksWhatHasAHeightAroundAHole) {
+  // Column 13, row 16 is a hole, and every sample beside it has a height.
+  ASSERT_TRUE(isHole(13, 16));
+  const Inside around = [](double x, double y) { return x > 1.15 && x < 1.45 && y > 5.9 && y < 6.9; };
+  EXPECT_EQ(samplesIn(around), 8);
+  for (const char* region : {"rectangle 1.2,6,1.4,6.8", "polygon 1.15,5.9 1.45,5.9 1.45,6.9 1.15,6.9"})
+    EXPECT_EQ(run({"mark", scan_, folder_.file("m.png"), "--region", region})["marked"], 8) << region;
+  const Outcome alone = fettle(
+      {"mark", scan_, folder_.file("n.png"), "--region", "rectangle 1.26,6.3,1.34,6.5", "--unit", "mm"});
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("with a height lies in"), std::string::npos) << alone.err;
+}
+
 }  // namespace
 }  // namespace fettle::tests

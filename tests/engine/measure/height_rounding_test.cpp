@@ -59,5 +59,33 @@ TEST(HeightRounding, IsNotSaidWhereFloatsHoldTheSurface) {
   EXPECT_EQ(roundingDoubt(flat, arealOfWaves(flat)), "");
 }
 
+// What rounding has of an rms is what the same waves at 0 have not: to the scatter of 40,000 roundings, a hundredth.
+TEST(HeightRounding, OfAnRmsIsTheShareThatRoundingHas) {
+  const double high = 3e-5;
+  const auto squareOf = [&](double height) {
+    const Version field = wavesAt(height, high);
+    double sum = 0.0;
+    for (int r = 0; r < kRoundedSide; ++r)
+      for (int c = 0; c < kRoundedSide; ++c) {
+        const double wave = high * std::sin(0.13 * c + 0.07 * r) * std::cos(0.11 * r);
+        sum += std::pow(field.reader().heightAt(c, r) - height - wave, 2);
+      }
+    return sum / (kRoundedSide * kRoundedSide);
+  };
+  // As if the waves were what is left: rounding alone is, of the squares.
+  const double rounding = squareOf(100.0), rms = std::sqrt(5.0 * rounding);
+  const Version field = wavesAt(100.0, high), other = wavesAt(0.0, high);
+  const std::string doubt = roundingDoubt({&field}, rms, "the rms of waves");
+  const auto at = doubt.find("which has ");
+  ASSERT_NE(at, std::string::npos) << doubt;
+  EXPECT_NEAR(std::stod(doubt.substr(at + 10)), 20.0, 1.0) << doubt;
+  EXPECT_NE(doubt.find(" % of the square of the rms of waves"), std::string::npos) << doubt;
+  // Of two fields both count; here one has none to speak of.
+  EXPECT_EQ(roundingDoubt({&other, &field}, rms, "the rms of waves").substr(0, 40), doubt.substr(0, 40));
+  EXPECT_EQ(roundingDoubt({&field}, 10.0 * rms, "the rms of waves"), "");
+  EXPECT_EQ(roundingDoubt({&field}, 0.0, "the rms of waves"), "");
+  EXPECT_EQ(roundingDoubt({&other}, rms, "the rms of waves"), "");
+}
+
 }  // namespace
 }  // namespace fettle::engine
