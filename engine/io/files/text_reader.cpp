@@ -142,6 +142,21 @@ bool wholeNumber(std::string_view word, std::uint64_t& number) noexcept {
   return error == std::errc{} && end == word.data() + word.size();
 }
 
+std::string_view withoutByteOrderMark(std::string_view text) noexcept {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
+
+bool isRemark(std::string_view line) noexcept {
+  return line.starts_with('#') || line.starts_with("//") || line.starts_with('%');
+}
+
+std::string_view remarkText(std::string_view line) noexcept {
+  line.remove_prefix(line.starts_with("//") ? 2 : 1);
+  return line;
+}
+
 bool looksLikeText(std::string_view head) noexcept {
   return std::ranges::none_of(head, [](char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -65,6 +65,14 @@ extern template bool parseNumber<double>(const char*&, const char*, double&) noe
 /// Reads a number of only digits, all of `word`. False if it is not one or past 2^64.
 [[nodiscard]] bool wholeNumber(std::string_view word, std::uint64_t& number) noexcept;
 
+/// Text of a program that marks UTF-8 at its beginning (EF BB BF), without that mark.
+[[nodiscard]] std::string_view withoutByteOrderMark(std::string_view text) noexcept;
+
+/// Whether a line is a remark beside numbers: it begins with #, // or %.
+[[nodiscard]] bool isRemark(std::string_view line) noexcept;
+/// A remark without the characters that make it one.
+[[nodiscard]] std::string_view remarkText(std::string_view line) noexcept;
+
 /// Whether bytes look like text: no control characters except white space.
 [[nodiscard]] bool looksLikeText(std::string_view head) noexcept;
 

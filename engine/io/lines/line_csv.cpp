@@ -120,8 +120,7 @@ Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& gri
   TextReader reader(file);
   std::string_view text;
   const bool has_header = reader.line(text);
-  // Of programs that mark UTF-8.
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = withoutByteOrderMark(text);
   // Spreadsheets write semicolons where the comma is the decimal sign; numbers have points here all the same.
   const char separator = text.starts_with("line;") ? ';' : ',';
   std::string header(text);

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/io/files/input_file.h"
+#include "engine/io/files/text_reader.h"
 #include "engine/io/lines/line_csv.h"
 
 namespace fettle::engine {
@@ -28,7 +29,7 @@ Status checkLineExtension(const std::string& path) {
 
 std::string_view lineExtensionOf(std::string_view head) noexcept {
   if (head.starts_with("SQLite format 3")) return ".gpkg";
-  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  head = withoutByteOrderMark(head);
   if (head.starts_with("line,") || head.starts_with("line;")) return ".csv";
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return {};

@@ -26,8 +26,7 @@ bool isBlank(char c) {
 }
 
 bool isComment(std::string_view line) {
-  return line.starts_with('#') || line.starts_with("//") || line.starts_with('%') || line.starts_with('!') ||
-         line.starts_with(';');
+  return isRemark(line) || line.starts_with('!') || line.starts_with(';');
 }
 
 std::string_view trimmed(std::string_view line) {
@@ -101,16 +100,6 @@ bool countsRows(const std::vector<double>& values) {
          values.end();
 }
 
-std::string_view withoutCommentMark(std::string_view line) {
-  line.remove_prefix(line.starts_with("//") ? 2 : 1);
-  return line;
-}
-
-std::string_view withoutByteOrderMark(std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  return text;
-}
-
 bool looksLikeXyz(std::string_view head, std::string_view extension) {
   head = withoutByteOrderMark(head);
   if (!looksLikeText(head)) return false;
@@ -155,8 +144,8 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
     if (line.empty()) continue;
     if (isComment(line)) {
       if (!cloud.unit) cloud.unit = lengthUnitFromComment(line);
-      notes.take(withoutCommentMark(line));
-      if (!separator) header.takeComment(withoutCommentMark(line));
+      notes.take(remarkText(line));
+      if (!separator) header.takeComment(remarkText(line));
       continue;
     }
     if (hasDecimalComma(line))

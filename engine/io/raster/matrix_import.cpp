@@ -33,15 +33,6 @@ std::string_view withoutBlanks(std::string_view text) {
   return text;
 }
 
-bool isRemark(std::string_view line) {
-  return line.starts_with('#') || line.starts_with("//") || line.starts_with('%');
-}
-
-std::string_view withoutMark(std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  return text;
-}
-
 // What programs write where nothing was measured; "nan" is a number to the parser.
 bool isNoHeight(std::string_view field) {
   static constexpr std::array<std::string_view, 9> kWords{"",  "na", "n/a", "null", "bad",
@@ -161,7 +152,7 @@ std::size_t fieldsIn(std::string_view line) {
 
 bool looksLikeMatrix(std::string_view head, std::string_view extension) {
   if (extension == ".xyz" || extension == ".pts" || !looksLikeText(head)) return false;
-  head = withoutMark(head);
+  head = withoutByteOrderMark(head);
   Remarks remarks;
   std::size_t named = 0;  // columns, at most, by a remark above them
   bool cut = false;
@@ -202,7 +193,7 @@ Result<Outline> outlineOf(const InputFile& file, JobControl& job) {
   std::int64_t number = 0;
   std::uint64_t reported = 0;
   for (std::string_view line; text.line(line);) {
-    if (++number == 1) line = withoutMark(line);
+    if (++number == 1) line = withoutByteOrderMark(line);
     if (number % 256 == 0) {
       if (job.cancelled()) return cancelled();
       job.advance(text.offset() - std::exchange(reported, text.offset()));
@@ -263,7 +254,7 @@ Status readMatrixRows(const InputFile& file, const Outline& outline, const Heigh
   std::int64_t number = 0;
   std::uint64_t reported = 0;
   for (std::string_view line; text.line(line);) {
-    if (++number == 1) line = withoutMark(line);
+    if (++number == 1) line = withoutByteOrderMark(line);
     line = withoutBlanks(line);
     if (line.empty() || isRemark(line) || (row == 0 && heightsIn(line) == 0)) continue;
     // The file grew since it was looked through.
