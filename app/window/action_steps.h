@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <glm/common.hpp>
+
 #include "app/overlay/line_overlay.h"
 #include "app/texts/texts.h"
 #include "app/window/parts.h"
@@ -169,6 +171,8 @@ inline void navigate(Parts& p) {
     p.suggester.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
+  else if (p.full_screen && !p.stylus.on())
+    p.setFullScreen(false);
   else
     p.chooseTool(std::nullopt);
 }
@@ -425,13 +429,16 @@ inline void setPlanePoint(Parts& p) {
   if (p.plane_points.take(*at, p.form.options)) p.form.preview(clientOf(p));
   p.picture.requestRedraw();
 }
-// An end of the section at the cursor; where that is not on the surface, none.
+// An end of the section at the cursor; beside the field its nearest place, outside of the picture none.
 template <void (SectionTool::*set)(const glm::dvec2&)>
 void sectionEnd(Parts& p) {
   if (!p.picture.inside(p.cursor.x, p.cursor.y)) return;
   const auto at = p.picture.fieldAt(p.cursor, clientOf(p).field(), p.view);
   if (!at) return;
-  (p.section.*set)(*at);
+  const engine::Grid& grid = clientOf(p).field().grid();
+  (p.section.*
+   set)(glm::clamp(*at, glm::dvec2(0.0),
+                   glm::dvec2((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm())));
   enterPanel(p, "Section");
   p.picture.requestRedraw();
 }

@@ -28,6 +28,8 @@ constexpr render::LineMeaning kOpenPlace{{0.75F, 0.08F, 0.75F}, textOf("place fo
     kSkippedPlace{{0.3F, 0.3F, 0.3F}, textOf("place skipped")},
     kSectionMeaning{{0.02F, 0.02F, 0.02F}, textOf("section")},
     kPointMeaning{{1.0F, 0.9F, 0.2F}, textOf("point of the plane")};
+constexpr float kSection_px = 2.5F;
+constexpr glm::vec3 kSectionRim{0.95F, 0.95F, 0.95F};
 constexpr glm::vec3 kPointRim{0.02F, 0.02F, 0.02F};
 
 // Its name in the language of the window.
@@ -182,15 +184,29 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
     return aboveSurface(reader, (section.from + (section.to - section.from) * (i / double(count))) / spacing);
   };
   render::OverlayLine piece;
-  piece.depth = render::OverlayLine::Depth::kInScene;
+  const auto draw = [&] {
+    for (int i = 0; i < count; ++i) {
+      piece.from_mm = at(i);
+      piece.to_mm = at(i + 1);
+      pieces_.push_back(piece);
+    }
+  };
+  // From afar the surface is drawn from means, and a line along its samples is partly below them: faintly on top of all, then in the scene
+  // on a light rim, which is seen on dark colours.
   piece.colour = kSectionMeaning.colour;
+  piece.depth = render::OverlayLine::Depth::kOnTop;
+  piece.opacity = chosen ? 0.3F : 0.15F;
+  piece.width_px = kSection_px;
+  draw();
+  piece.depth = render::OverlayLine::Depth::kInScene;
+  piece.opacity = chosen ? 0.6F : 0.25F;
+  piece.colour = kSectionRim;
+  piece.width_px = kSection_px + 2.5F;
+  draw();
   piece.opacity = chosen ? 1.0F : 0.45F;
-  piece.width_px = 2.5F;
-  for (int i = 0; i < count; ++i) {
-    piece.from_mm = at(i);
-    piece.to_mm = at(i + 1);
-    pieces_.push_back(piece);
-  }
+  piece.colour = kSectionMeaning.colour;
+  piece.width_px = kSection_px;
+  draw();
   if (!chosen) return;
   piece.depth = render::OverlayLine::Depth::kOnTop;
   piece.width_px = 9.0F;

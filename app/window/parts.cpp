@@ -104,9 +104,12 @@ void Parts::setFullScreen(bool on) {
   if (on) {
     leavePanels();
     window.enterFullScreen();
-    feedback.status = tr("F11 or Tab: back to the panels");
+    status_before = std::exchange(feedback.status, tr("F11, Tab or Esc: back to the panels"));
   } else {
     window.leaveFullScreen();
+    if (feedback.status == tr("F11, Tab or Esc: back to the panels"))
+      feedback.status = std::move(status_before);
+    status_before.clear();
   }
 }
 

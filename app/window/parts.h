@@ -120,6 +120,7 @@ struct Parts {
   std::int64_t steps_seen = 0;               ///< of showMarksMade()
   bool shows_before = false;                 ///< the scan as it was, while a key is held
   bool full_screen = false;                  ///< the picture and the status line alone, on all of the screen
+  std::string status_before;                 ///< the status line said how to leave that
   std::string enter_panel;    ///< the panel of this name comes into view with the next frame; none: empty
   bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;

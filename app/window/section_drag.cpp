@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace fettle::app {
@@ -69,10 +70,20 @@ bool SectionDrag::begins(const render::InputEvent& event, const Scope& scope) {
   return grasp(event, scope).has_value();
 }
 
-void SectionDrag::move(const glm::dvec2& place_mm, SectionTool& sections) const {
+void SectionDrag::move(const glm::dvec2& place_mm, const engine::Version& field,
+                       SectionTool& sections) const {
   if (sections.section() == nullptr) return;
   KeptSection moved = *sections.section();
-  const glm::dvec2 by = place_mm - held_->grip_mm;
+  const engine::Grid& grid = field.grid();
+  const glm::dvec2 last((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  const KeptSection& before = held_->before;
+  // Not beyond the field: an end out there could be neither seen nor taken hold of again.
+  const glm::dvec2 low = held_->part == Part::kTo     ? before.to
+                         : held_->part == Part::kFrom ? before.from
+                                                      : glm::min(before.from, before.to),
+                   high = held_->part == Part::kLine ? glm::max(before.from, before.to) : low;
+  const glm::dvec2 by = glm::clamp(place_mm - held_->grip_mm, glm::min(-low, glm::dvec2(0.0)),
+                                   glm::max(last - high, glm::dvec2(0.0)));
   if (held_->part != Part::kTo) moved.from = held_->before.from + by;
   if (held_->part != Part::kFrom) moved.to = held_->before.to + by;
   sections.set(moved);
@@ -80,7 +91,7 @@ void SectionDrag::move(const glm::dvec2& place_mm, SectionTool& sections) const 
 
 bool SectionDrag::handle(const render::InputEvent& event, const Scope& scope) {
   if (held_ && event.kind == InputKind::kMove) {
-    if (const auto place = placeOf(event, scope)) move(*place, scope.sections);
+    if (const auto place = placeOf(event, scope)) move(*place, scope.field, scope.sections);
     return true;
   }
   if (event.button != render::MouseButton::kLeft) return false;

@@ -50,7 +50,7 @@ class SectionDrag {
   [[nodiscard]] static std::optional<glm::dvec2> placeOf(const render::InputEvent& event, const Scope& scope);
   [[nodiscard]] static std::optional<Found> find(const glm::dvec2& place_mm, const Scope& scope);
   [[nodiscard]] static std::optional<Found> grasp(const render::InputEvent& event, const Scope& scope);
-  void move(const glm::dvec2& place_mm, SectionTool& sections) const;
+  void move(const glm::dvec2& place_mm, const engine::Version& field, SectionTool& sections) const;
 
   std::optional<Held> held_;
   std::optional<glm::dvec2> pressed_;  // [pixels] where a click began

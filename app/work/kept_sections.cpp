@@ -55,6 +55,10 @@ void KeptSection::placeStretches() noexcept {
   others = {0.6 * length, 0.9 * length};
 }
 
+void KeptSection::scaleStretches(double times) noexcept {
+  for (double* const end : {&cursors.first, &cursors.second, &others.first, &others.second}) *end *= times;
+}
+
 void KeptSection::placeSecond() noexcept {
   if (!angle || others.first != others.second) return;
   const auto [low, high] = std::minmax(cursors.first, cursors.second);

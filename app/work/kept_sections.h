@@ -28,6 +28,8 @@ struct KeptSection {
   /// Puts both stretches where they stay until somebody moves them: the first over the middle half, or before the second where the angle
   /// between both is measured.
   void placeStretches() noexcept;
+  /// Both stretches as many times as far along a line that became longer or shorter.
+  void scaleStretches(double times) noexcept;
   /// The second stretch over the longer part of the line beside the first, where it is none and the angle is measured.
   void placeSecond() noexcept;
   friend bool operator==(const KeptSection&, const KeptSection&) = default;

@@ -58,9 +58,13 @@ void SectionTool::set(const KeptSection& section) {
   if (kept == section) return;
   const bool line = kept.from != section.from || kept.to != section.to,
              profile = kept.width_mm != section.width_mm;
+  const double before = kept.lengthMm();
   kept = section;
   const double length = kept.lengthMm();
-  if (line) kept.placeStretches();
+  if (line && before > 0.0 && length > 0.0)
+    kept.scaleStretches(length / before);
+  else if (line)
+    kept.placeStretches();
   kept.placeSecond();
   if (!(kept.cutoff_mm > 0.0) && length > 0.0) kept.cutoff_mm = firstCutoff(0.5 * length);
   if (line || profile)

@@ -45,7 +45,7 @@ class SectionTool {
   /// Sets an end of the chosen section; the other one stays, or is the same point where there was none.
   void setFrom(const glm::dvec2& mm);
   void setTo(const glm::dvec2& mm);
-  /// Changes the chosen one; its stretches return to their first places where its line changes, the second is placed where there is none.
+  /// Changes the chosen one; its stretches keep their shares of the line where that changes, the second is placed where there is none.
   void set(const KeptSection& section);
   /// The next end that is set begins another section, which is chosen then.
   void beginNew();

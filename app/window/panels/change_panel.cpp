@@ -73,7 +73,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
   const engine::Deviation* const exact = live ? change.exact(context.client.upright()) : nullptr;
   figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : kYet);
   const auto pair = [&unit](double before, double now) {
-    return fmt::format("{:.4g}, {}", before * unit.per_unit, lengthText(now, unit));
+    return fmt::format("{}, {}", lengthText(before, unit), lengthText(now, unit));
   };
   figure("Sq before, now", live ? pair(live->sq_original, live->sq) : kYet);
   figure("Sa before, now", exact != nullptr ? pair(exact->sa_a, exact->sa_b)

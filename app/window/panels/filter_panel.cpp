@@ -99,15 +99,21 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
                                    ? trFormat("{} by the noise", lengthText(*range_of_noise, units.change, 3))
                                    : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
   if (filter.range_sigma.exists())
-    (void)field("range sigma",
-                trFormat("Heights that differ by no more than about this differ by noise, which goes; what "
-                         "differs by more stays. 0: {}, that of the scan as it was opened, also after other "
-                         "filters.",
-                         tr(std::string_view(filter.range_sigma.when_zero))),
-                [&] {
-                  return typeLength("##range", spec.range_sigma, 0.0, filter.range_sigma.most, units.change,
-                                    by_noise);
-                });
+    (void)field(
+        "range sigma",
+        fmt::format(
+            "{} {}",
+            spec.kind == engine::FilterKind::kOutliers
+                ? tr("A sample that is farther than this from most others in its window stands apart, "
+                     "and goes.")
+                : tr("Heights that differ by no more than about this differ by noise, which goes; what "
+                     "differs by more stays."),
+            trFormat("0: {}, that of the scan as it was opened, also after other filters.",
+                     tr(std::string_view(filter.range_sigma.when_zero)))),
+        [&] {
+          return typeLength("##range", spec.range_sigma, 0.0, filter.range_sigma.most, units.change,
+                            by_noise);
+        });
 }
 
 bool isRunning(const FilterPreview& filters) {

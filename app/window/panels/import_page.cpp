@@ -105,6 +105,11 @@ void noData(std::string& value, const ScanThumbnail* picture) {
     if (ImGui::Button(trFormat("{} are holes", lone.number).c_str())) value = fmt::format("{}", lone.number);
     explainOption("--no-data");
   }
+  // The row stays while the next thing is clicked.
+  if (!picture->lone_values.empty() || value.empty()) return;
+  ImGui::BeginDisabled();
+  ImGui::Button(trFormat("{} are holes", value).c_str());
+  ImGui::EndDisabled();
 }
 
 // Few pictures are distances: folded unless it is one.

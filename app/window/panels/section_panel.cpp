@@ -221,15 +221,20 @@ void sectionPanel(const PanelContext& context, SectionTool& tool) {
   }
   KeptSection section = *tool.section();
   constexpr double kFar = 1e12;
+  const double right = (grid.width - 1) * grid.spacingXMm(), top = (grid.height - 1) * grid.spacingYMm();
   beginFields();
-  for (const auto& [name, id, value] : {std::tuple(textOf("from x"), "##section from x", &section.from.x),
-                                        {textOf("from y"), "##section from y", &section.from.y},
-                                        {textOf("to x"), "##section to x", &section.to.x},
-                                        {textOf("to y"), "##section to y", &section.to.y}})
+  for (const auto& [name, id, value, most] :
+       {std::tuple(textOf("from x"), "##section from x", &section.from.x, right),
+        {textOf("from y"), "##section from y", &section.from.y, top},
+        {textOf("to x"), "##section to x", &section.to.x, right},
+        {textOf("to y"), "##section to y", &section.to.y, top}})
     (void)field(
         name,
         "The ends of the section in the scan's own coordinates. Their discs in the picture can be dragged.",
-        [&, id = id, value = value] { return typeLength(id, *value, -kFar, kFar, length); });
+        // One that a session has beyond the field stays there until it is typed.
+        [&, id = id, value = value, most = most] {
+          return typeLength(id, *value, std::min(0.0, *value), std::max(most, *value), length);
+        });
   (void)field(
       "mean across",
       "Heights within this width across the line are averaged: a wide one has less noise. 0: the line alone.",

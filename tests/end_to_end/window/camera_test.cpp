@@ -159,7 +159,15 @@ TEST_F(WindowTest, the_picture_takes_the_whole_screen_and_gives_it_back) {
   (void)user.press("F11");
   (void)until("full screen again", true, 1100);
   (void)user.press("F11");
-  (void)until("back again", false, 900);
+  EXPECT_EQ(until("back again", false, 900)["status"].get<std::string>().find("F11"), std::string::npos);
+  // Escape ends a tool first.
+  (void)user.key("m");
+  (void)user.press("F11");
+  (void)until("full screen with a tool", true, 1100);
+  EXPECT_EQ(user.key("Escape")["full_screen"], true);
+  EXPECT_EQ(program->now()["tool"], "view");
+  (void)user.press("Escape");
+  (void)until("back by Escape", false, 900);
   (void)quit(user);
 }
 

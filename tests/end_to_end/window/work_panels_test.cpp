@@ -132,6 +132,14 @@ TEST_F(WindowTest, a_section_is_dragged_by_its_ends_or_as_a_whole) {
   (void)user.drag(1, {390, 332}, {560, 332}, 6);
   EXPECT_NEAR(length("all of it again"), first, 0.005 * first);
 
+  // Not out of the field, where nothing could take hold of it again.
+  (void)user.drag(1, {560, 332}, {760, 332}, 6);
+  user.at({20, 790});
+  (void)length("up to the border");
+  EXPECT_TRUE(user.reads("99.69 mm")) << "the field's last column, 319 times 0.3125 mm";
+  (void)user.drag(1, {672, 332}, {560, 332}, 6);
+  EXPECT_NEAR(length("back from the border"), first, 0.01 * first);
+
   // Escape puts it back, with the button still down.
   const double again = length("before Escape");
   user.at({560, 332});
