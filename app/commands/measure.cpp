@@ -95,9 +95,8 @@ engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& opti
   areal.at_heights = *heights;
   const std::vector<double>& ratios = options.at_ratios.empty() ? kUsualRatios : options.at_ratios;
   for (const double ratio : ratios) areal.at_ratios.push_back(ratio / 100.0);
-  ArealChoice choice = choiceOf(options.areal);
-  choice.difference.reset();  // trials do not measure it
-  choose(choice, areal);
+  areal.at_volumes = areal.at_ratios;
+  choose(choiceOf(options.areal), areal);
   return areal;
 }
 
@@ -119,10 +118,6 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
   engine::ArealOptions wanted = *areal;
-  wanted.at_volumes = areal->at_ratios;
-  const ArealChoice choice = choiceOf(options.areal);
-  if (choice.difference)
-    wanted.at_ratios.insert(wanted.at_ratios.end(), {choice.difference->first, choice.difference->second});
   addCurves(options.curves, wanted);  // their heights are the last ones
   const PlannedWork planned{.field = *marked,
                             .original = *marked,
@@ -165,7 +160,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
                                {"material_volume", numberOrNull(measured->material[i])},
                                {"void_volume", numberOrNull(measured->voids[i])}});
   }
-  addChosen(report, choice, *measured, areal->at_ratios.size());
+  addChosen(report, choiceOf(options.areal), *measured);
   if (!areal->functional) report.erase("volume_ratios");
   if (!areal->feature) report.erase("prune");
   // Of a smoothed surface the scan's rounding says nothing.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -17,11 +16,10 @@ struct ArealChoice {
       {};  ///< the material ratios of Sdc, the smaller one first; none: no Sdc
 };
 
-/// What is to be measured for it: the two ratios of Sdc come first among `at_ratios`.
+/// What is to be measured for it.
 void choose(const ArealChoice& choice, engine::ArealOptions& options);
 
-/// The keys volume_ratios, prune and, with a difference, sdc. `heights`: at which place of ArealParameters::heights its first ratio is.
-void addChosen(Report& report, const ArealChoice& choice, const engine::ArealParameters& measured,
-               std::size_t heights = 0);
+/// The keys volume_ratios, prune and, with a difference, sdc.
+void addChosen(Report& report, const ArealChoice& choice, const engine::ArealParameters& measured);
 
 }  // namespace fettle::app

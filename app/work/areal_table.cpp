@@ -218,6 +218,14 @@ std::string withoutRemark(const Report& effect) {
   return why.empty() ? why : "without noise not stated: " + why;
 }
 
+// What the noise does to a volume of `smc`, as of the height itself; null where that is not known.
+Report effectOnVolume(const Report& each, const std::string& key) {
+  if (!each.contains(key + "_without")) return {};
+  return {{"without", each[key + "_without"]},
+          {"error", each[key + "_error"]},
+          {"reason", each[key + "_reason"]}};
+}
+
 // What the noise does to a parameter; null where that is not known.
 Report effectOn(const Report& report, std::string_view key) {
   if (!report.contains("noise")) return {};
@@ -285,16 +293,19 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
              {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid))},
              {"reason", noise.effects[i].why}});
   }
-  // The ratios and heights that were asked for come after all parameters.
+  // What was asked for comes after all parameters (engine::valuesOf), volumes with the keys of `smc` before theirs.
   std::size_t next = figures.size();
-  for (const char* const list : {"smr", "smc"})
+  const auto put = [&](Report& to, const std::string& before) {
+    to[before + "without"] = number(noise.effects[next].without);
+    to[before + "error"] = number(noise.effects[next].error);
+    to[before + "reason"] = noise.effects[next].why;
+    ++next;
+  };
+  for (const auto& [list, before] :
+       {std::pair("smr", ""), {"smc", ""}, {"smc", "material_volume_"}, {"smc", "void_volume_"}})
     if (report.contains(list))
-      for (Report& each : report[list]) {
-        each["without"] = number(noise.effects[next].without);
-        each["error"] = number(noise.effects[next].error);
-        each["reason"] = noise.effects[next].why;
-        ++next;
-      }
+      for (Report& each : report[list]) put(each, before);
+  if (report.contains("sdc")) put(report["sdc"], "");
 }
 
 void printAreal(const Report& report) {
@@ -339,7 +350,6 @@ void printAreal(const Report& report) {
                fmt::format("height about the mean of a material ratio of {:.5g} %",
                            each["ratio"].get<double>() * 100.0),
                noise ? each : Report(), noise);
-    const Report no_trial{{"without", nullptr}, {"reason", "trials do not measure it"}};
     for (const auto& [key, name, text] : {std::tuple("material_volume", "Vm(p)", "material volume above"),
                                           {"void_volume", "Vv(p)", "void volume below"}})
       for (const Report& each : report["smc"])
@@ -347,10 +357,10 @@ void printAreal(const Report& report) {
           printRow(name, each[key], Quantity::kVolume, shownAs(Quantity::kVolume, height, length),
                    fmt::format("{} the height of a material ratio of {:.5g} %", text,
                                each["ratio"].get<double>() * 100.0),
-                   noise ? no_trial : Report(), noise);
+                   effectOnVolume(each, key), noise);
     if (report.contains("sdc"))
       printRow("Sdc", report["sdc"]["height"], Quantity::kHeight, level, sdcText(report["sdc"]),
-               noise ? no_trial : Report(), noise);
+               noise ? report["sdc"] : Report(), noise);
   }
 }
 
@@ -381,7 +391,8 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
       const Report& between = report["sdc"]["height"];
       line.values.push_back(between.is_null() ? "the samples do not determine it"
                                               : fmt::format("{:.5g}", between.get<double>() * shown.factor));
-      line.without.emplace_back();  // trials do not measure it
+      line.without.push_back(withoutNoise(report.contains("noise") ? report["sdc"] : Report(), shown.factor,
+                                          Quantity::kHeight));
     }
     lines.push_back(std::move(line));
   }
@@ -432,14 +443,17 @@ std::string arealRows(const std::string& scan, const Report& report) {
         Quantity::kHeight, withoutRemark(each), report.contains("noise") ? each : Report());
   for (const auto& [key, name] : {std::pair("material_volume", "Vm"), {"void_volume", "Vv"}})
     for (const Report& each : report["smc"])
-      if (each.contains(key))
+      if (each.contains(key)) {
+        const Report effect = effectOnVolume(each, key);
         add("functional", fmt::format("{}({:.9g} %)", name, each["ratio"].get<double>() * 100.0), each[key],
-            Quantity::kVolume, "", Report());
+            Quantity::kVolume, withoutRemark(effect), effect);
+      }
   if (report.contains("sdc"))
     add("functional",
         fmt::format("Sdc({:.9g} to {:.9g} %)", report["sdc"]["ratios"][0].get<double>() * 100.0,
                     report["sdc"]["ratios"][1].get<double>() * 100.0),
-        report["sdc"]["height"], Quantity::kHeight, "", Report());
+        report["sdc"]["height"], Quantity::kHeight, withoutRemark(report["sdc"]),
+        report.contains("noise") ? report["sdc"] : Report());
   return text;
 }
 

@@ -33,10 +33,10 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
 struct ArealNoise {
   double sigma = 0.0;  ///< of a sample [height_unit]
   int trials = 0;
-  std::vector<engine::NoiseEffect> effects;  ///< of engine::arealFigures(), then of each Smr and each Smc
+  std::vector<engine::NoiseEffect> effects;  ///< as of engine::valuesOf()
 };
-/// Adds it to a report of addAreal(), after its `smr` and `smc`: `noise` with `sigma`, `trials` and, of each parameter that the report has,
-/// `without` and `error`; both also to each of `smr` and `smc`.
+/// Adds it to a report of addAreal(), after its `smr`, `smc` and `sdc`: `noise` with `sigma`, `trials` and, of each parameter that the report has,
+/// `without` and `error`; both also to each of `smr` and `smc`, its volumes, and `sdc`.
 void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid);
 
 /// One line each under the heading of its group, in units that read at ease where the scan's are metric, else in the

@@ -93,14 +93,11 @@ engine::Result<engine::ArealParameters> parametersOf(const engine::Version& fiel
   engine::ArealOptions areal;
   areal.region = region;
   areal.fitted = fit->numbers;
-  ArealChoice choice = choiceOf(options);
   if (curves == Curves::kWith) {
     areal.at_ratios = curveRatios();
     areal.analysis = true;
-  } else {
-    choice.difference.reset();  // trials do not measure it
   }
-  choose(choice, areal);
+  choose(choiceOf(options), areal);
   return engine::measureAreal(field, fit->form, engine::optionsOf(areal, noise), job);
 }
 

@@ -54,6 +54,7 @@ void leaveOut(ArealParameters& result, const ArealOptions& options, const std::s
   result.heights.assign(options.at_ratios.size(), kNone);
   result.material.assign(options.at_volumes.size(), kNone);
   result.voids = result.material;
+  result.differences.assign(options.between.size(), kNone);
   SpatialParameters& spatial = result.spatial;
   spatial.sal = spatial.str = spatial.lay = spatial.ssw = spatial.sal_direction = spatial.slow_direction =
       kNone;
@@ -272,6 +273,8 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
       result.material.push_back(materialVolume(heights, ratio));
       result.voids.push_back(voidVolume(heights, ratio));
     }
+    for (const RatioPair& pair : options.between)
+      result.differences.push_back(heightAtRatio(heights, pair.first) - heightAtRatio(heights, pair.second));
   }
 
   if (options.hybrid) {

@@ -42,6 +42,7 @@ struct ArealParameters {
   std::vector<double> ratios;           ///< Smr of each height asked for, 0 .. 1
   std::vector<double> heights;          ///< Smc of each ratio asked for [height_unit]
   std::vector<double> material, voids;  ///< Vm and Vv of each ratio asked for [height_unit]
+  std::vector<double> differences;      ///< Sdc of each pair of ratios asked for [height_unit], >= 0
   // Spatial, and features.
   SpatialParameters spatial;
   std::shared_ptr<const SpatialAnalysis>
@@ -58,6 +59,7 @@ struct ArealOptions {
   std::vector<double> at_heights = {};  ///< for Smr [height_unit], about the mean
   std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
   std::vector<double> at_volumes = {};  ///< for Vm and Vv, 0 .. 1
+  std::vector<RatioPair> between = {};  ///< for Sdc
   VolumeRatios volumes = {};            ///< of Vmp, Vmc, Vvc and Vvv
   /// Numbers of the form that were fitted to these samples, FittedForm::numbers; 0: others, or none.
   int fitted = 0;

@@ -26,6 +26,11 @@ struct VolumeRatios {
   friend bool operator==(const VolumeRatios&, const VolumeRatios&) = default;
 };
 
+/// Two material ratios, 0 <= first <= second <= 1: the height of the first is the higher one.
+struct RatioPair {
+  double first = 0.0, second = 1.0;
+};
+
 /// `sorted`: heights from the lowest to the highest, at least one. The curve goes through the middles of the samples'
 /// shares and is straight between them; it begins at the highest and ends at the lowest height. The equivalent
 /// line is fitted by least squares of heights to the 40 % with the smallest difference of heights, the first from the

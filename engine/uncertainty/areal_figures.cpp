@@ -118,7 +118,9 @@ std::vector<double> valuesOf(const ArealParameters& measured) {
   std::vector<double> values;
   for (const ArealFigure& figure : kFigures) values.push_back(figure.of(measured));
   values.insert(values.end(), measured.ratios.begin(), measured.ratios.end());
-  values.insert(values.end(), measured.heights.begin(), measured.heights.end());
+  for (const std::vector<double>* const asked :
+       {&measured.heights, &measured.material, &measured.voids, &measured.differences})
+    values.insert(values.end(), asked->begin(), asked->end());
   return values;
 }
 
@@ -126,6 +128,10 @@ std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured) {
   std::vector<NoiseGrowth> growths;
   for (const ArealFigure& figure : kFigures) growths.push_back(figure.growth);
   growths.resize(growths.size() + measured.ratios.size() + measured.heights.size(), NoiseGrowth::kShare);
+  // As Vmp, Vvv and Sxp, which are some of them.
+  growths.resize(
+      growths.size() + measured.material.size() + measured.voids.size() + measured.differences.size(),
+      NoiseGrowth::kRank);
   return growths;
 }
 
@@ -134,7 +140,8 @@ void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& mea
   std::vector<FigureRange> ranges;
   for (const ArealFigure& figure : kFigures) ranges.push_back(figure.range);
   ranges.resize(ranges.size() + measured.ratios.size(), kShareRange);
-  ranges.resize(found.size());  // heights have any
+  ranges.resize(ranges.size() + measured.heights.size());  // any
+  ranges.resize(found.size(), kFromZero);
   for (std::size_t i = 0; i < found.size(); ++i) effects[i] = withinRange(effects[i], found[i], ranges[i]);
   // Where noise decides how many hills there are it decides how large they are.
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

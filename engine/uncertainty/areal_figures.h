@@ -21,7 +21,8 @@ struct ArealFigure {
 [[nodiscard]] const ArealFigure& arealFigure(std::string_view key) noexcept;
 /// All of them.
 [[nodiscard]] std::span<const ArealFigure> arealFigures() noexcept;
-/// Their values, followed by the ratios and the heights that were asked for; and how noise raises each of these.
+/// Their values, followed by what was asked for: the ratios, the heights, the material volumes, the void volumes and the height differences; and
+/// how noise raises each of these.
 [[nodiscard]] std::vector<double> valuesOf(const ArealParameters& measured);
 [[nodiscard]] std::vector<NoiseGrowth> growthsOf(const ArealParameters& measured);
 

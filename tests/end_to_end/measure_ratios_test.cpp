@@ -48,6 +48,16 @@ TEST(Measure, VolumesAndPruningAreThoseAskedFor) {
   EXPECT_NEAR(report["smc"][0]["material_volume"], 0.05 * 0.05, kNear);
   EXPECT_NEAR(report["smc"][0]["void_volume"], 0.95 * 0.95, kNear);
   EXPECT_NEAR(report["sdc"]["height"], 0.95 * 2.0, kNear);
+  // A ramp has no noise: each is known beside itself.
+  for (const auto& [of, value] :
+       {std::pair(report["smc"][0], "material_volume"), {report["smc"][0], "void_volume"}}) {
+    const std::string key = value;
+    EXPECT_NEAR(of[key + "_without"], of[value].get<double>(), 1e-4) << key;
+    EXPECT_LT(of[key + "_error"], 1e-3) << key;
+    EXPECT_EQ(of[key + "_reason"], "") << key;
+  }
+  EXPECT_NEAR(report["sdc"]["without"], report["sdc"]["height"].get<double>(), 1e-3);
+  EXPECT_LT(report["sdc"]["error"], 1e-2);
   EXPECT_EQ(report["prune"], 0.08);
   const Outcome text = fettle(words);
   for (const char* const part :
