@@ -214,6 +214,7 @@ engine::Status writeSectionFiles(const SectionArguments& options, const std::vec
 
 // Those of the command line, and with --kept those of the session.
 engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArguments& options,
+                                                            const engine::AskedRatios& asked,
                                                             const ReadScan& scan, engine::JobControl& job) {
   std::vector<PlannedSection> planned;
   if (options.kept) {
@@ -228,8 +229,9 @@ engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArgumen
   }
   auto paths = pathsOf(options, scan.field, !planned.empty(), job);
   if (!paths) return tl::unexpected(paths.error());
-  for (Points& points : *paths)
-    planned.push_back({std::move(points), options.width, static_cast<const SectionWants&>(options)});
+  SectionWants wants = options;
+  wants.asked = asked;
+  for (Points& points : *paths) planned.push_back({std::move(points), options.width, wants});
   return planned;
 }
 
@@ -251,6 +253,8 @@ double leastRmsOf(const Report& sections) {
 
 engine::Result<Report> takeSections(const SectionArguments& options, engine::JobControl& job) {
   if (auto status = checkSectionWords(options); !status) return tl::unexpected(status.error());
+  const auto asked = askedRatiosOf(options);
+  if (!asked) return tl::unexpected(asked.error());
   if (auto status =
           checkOutputs({{options.csv, OutputKind::kText, ".csv"},
                         {options.plot, OutputKind::kPlot},
@@ -260,7 +264,7 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     return tl::unexpected(status.error());
   const auto scan = readOne(options.scan, options, job);
   if (!scan) return tl::unexpected(scan.error());
-  const auto planned = plannedSections(options, *scan, job);
+  const auto planned = plannedSections(options, *asked, *scan, job);
   if (!planned) return tl::unexpected(planned.error());
   std::vector<ReadScan> others;
   if (!options.compare.empty()) {

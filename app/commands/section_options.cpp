@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/typed_values.h"
 #include "app/plots/gnuplot.h"
 #include "app/work/interpolation_words.h"
 #include "app/work/typed_lengths.h"
@@ -60,6 +61,8 @@ engine::Status checkEffects(const SectionArguments& options) {
   if (!options.within.empty() && options.step.empty() && options.groove.empty() && !profiles)
     return needs("--within", "--step, --groove, --cutoff or --profile");
   if (options.lambda_s && !profiles) return needs("--lambda-s", "--cutoff or --profile");
+  if (!options.at_heights.empty() && !profiles) return needs("--at-height", "--cutoff or --profile");
+  if (!options.between.empty() && !profiles) return needs("--height-between", "--cutoff or --profile");
   if (auto status = checkProfiles(options); !status) return status;
   if (options.probe_radius && options.probes.empty()) return needs("--probe-radius", "--probe");
   if (!options.from.empty() || !options.to.empty() || !options.polylines.empty() || !options.lines.empty() ||
@@ -84,6 +87,29 @@ engine::Status checkEffects(const SectionArguments& options) {
 }
 
 }  // namespace
+
+engine::Result<engine::AskedRatios> askedRatiosOf(const SectionArguments& options) {
+  engine::AskedRatios asked;
+  asked.at_heights_mm.reserve(options.at_heights.size());
+  for (const std::string& text : options.at_heights) {
+    const auto height = parseSignedHeight(text, engine::Grid(), "--at-height");  // whose unit is mm
+    if (!height)
+      return engine::inputError(height.error().what, "--at-height",
+                                "give numbers about the mean line in mm or with a unit, such as 0,-0.5um");
+    asked.at_heights_mm.push_back(*height);
+  }
+  if (options.between.empty()) return asked;
+  const double first = options.between[0], second = options.between[1];
+  for (const double ratio : options.between)
+    if (!(ratio >= 0.0 && ratio <= 100.0))
+      return engine::inputError(fmt::format("{:.6g} is no material ratio", ratio), "--height-between",
+                                "give 0 to 100, in per cent");
+  if (!(first < second))
+    return engine::inputError(fmt::format("the ratios {:.6g} and {:.6g} are not in order", first, second),
+                              "--height-between", "give the smaller one first");
+  asked.between.push_back({first / 100.0, second / 100.0});
+  return asked;
+}
 
 engine::Status checkSectionWords(const SectionArguments& options) {
   if (auto status = checkEffects(options); !status) return status;
@@ -229,6 +255,19 @@ void addFigureOptions(Command command, SectionArguments& options) {
         .range = Range{1e-9, 1e9},
         .unit = "mm",
         .otherwise = "none"},
+       {.name = "--at-height",
+        .to = &options.at_heights,
+        .text =
+            "Heights about the mean line for the material ratio Rmr(c) of --cutoff and --profile, in mm or "
+            "with a unit, below it with -: 0,-0.5um",
+        .shown = "C[,C...]",
+        .between = ','},
+       {.name = "--height-between",
+        .to = &options.between,
+        .text = "Rdc of --cutoff and --profile, the height difference between two material ratios, in %",
+        .shown = "P,Q",
+        .values = 2,
+        .between = ','},
        {.name = "--probe",
         .to = &options.probes,
         .text = "Height, slope and curvature around a point of the scan; give it again for another",

@@ -25,7 +25,9 @@ struct SectionArguments : SectionWants, RegionArguments {
   double width = 0.0;
   std::string interpolation = "bilinear";
   std::string compare;
-  bool kept = false;  ///< those of the session, each with its own width and figures
+  std::vector<std::string> at_heights;  ///< as typed: mm, or with a unit
+  std::vector<double> between;          ///< two material ratios [%]; empty: none
+  bool kept = false;                    ///< those of the session, each with its own width and figures
   // What is measured besides.
   std::vector<std::string> probes;
   std::optional<double> probe_radius;
@@ -38,6 +40,9 @@ struct SectionArguments : SectionWants, RegionArguments {
 /// The options of the line, and of what is measured along it.
 void addLineOptions(Command command, SectionArguments& options);
 void addFigureOptions(Command command, SectionArguments& options);
+
+/// What they ask for of the material ratio curve. Errors (kInput): a text that is no height; ratios that are none or out of order.
+[[nodiscard]] engine::Result<engine::AskedRatios> askedRatiosOf(const SectionArguments& options);
 
 /// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);

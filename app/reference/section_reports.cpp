@@ -29,6 +29,22 @@ Keys profileKeys(const engine::ProfileInfo& profile) {
     keys.push_back({names.error, "number", "standard error of that"});
     keys.push_back({names.reason + "?", "string", "why it is not stated without noise"});
   }
+  keys.push_back({askedKey("rmr", profile) + "?",
+                  "[object]",
+                  "with --at-height: Rmr(c)",
+                  {{"height_mm", "number", "about the mean line"},
+                   {"ratio", "number", "share"},
+                   {"without", "number", "ratio without noise"},
+                   {"error", "number", "its standard error"},
+                   {"reason?", "string", "why neither is stated"}}});
+  keys.push_back({askedKey("rdc", profile) + "?",
+                  "[object]",
+                  "with --height-between: Rdc",
+                  {{"ratios", "[number]", "shares"},
+                   {"height_mm", "number", "between both"},
+                   {"without_mm", "number", "height without noise"},
+                   {"error_mm", "number", "its standard error"},
+                   {"reason?", "string", "why neither is stated"}}});
   return keys;
 }
 

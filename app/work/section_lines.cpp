@@ -132,6 +132,29 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
       }
       row("", fmt::format("{:<5} {}", keys.symbol, text));
     }
+    const auto asked = [&](const char* key, const char* figure, const char* ending, const ReadAs& in,
+                           const auto& whereOf) {
+      const std::string list = askedKey(key, profile);
+      if (!r.contains(list)) return;
+      for (const Report& one : r[list]) {
+        std::string text = fmt::format("{}, {}", shownLength(one[figure], in), whereOf(one));
+        if (const Report& without = one[std::string("without") + ending]; !without.is_null()) {
+          const double by = one[std::string("error") + ending].get<double>() / in.size;
+          text +=
+              fmt::format(", without noise {} +- {:.2g}", shownTo(without.get<double>() / in.size, by), by);
+        } else if (one.contains("reason")) {
+          text += fmt::format(", without noise not stated: {}", one["reason"].get<std::string>());
+        }
+        row("", fmt::format("{}{:<4} {}", profile.letter, key + 1, text));
+      }
+    };
+    asked("rmr", "ratio", "", ReadAs{"%", 0.01}, [&](const Report& one) {
+      return fmt::format("material ratio at {} about the mean line", shownLength(one["height_mm"], as));
+    });
+    asked("rdc", "height_mm", "_mm", as, [](const Report& one) {
+      return fmt::format("height difference of the material ratios {:.5g} and {:.5g} %",
+                         100.0 * one["ratios"][0].get<double>(), 100.0 * one["ratios"][1].get<double>());
+    });
   }
   return lines;
 }

@@ -184,10 +184,10 @@ class SectionMeasurement {
   engine::Result<Report> profile(const Section& section, const engine::ProfileInfo& info) const {
     const engine::ProfileFilters filters{info.by_cutoff ? *options_.cutoff : 0.0,
                                          options_.lambda_s.value_or(0.0), info.kind};
-    const auto figures = engine::roughnessOf(section, within(section), filters);
+    const auto figures = engine::roughnessOf(section, within(section), filters, options_.asked);
     if (!figures) return tl::unexpected(figures.error());
     const auto noise = engine::roughnessNoise(section, within(section), filters, *figures, noise_,
-                                              {.pairs = kRoughnessPairs});
+                                              {.pairs = kRoughnessPairs}, options_.asked);
     if (!noise) return tl::unexpected(noise.error());
     Report report{{"evaluated", stretchOf(figures->evaluated)}, {"lengths", figures->lengths}};
     if (info.by_cutoff) report["cutoff_mm"] = *options_.cutoff;
@@ -200,7 +200,29 @@ class SectionMeasurement {
       report[keys.error] = numberOrNull((*noise)[f].error);
       if (!(*noise)[f].why.empty()) report[keys.reason] = (*noise)[f].why;
     }
+    addAsked(report, info, *figures, std::span(*noise).subspan(infos.size()));
     return report;
+  }
+  // Rmr(c) and Rdc; `noise`: of these.
+  void addAsked(Report& report, const engine::ProfileInfo& info, const engine::Roughness& figures,
+                std::span<const engine::NoiseEffect> noise) const {
+    const auto put = [](Report& to, const engine::NoiseEffect& effect, const char* ending) {
+      to[std::string("without") + ending] = numberOrNull(effect.without);
+      to[std::string("error") + ending] = numberOrNull(effect.error);
+      if (!effect.why.empty()) to["reason"] = effect.why;
+    };
+    const engine::AskedRatios& asked = options_.asked;
+    for (std::size_t i = 0; i < figures.ratios.size(); ++i) {
+      Report one{{"height_mm", asked.at_heights_mm[i]}, {"ratio", numberOrNull(figures.ratios[i])}};
+      put(one, noise[i], "");
+      report[askedKey("rmr", info)].push_back(std::move(one));
+    }
+    for (std::size_t i = 0; i < figures.differences.size(); ++i) {
+      Report one{{"ratios", Report::array({asked.between[i].first, asked.between[i].second})},
+                 {"height_mm", numberOrNull(figures.differences[i])}};
+      put(one, noise[figures.ratios.size() + i], "_mm");
+      report[askedKey("rdc", info)].push_back(std::move(one));
+    }
   }
 
   const SectionWants& options_;
@@ -249,6 +271,10 @@ RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInf
   return {fmt::format("{}{}", key, ending), fmt::format("{}_without{}", key, ending),
           fmt::format("{}_error{}", key, ending), fmt::format("{}{}", profile.letter, info.symbol.substr(1)),
           fmt::format("{}_reason", key)};
+}
+
+std::string askedKey(std::string_view key, const engine::ProfileInfo& profile) {
+  return fmt::format("{}{}", profile.word.substr(0, 1), key.substr(1));
 }
 
 std::span<const std::string_view> sectionFigureKeys() noexcept {

@@ -30,6 +30,7 @@ struct SectionWants {
   std::optional<double> lambda_s;  ///< of their S-filter and that of the primary profile
   /// Words or letters of engine::profileInfos(), whose parameters are measured; empty: those of roughness where there is a cut-off.
   std::vector<std::string> profiles;
+  engine::AskedRatios asked = {};  ///< of their material ratio curves
 };
 
 /// A place along a section that a picture shows.
@@ -71,6 +72,8 @@ struct RoughnessKeys {
   std::string value, without, error, symbol, reason;
 };
 [[nodiscard]] RoughnessKeys keysOf(const engine::RoughnessInfo& info, const engine::ProfileInfo& profile);
+/// "rmr" and "rdc" with the first letter of a profile: what was asked for of its material ratio curve.
+[[nodiscard]] std::string askedKey(std::string_view key, const engine::ProfileInfo& profile);
 
 /// A number of a report; null for NaN.
 [[nodiscard]] Report numberOrNull(double value);

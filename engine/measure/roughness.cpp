@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/measure/material_ratio.h"
+#include "engine/measure/profile_ratio.h"
 
 namespace fettle::engine {
 
@@ -250,7 +250,8 @@ std::span<const RoughnessInfo> roughnessInfos() noexcept {
   return kRoughness;
 }
 
-Result<Roughness> roughnessOf(const Section& section, const Stretch& within, const ProfileFilters& filters) {
+Result<Roughness> roughnessOf(const Section& section, const Stretch& within, const ProfileFilters& filters,
+                              const AskedRatios& asked) {
   const auto found = roughnessProfile(section, within, filters);
   if (!found) return tl::unexpected(found.error());
   const std::vector<double>& profile = found->heights;
@@ -288,6 +289,11 @@ Result<Roughness> roughnessOf(const Section& section, const Stretch& within, con
   result.rvk = ratio.svk;
   result.rmrk1 = ratio.smrk1;
   result.rmrk2 = ratio.smrk2;
+  result.ratios.reserve(asked.at_heights_mm.size());
+  for (const double height : asked.at_heights_mm) result.ratios.push_back(materialRatioAt(profile, height));
+  result.differences.reserve(asked.between.size());
+  for (const RatioPair& pair : asked.between)
+    result.differences.push_back(heightOfRatio(profile, pair.first) - heightOfRatio(profile, pair.second));
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/measure/material_ratio.h"
 #include "engine/measure/section.h"
 #include "engine/measure/section_figures.h"
 
@@ -79,6 +80,15 @@ struct Roughness {
   double rdq = 0.0;
   /// Of the material ratio curve (material_ratio.h); ratios 0 .. 1.
   double rk = 0.0, rpk = 0.0, rvk = 0.0, rmrk1 = 0.0, rmrk2 = 0.0;
+  // Of the material ratio curve by lengths (profile_ratio.h), as many as were asked for.
+  std::vector<double> ratios;       ///< Rmr(c), 0 .. 1
+  std::vector<double> differences;  ///< Rdc(p, q) [mm]
+};
+
+/// What is asked for of the material ratio curve of a profile.
+struct AskedRatios {
+  std::vector<double> at_heights_mm = {};  ///< for Rmr(c), about the mean line
+  std::vector<RatioPair> between = {};     ///< for Rdc(p, q), the height of p less that of q
 };
 
 /// One row per figure of Roughness, in the order in which they are shown. Key and symbol are those of the roughness profile; of another one the first
@@ -100,6 +110,6 @@ struct RoughnessInfo {
 
 /// Of roughnessProfile(), with its errors.
 [[nodiscard]] Result<Roughness> roughnessOf(const Section& section, const Stretch& within,
-                                            const ProfileFilters& filters);
+                                            const ProfileFilters& filters, const AskedRatios& asked = {});
 
 }  // namespace fettle::engine

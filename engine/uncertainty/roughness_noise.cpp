@@ -48,6 +48,28 @@ FigureRange rangeOf(const RoughnessInfo& info) {
   return {.low = info.figure == &Roughness::rku ? 1.0 : 0.0};
 }
 
+// All figures as numbers: those of roughnessInfos(), then what was asked for; and what each is.
+std::vector<double> valuesOf(const Roughness& of) {
+  std::vector<double> values;
+  values.reserve(roughnessInfos().size() + of.ratios.size() + of.differences.size());
+  for (const RoughnessInfo& info : roughnessInfos()) values.push_back(of.*info.figure);
+  values.insert(values.end(), of.ratios.begin(), of.ratios.end());
+  values.insert(values.end(), of.differences.begin(), of.differences.end());
+  return values;
+}
+struct FigureKind {
+  NoiseGrowth growth;
+  FigureRange range;
+};
+std::vector<FigureKind> kindsOf(const Roughness& of) {
+  std::vector<FigureKind> kinds;
+  kinds.reserve(roughnessInfos().size() + of.ratios.size() + of.differences.size());
+  for (const RoughnessInfo& info : roughnessInfos()) kinds.push_back({growthOf(info), rangeOf(info)});
+  kinds.resize(kinds.size() + of.ratios.size(), {NoiseGrowth::kShare, {0.0, 1.0}});
+  kinds.resize(kinds.size() + of.differences.size(), {NoiseGrowth::kRank, {.low = 0.0}});
+  return kinds;
+}
+
 const NoiseEffect& effectOf(double Roughness::*figure, const RoughnessNoise& noise) {
   const std::span<const RoughnessInfo> infos = roughnessInfos();
   return noise[static_cast<std::size_t>(std::ranges::find(infos, figure, &RoughnessInfo::figure) -
@@ -154,33 +176,36 @@ std::vector<std::vector<double>> sectionNoise(const Section& section, const Sect
 
 Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& within,
                                       const ProfileFilters& filters, const Roughness& found,
-                                      const SectionNoise& noise, const NoiseTrialOptions& options) {
+                                      const SectionNoise& noise, const NoiseTrialOptions& options,
+                                      const AskedRatios& asked) {
   const std::span<const RoughnessInfo> infos = roughnessInfos();
+  const std::vector<double> values = valuesOf(found);
+  const std::vector<FigureKind> kinds = kindsOf(found);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const bool known = !std::isnan(noise.sample_mm);
   RoughnessNoise result(
-      infos.size(),
+      values.size(),
       {kNone, kNone, known ? "the scan has no noise that was found" : "the noise of the scan is not known"});
   if (!known || !(noise.sample_mm > 0.0 || noise.rows_mm > 0.0 || noise.columns_mm > 0.0)) return result;
   const DrawnNoise drawn = drawnNoise(section, noise, options.seed, options.pairs);
-  std::vector<std::vector<TrialPair>> pairs(infos.size());
+  std::vector<std::vector<TrialPair>> pairs(values.size());
   Section noisy = section;
   for (const std::vector<double>& more : drawn.heights) {
-    Roughness sides[2];
+    std::vector<double> sides[2];
     for (int side = 0; side < 2; ++side) {
       for (std::size_t i = 0; i < more.size(); ++i)
         noisy.height[i] = section.height[i] + (side == 0 ? more[i] : -more[i]);
-      const auto rough = roughnessOf(noisy, within, filters);
+      const auto rough = roughnessOf(noisy, within, filters, asked);
       if (!rough) return tl::unexpected(rough.error());
-      sides[side] = *rough;
+      sides[side] = valuesOf(*rough);
     }
-    for (std::size_t f = 0; f < infos.size(); ++f)
-      pairs[f].push_back({sides[0].*infos[f].figure, sides[1].*infos[f].figure});
+    for (std::size_t f = 0; f < values.size(); ++f) pairs[f].push_back({sides[0][f], sides[1][f]});
   }
   std::vector<NoiseGrowth> growth;
-  for (std::size_t f = 0; f < infos.size(); ++f) {
-    growth.push_back(growthOf(infos[f]));
-    result[f] = noiseEffectOf(found.*infos[f].figure, pairs[f], growth.back(), {.doubt = drawn.doubt});
+  growth.reserve(kinds.size());
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    growth.push_back(kinds[f].growth);
+    result[f] = noiseEffectOf(values[f], pairs[f], growth.back(), {.doubt = drawn.doubt});
     if (growth.back() == NoiseGrowth::kRank || growth.back() == NoiseGrowth::kShare)
       result[f].error *= kFewRanks;
   }
@@ -205,9 +230,9 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
         result[at] = {kNone, kNone, "the profile is noise for the most part"};
     }
   // A size with an error as large as itself, and a share with one larger than that of all shares alike, are not determined.
-  for (std::size_t f = 0; f < infos.size(); ++f) {
+  for (std::size_t f = 0; f < values.size(); ++f) {
     const double most = growth[f] == NoiseGrowth::kShare  ? 1.0 / std::sqrt(12.0)
-                        : growth[f] == NoiseGrowth::kRank ? found.*infos[f].figure
+                        : growth[f] == NoiseGrowth::kRank ? values[f]
                                                           : std::numeric_limits<double>::infinity();
     // A waviness has a few waves of the smoothest kind: the equivalent line goes from some ranks of theirs to others, which trials do not see
     // (of 40 simulated ones 6 to 25 lie within one error).
@@ -219,7 +244,7 @@ Result<RoughnessNoise> roughnessNoise(const Section& section, const Stretch& wit
                    growth[f] == NoiseGrowth::kShare
                        ? "noise leaves it open: its error would be that of any share"
                        : "noise leaves it open: its error would be as large as itself"};
-    result[f] = withinRange(result[f], found.*infos[f].figure, rangeOf(infos[f]));
+    result[f] = withinRange(result[f], values[f], kinds[f].range);
   }
   return result;
 }

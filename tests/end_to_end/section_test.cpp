@@ -197,6 +197,29 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   refused({"--profile", "primary", "--cutoff", "1.5"}, "--cutoff");
   // Letters are the words.
   EXPECT_EQ(with({"--cutoff", "1.5", "--profile", "R,P,W"}), all);
+  // Of a wave of 0.02 mm, whose mean line the filter takes out: acos(c / A) / pi, and A (cos(pi p) - cos(pi q)).
+  const auto asked = with(
+      {"--cutoff", "1.5", "--profile", "R,P", "--at-height", "0,-0.01,10um", "--height-between", "10,60"});
+  ASSERT_EQ(asked["roughness"]["rmr"].size(), 3U);
+  EXPECT_NEAR(asked["roughness"]["rmr"][0]["ratio"], 0.5, 0.03);
+  EXPECT_NEAR(asked["roughness"]["rmr"][1]["ratio"], 2.0 / 3.0, 0.03);
+  EXPECT_NEAR(asked["roughness"]["rmr"][2]["ratio"], 1.0 / 3.0, 0.03);
+  EXPECT_EQ(asked["roughness"]["rmr"][2]["height_mm"], 0.01);
+  EXPECT_NEAR(asked["roughness"]["rdc"][0]["height_mm"], 0.02 * (std::cos(0.1 * M_PI) - std::cos(0.6 * M_PI)),
+              0.002);
+  EXPECT_EQ(asked["primary"]["pmr"].size(), 3U);
+  EXPECT_EQ(asked["primary"]["pdc"].size(), 1U);
+  std::vector<std::string> asking = line;
+  asking.insert(asking.end(), {"--profile", "P", "--at-height", "10um", "--height-between", "10,60"});
+  const Outcome stated = fettle(asking);
+  for (const char* const part :
+       {"Pmr ", "material ratio at 0.01", "about the mean line", "Pdc ", "ratios 10 and 60 %"})
+    EXPECT_NE(stated.out.find(part), std::string::npos) << part << stated.out;
+  refused({"--at-height", "0"}, "add --cutoff or --profile");
+  refused({"--height-between", "10,60"}, "add --cutoff or --profile");
+  refused({"--cutoff", "1.5", "--at-height", "1kg"}, "--at-height");
+  refused({"--cutoff", "1.5", "--height-between", "60,10"}, "--height-between");
+  refused({"--cutoff", "1.5", "--height-between", "10,101"}, "--height-between");
   refused({"--profile", "w"}, "--profile");
 }
 
