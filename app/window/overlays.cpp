@@ -191,18 +191,19 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
       pieces_.push_back(piece);
     }
   };
-  // From afar the surface is drawn from means, and a line along its samples is partly below them: faintly on top of all, then in the scene
-  // on a light rim, which is seen on dark colours.
+  // What the surface hides of it is still seen faintly; the rest is on a light rim, for dark colours.
   piece.colour = kSectionMeaning.colour;
   piece.depth = render::OverlayLine::Depth::kOnTop;
   piece.opacity = chosen ? 0.3F : 0.15F;
   piece.width_px = kSection_px;
   draw();
   piece.depth = render::OverlayLine::Depth::kInScene;
-  piece.opacity = chosen ? 0.6F : 0.25F;
-  piece.colour = kSectionRim;
-  piece.width_px = kSection_px + 2.5F;
-  draw();
+  if (chosen) {
+    piece.opacity = 1.0F;
+    piece.colour = kSectionRim;
+    piece.width_px = kSection_px + 2.0F;
+    draw();
+  }
   piece.opacity = chosen ? 1.0F : 0.45F;
   piece.colour = kSectionMeaning.colour;
   piece.width_px = kSection_px;

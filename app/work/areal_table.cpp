@@ -391,8 +391,8 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
       const Report& between = report["sdc"]["height"];
       line.values.push_back(between.is_null() ? "the samples do not determine it"
                                               : fmt::format("{:.5g}", between.get<double>() * shown.factor));
-      line.without.push_back(withoutNoise(report.contains("noise") ? report["sdc"] : Report(), shown.factor,
-                                          Quantity::kHeight));
+      line.without.push_back(
+          withoutNoise(report.contains("noise") ? report["sdc"] : Report(), shown.factor, Quantity::kHeight));
     }
     lines.push_back(std::move(line));
   }

@@ -4,7 +4,7 @@
 
 namespace fettle::engine {
 
-// The material ratio curve of a profile (ISO 21920-2:2021, 4.5; ISO 4287:1997, 4.5.1): of the profile that is straight between evenly spaced
+// The material ratio curve of a profile (ISO 21920-2:2021; ISO 4287:1997, 4.5.1): of the profile that is straight between evenly spaced
 // places, by lengths. The material length at a height is the length along which the profile is at it or higher; the ratio is that over
 // the whole length.
 

@@ -187,11 +187,21 @@ std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLin
   std::vector<gpu::Line> out;
   const double per_mm = panel.mm_per_unit / panel.field.grid().height_unit.mm;
   const double zero_mm = panel.reference * panel.field.grid().height_unit.mm;
-  // Slightly towards the viewer, so that a line on the surface is not hidden by it.
-  const glm::dvec3 lift = (depth == OverlayLine::Depth::kInScene ? 1.5 / panel.camera.pixelsPerMm() : 0.0) *
-                          panel.camera.toViewer();
+  // Slightly towards the viewer, so that a line on the surface is not hidden by it. The surface that is drawn lies within a pixel or so of
+  // the field on the screen: in height that is the more, the steeper one looks down on it, and from above it says nothing.
+  const glm::dvec3& to_viewer = panel.camera.toViewer();
+  const double least = depth == OverlayLine::Depth::kInScene ? 1.5 / panel.camera.pixelsPerMm() : 0.0;
+  const double flat = glm::length(glm::dvec2(to_viewer));
+  const double more = to_viewer.z > flat ? (flat > 0.0 ? least * (to_viewer.z / flat - 1.0)
+                                                       : std::numeric_limits<double>::infinity())
+                                         : 0.0;
   const auto scene = [&](const glm::dvec3& p) {
-    return glm::dvec3(panel.placing.first + glm::dvec2(p), (p.z - zero_mm) * per_mm) + lift;
+    const double z = (p.z - zero_mm) * per_mm;
+    // Not above what is drawn at all, where the camera sees nothing.
+    const double lift = more > 0.0 && least > 0.0
+                            ? std::min(least + more, std::max(least, (panel.cut_z - z) / to_viewer.z))
+                            : least;
+    return glm::dvec3(panel.placing.first + glm::dvec2(p), z) + lift * to_viewer;
   };
   for (const OverlayLine& l : lines)
     if (l.depth == depth)

@@ -169,7 +169,8 @@ TEST_F(WindowTest, a_section_is_dragged_by_its_ends_or_as_a_whole) {
   user.at({350, 392});
   user.down(1);
   user.up(1);
-  EXPECT_EQ(settledWith(*program, "the first", [](const State& s) { return s["section"] == 1; })["sections"], 2);
+  EXPECT_EQ(settledWith(*program, "the first", [](const State& s) { return s["section"] == 1; })["sections"],
+            2);
   EXPECT_NEAR(length("the first's length"), again, 1e-6 * again);
 
   // With a tool a press at an end is the tool's.

@@ -108,6 +108,37 @@ TEST(Live, OverlaysAreSeenWhereTheyAreAndHiddenByWhatLiesBefore) {
   EXPECT_GT(magenta, 200);
 }
 
+TEST(Live, ALineOnTheFieldIsSeenFromAboveWhereFewVerticesDrawAStepAsASlope) {
+  auto picture = makePicture();
+  ASSERT_TRUE(
+      picture->update(fieldOf(gridOf(640, 480, 0.1, 0.1), [](int c, int) { return c < 317 ? 0.0 : 8.0; })));
+  FrameInput input = bare();
+  input.view.elevation_deg = 90;
+  constexpr double kFrom_mm = 29.0, kStep_mm = 0.1;
+  constexpr int kPlaces = 60;
+  const auto place = [](int i) {
+    const double x = kFrom_mm + i * kStep_mm;
+    return glm::dvec3(x, 24.0, x < 31.65 ? 0.0 : 8.0);
+  };
+  for (int i = 0; i < kPlaces; ++i) {
+    OverlayLine disc{place(i), place(i), {1, 0, 0}, 1.0F, 5.0F};
+    disc.depth = OverlayLine::Depth::kInScene;
+    input.overlays.lines.push_back(disc);
+  }
+  // From above the error of any vertices is none on the screen.
+  for (const auto& [elevation_deg, vertices] : {std::pair(90.0, 4096), {80.0, 65536}}) {
+    input.view.elevation_deg = elevation_deg;
+    input.vertex_budget = vertices;
+    const Shot seen = shoot(*picture, input);
+    for (int i = 0; i < kPlaces; ++i) {
+      const auto at = picture->pixelOf(0, place(i));
+      ASSERT_TRUE(at);
+      const std::uint8_t* p = pixel(seen.image, static_cast<int>(at->first), static_cast<int>(at->second));
+      EXPECT_TRUE(p[0] > 240 && p[1] < 40) << elevation_deg << ", place " << i;
+    }
+  }
+}
+
 TEST(Live, DecorationsThemesLightAndMapsAreDrawnAndRefusedWhenOutOfRange) {
   auto picture = makePicture();
   FrameInput input;
