@@ -68,7 +68,7 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
                  return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },
                {trFormat("no edge was found along the stroke {}", middleOf(*stroke)),
-                textOf("it stays a mark"), textOf("pieces of strokes lie along no edge: they stay marks")});
+                textOf("it stays a mark"), textOf("strokes lie along no edge: they stay marks")});
     else if (client.newest().lines() || edit.busy())
       edit.ask(textOf("Erase edge line"),
                [stroke, radius](const engine::Version& base,

@@ -213,7 +213,7 @@ TEST(SectionCommand, ProfilesAreThoseAskedFor) {
   asking.insert(asking.end(), {"--profile", "P", "--at-height", "10um", "--height-between", "10,60"});
   const Outcome stated = fettle(asking);
   for (const char* const part :
-       {"Pmr ", "material ratio at 0.01", "about the mean line", "Pdc ", "ratios 10 and 60 %"})
+       {"Pmr ", "material ratio at 10 um about the mean line", "Pdc ", "ratios 10 and 60 %"})
     EXPECT_NE(stated.out.find(part), std::string::npos) << part << stated.out;
   refused({"--at-height", "0"}, "add --cutoff or --profile");
   refused({"--height-between", "10,60"}, "add --cutoff or --profile");
