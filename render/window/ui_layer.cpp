@@ -116,6 +116,7 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
+  io.MouseDoubleClickTime = 0.5F;  // as desktops have it; ImGui's 0.3 s are three frames of a busy machine
   makeStyle(scale);
   ImGui_ImplGlfw_InitForVulkan(window, true);
 }

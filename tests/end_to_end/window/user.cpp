@@ -186,9 +186,15 @@ bool User::typeIn(const std::string& name, const std::string& value) {
   const int width = now["frame"][0].get<int>() - left;
   // Right of the names and of a tick before the number, left of the buttons behind it.
   at({left + 6 * width / 10, now["cursor"][1]});
-  for (int i = 0; i < 2; ++i) {
-    down(1);
-    up(1);
+  // Each press and release is answered before the next: on a busy machine that may be too slow for a double click, and is tried again.
+  for (int tries = 0; tries < 8 && program_.now()["text_field"] != true; ++tries) {
+    for (int i = 0; i < 2; ++i) {
+      down(1);
+      up(1);
+    }
+    const std::uint64_t drawn = counter("frames");
+    (void)waitFor("a field, or none",
+                  [&](const State& s) { return s["text_field"] == true || s["frames"] >= drawn + 4; });
   }
   (void)waitFor("a field to type " + name + " in", [](const State& s) { return s["text_field"] == true; });
   (void)press("ctrl+a");
