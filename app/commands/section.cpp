@@ -229,7 +229,7 @@ engine::Result<std::vector<PlannedSection>> plannedSections(const SectionArgumen
   }
   auto paths = pathsOf(options, scan.field, !planned.empty(), job);
   if (!paths) return tl::unexpected(paths.error());
-  SectionWants wants = options;
+  SectionWants wants = static_cast<const SectionWants&>(options);
   wants.asked = asked;
   for (Points& points : *paths) planned.push_back({std::move(points), options.width, wants});
   return planned;
