@@ -22,8 +22,8 @@ struct TypedLength {
 /// What is wrong with a length as typed, "7q is not a length", or an empty text.
 [[nodiscard]] std::string lengthProblem(std::string_view text);
 
-/// Exactly `count` lengths between commas, as "12.5mm,3mm": in units of `plain_mm` millimetres, which is that of those without a unit, each of
-/// these to the bit. Empty where the text is not that.
+/// Exactly `count` lengths between commas, as "12.5mm,3mm": in units of `plain_mm` millimetres, the unit of numbers without one, which are
+/// returned bit for bit. Empty where the text is not that.
 [[nodiscard]] std::vector<double> lengthsOf(std::string_view text, std::size_t count, double plain_mm = 1.0);
 
 }  // namespace fettle::app
