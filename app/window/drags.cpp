@@ -20,9 +20,6 @@ constexpr double kSplitGrip_px = 8.0;
 // Steps of the wheel per pixel of a drag that zooms.
 constexpr double kZoomPerPixel = 0.05;
 
-constexpr double kGrip_px = 10.0;  // within which a line is under the cursor
-constexpr double kClick_px = 3.0;  // a longer movement is no click
-
 double gripOf(const engine::Grid& grid, const WindowPicture& picture) {
   return std::max(1.0, kGrip_px * picture.mmPerPixel() / std::min(grid.spacingXMm(), grid.spacingYMm()));
 }

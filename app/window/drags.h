@@ -11,6 +11,9 @@
 
 namespace fettle::app {
 
+inline constexpr double kGrip_px = 10.0;  ///< within which a line is under the cursor
+inline constexpr double kClick_px = 3.0;  ///< a longer movement is no click
+
 /// The mouse at the camera: buttons turn, move and zoom the view, the wheel zooms, and a handle moves the
 /// line between two versions. A drag keeps hold of what was under the cursor when it began: that stays where it is
 /// while the view turns and zooms, and under the cursor while it pans. Threading: main.

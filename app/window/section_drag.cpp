@@ -6,14 +6,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "app/window/drags.h"
+
 namespace fettle::app {
 
 namespace {
 
 using render::InputKind;
-
-constexpr double kSectionGrip_px = 10.0;  // as of edge lines
-constexpr double kSectionClick_px = 3.0;
 
 bool holdsAll(const render::InputEvent& event) {
   return event.modifiers == render::Modifiers{.control = true, .shift = true, .alt = false};
@@ -34,7 +33,7 @@ std::optional<glm::dvec2> SectionDrag::placeOf(const render::InputEvent& event, 
 }
 
 std::optional<SectionDrag::Found> SectionDrag::find(const glm::dvec2& place_mm, const Scope& scope) {
-  const double grip_mm = kSectionGrip_px * scope.picture.mmPerPixel();
+  const double grip_mm = kGrip_px * scope.picture.mmPerPixel();
   std::optional<Found> found;
   // Ends lie on top of lines, and those of the chosen section on top of all.
   enum Rank : std::uint8_t { kLine, kEnd, kChosenEnd };
@@ -109,7 +108,7 @@ bool SectionDrag::handle(const render::InputEvent& event, const Scope& scope) {
   if (event.kind != InputKind::kButtonUp) return false;
   const auto pressed = std::exchange(pressed_, std::nullopt);
   if (std::exchange(held_, std::nullopt)) return true;
-  if (pressed && glm::distance(*pressed, {event.x, event.y}) <= kSectionClick_px)
+  if (pressed && glm::distance(*pressed, {event.x, event.y}) <= kClick_px)
     if (const auto place = placeOf(event, scope))
       if (const auto found = find(*place, scope)) scope.sections.choose(found->section);
   return false;
