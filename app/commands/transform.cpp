@@ -87,10 +87,12 @@ engine::Result<Report> transformOne(const TransformRun& options, const BatchTask
   const engine::FieldSummary summary = engine::summarize(result->field);
   if (summary.no_data == grid.samples() &&
       engine::summarize(imported->field).no_data < imported->field.grid().samples())
-    warn(fmt::format(
-        "{}: every new sample is a hole, since the old one nearest to it is: fill single holes first, or "
-        "choose another spacing",
-        shownInput(task.in)));
+    warn(
+        fmt::format("{}: every new sample is a hole, since {}: fill single holes first, or choose another {}",
+                    shownInput(task.in),
+                    result->method == engine::Resampling::kArea ? "less than half of its cell is known"
+                                                                : "the old one nearest to it is one",
+                    result->method == engine::Resampling::kArea ? "--method" : "spacing"));
   Report report{{"width", grid.width},
                 {"height", grid.height},
                 {"spacing_x", grid.spacing_x},
@@ -182,10 +184,9 @@ void addTransform(Command root, Chosen& chosen) {
       "is "
       "s times as wide, so that what is finer than the new spacing is averaged.\n"
       "Marks, edge lines, the form that lies over a session and the scan that it began with go along. A new "
-      "sample is a hole "
-      "where the "
-      "old one nearest to it is; elsewhere holes do not count, and cubic becomes linear beside them. It is "
-      "marked "
+      "sample is a hole where the old one nearest to it is; by area, where samples get farther apart, where "
+      "less than half of its cell is known. Elsewhere holes do not count, and cubic becomes linear beside "
+      "them. It is marked "
       "where an old marked one lies in its cell. A crop and a new spacing keep the place in the world; a "
       "turned "
       "or mirrored scan keeps its middle there and has no coordinate system.");

@@ -144,15 +144,21 @@ class OldSamples {
 // One new sample after the other; its own for each thread's block.
 class Sampler {
  public:
-  Sampler(const OldSamples& old, Resampling method, const glm::dvec2& stretch)
-      : old_(old), method_(method), stretch_(stretch) {}
+  Sampler(const OldSamples& old, const Grid& field, Resampling method, const glm::dvec2& stretch)
+      : old_(old), field_(field), method_(method), stretch_(stretch) {}
 
   [[nodiscard]] float heightAt(const glm::dvec2& p) {
-    const float nearest = old_.height(static_cast<std::int32_t>(std::floor(p.x + 0.5)),
-                                      static_cast<std::int32_t>(std::floor(p.y + 0.5)));
-    if (std::isnan(nearest)) return nearest;
-    const double base = nearest;
+    constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+    const auto column = static_cast<std::int32_t>(std::floor(p.x + 0.5)),
+               row = static_cast<std::int32_t>(std::floor(p.y + 0.5));
+    if (!field_.contains(column, row)) return kHole;
+    // One cell of many samples is not known or unknown by the sample in its middle.
+    const bool by_share = method_ == Resampling::kArea && std::max(stretch_.x, stretch_.y) > 1.0;
+    const float nearest = old_.height(column, row);
+    if (std::isnan(nearest) && !by_share) return kHole;
+    const double base = std::isnan(nearest) ? anyHeightAround(p) : nearest;
     Mean mean = meanAround(p, method_, base);
+    if (by_share && !(mean.known >= kLeastKnown)) return kHole;
     if (!mean.complete && method_ == Resampling::kCubic) mean = meanAround(p, Resampling::kLinear, base);
     // The mean is the surface's height where its samples lie on average, beside the place where some of them are missing or the
     // kernel is symmetric about no sample: from there along the slope.
@@ -177,7 +183,10 @@ class Sampler {
     double height = 0.0;
     glm::dvec2 away{0.0};   // where they lie on average, from the place of the kernel [samples]
     bool complete = false;  // all have heights; of kCubic the rest counts only then
+    double known = 0.0;     // share of the weights in the field that is of samples with a height
   };
+  // Half, but for rounding. Smooth rims of holes then keep their places, and dropouts of less than half a cell make no hole.
+  static constexpr double kLeastKnown = 0.5 - 1e-9;
 
   // Calls f(weight, from the place, height about `base`) for each sample of a kernel, NaN for one without a height.
   template <class F>
@@ -196,10 +205,13 @@ class Sampler {
 
   [[nodiscard]] Mean meanAround(const glm::dvec2& p, Resampling method, double base) {
     Mean mean{.complete = true};
-    double weights = 0.0;
+    double weights = 0.0, missing = 0.0;
     eachAround(p, stretch_, method, base, [&](double weight, const glm::dvec2& from, double z) {
       if (std::isnan(z)) {
         mean.complete = false;
+        const glm::dvec2 at = glm::round(p + from);
+        if (field_.contains(static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y)))
+          missing += weight;
         return;
       }
       mean.height += weight * z;
@@ -208,7 +220,17 @@ class Sampler {
     });
     mean.height /= weights;
     mean.away /= weights;
+    mean.known = weights / (weights + missing);
     return mean;
+  }
+
+  // Of the samples that the kernel sees; NaN without one.
+  [[nodiscard]] double anyHeightAround(const glm::dvec2& p) {
+    double any = std::numeric_limits<double>::quiet_NaN();
+    eachAround(p, stretch_, method_, 0.0, [&](double, const glm::dvec2&, double z) {
+      if (std::isnan(any)) any = z;
+    });
+    return any;
   }
 
   // Of the plane through the samples of a triangle that is a sample wider, by weighted least squares; along a direction in which
@@ -247,6 +269,7 @@ class Sampler {
   }
 
   const OldSamples& old_;
+  const Grid& field_;
   Resampling method_;
   glm::dvec2 stretch_;
   Taps x_, y_;
@@ -264,7 +287,7 @@ void resampleTile(const FieldReader& field, const Places& places, Resampling met
   };
   const double reach_x = reach(places.stretch.x), reach_y = reach(places.stretch.y);
   OldSamples old;
-  Sampler sampler(old, method, places.stretch);
+  Sampler sampler(old, field.grid(), method, places.stretch);
   std::vector<float> z;
   std::vector<std::uint8_t> marks;
   for (std::int32_t row = rect.row; row < rect.row + rect.rows; row += side)

@@ -33,7 +33,8 @@ struct ResampleOptions {
 /// left corner of the first cell stays, and cells are those that fit in. With an angle the field is turned about its
 /// middle, and the result holds all of it: what lies outside are holes, and there is no coordinate system.
 ///
-/// A new sample is a hole where the old one nearest to it is, or none is. Elsewhere samples without a height do not count
+/// A new sample is a hole where no old one is nearest to it, and where that one is a hole; by area, where samples get farther apart,
+/// where less than half of what its cell covers of the field is known instead. Elsewhere samples without a height do not count
 /// and the weights of the others are normalised, of cubic by those of linear. Where the samples that count lie beside the new place
 /// on average - at borders, beside holes, and where a new spacing is no whole multiple of the old one - the mean is moved to it along
 /// the slope of the plane through the samples around it, so that a plane stays one by every method, everywhere. Heights: sums in

@@ -200,14 +200,58 @@ TEST(Resampled, ByAreaIsTheMeanOfTheOldCellsMovedToTheNewOnesMiddle) {
         const double moved =
             (sum - (away_x * (yy * xz - xy * yz) + away_y * (xx * yz - xy * xz)) / det) / weights;
         const float got = now.reader().heightAt(c, r);
-        const float nearest = field.reader().heightAt(static_cast<int>(std::floor((c + 0.5) * by)),
-                                                      static_cast<int>(std::floor((r + 0.5) * by)));
-        ASSERT_EQ(std::isnan(got), std::isnan(nearest));
+        ASSERT_EQ(std::isnan(got), weights < 0.5 * by * by - 1e-9);
         if (!std::isnan(got)) {
           ASSERT_NEAR(static_cast<double>(got), moved, 2e-6);
         }
       }
   }
+}
+
+TEST(Resampled, ByAreaACellIsAHoleWhereLessThanHalfOfItIsKnown) {
+  // 16 old samples in each cell, in the middle between four of them.
+  const auto holesOf = [](const std::function<bool(int, int)>& hole, int side = 240) {
+    const Version field = fieldOf(side, side, 1.0, 1.0, [&](double x, double y) {
+      return hole(static_cast<int>(x), static_cast<int>(y)) ? kNone : 2.0 + 0.01 * x - 0.02 * y;
+    });
+    const Version now = resample(field, Resampling::kArea, 4.0, 4.0);
+    for (int r = 0; r < now.grid().height; ++r)
+      for (int c = 0; c < now.grid().width; ++c)
+        if (const float z = now.reader().heightAt(c, r); !std::isnan(z)) {
+          EXPECT_NEAR(static_cast<double>(z), 2.0 + 0.01 * (4 * c + 1.5) - 0.02 * (4 * r + 1.5), 1e-6);
+        }
+    return static_cast<int>(summarize(now).no_data);
+  };
+  // Single holes make none, wherever they lie in their cells.
+  for (int k = 0; k < 16; ++k)
+    EXPECT_EQ(holesOf([&](int c, int r) { return c % 4 == k % 4 && r % 4 == k / 4; }), 0) << k;
+  // Half of it is enough, less is not; nor is the sample in the middle alone.
+  EXPECT_EQ(holesOf([](int c, int) { return c % 4 < 2; }), 0);
+  EXPECT_EQ(holesOf([](int c, int r) { return c % 4 < 2 || (c % 4 == 2 && r % 4 == 0); }), 60 * 60);
+  EXPECT_EQ(holesOf([](int c, int r) { return c % 4 != 2 || r % 4 != 2; }), 60 * 60);
+  EXPECT_EQ(holesOf([](int, int) { return true; }), 60 * 60);
+  // A round hole keeps its size: no known cell is needed beside it, and none is made up in it.
+  const auto round = [](int c, int r) { return std::hypot(c - 119.0, r - 122.0) < 70.0; };
+  EXPECT_NEAR(16.0 * holesOf(round) / (std::numbers::pi * 70.0 * 70.0), 1.0, 0.01);
+  // What lies beyond the border is no part of the cell: of a field smaller than it all counts.
+  const Version small =
+      fieldOf(3, 2, 1.0, 1.0, [](double x, double y) { return x == 0.0 && y == 0.0 ? kNone : x; });
+  EXPECT_NEAR(static_cast<double>(resample(small, Resampling::kArea, 9.0, 9.0).reader().heightAt(0, 0)), 1.0,
+              1e-6);
+}
+
+TEST(Resampled, ByOtherMethodsTheNearestSampleDecidesAtAnySpacing) {
+  const auto single = [](double x, double y) { return x == 13.0 && y == 9.0 ? kNone : 1.0; };
+  const Version field = fieldOf(40, 30, 1.0, 1.0, single);
+  for (const Resampling method : {Resampling::kLinear, Resampling::kCubic})
+    for (const double by : {0.25, 0.5, 1.0, 3.0, 4.0}) {
+      const Version now = resample(field, method, by, by);
+      for (int r = 0; r < now.grid().height; ++r)
+        for (int c = 0; c < now.grid().width; ++c)
+          ASSERT_EQ(std::isnan(now.reader().heightAt(c, r)),
+                    std::floor(c * by + 0.5) == 13.0 && std::floor(r * by + 0.5) == 9.0)
+              << by << ' ' << c << ' ' << r;
+    }
 }
 
 TEST(Resampled, WavesFinerThanTheNewSpacingAreAveragedNotFolded) {
