@@ -158,8 +158,11 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
     if (!session) return tl::unexpected(session.error());
   }
   if (session->journal.empty() && session->history.number() > 0)
-    return engine::inputError("the session has no journal", options.scan,
-                              "convert or export its present state instead");
+    return engine::inputError("the session has no journal, which only the window keeps", options.scan,
+                              session->notes.contains(engine::kStepsNote)
+                                  ? "fettle recipe prints the steps of commands, and fettle apply does them "
+                                    "again: the same bits"
+                                  : "convert or export its present state instead");
   auto foreseen = foreseeJournal(options, *session, job);
   if (!foreseen) return tl::unexpected(foreseen.error());
   if (foreseen->only) return *std::move(foreseen->only);
