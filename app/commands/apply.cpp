@@ -139,11 +139,11 @@ engine::Status take(const RecipeInvert&, Applied& at, engine::JobControl&) {
 
 engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& job) {
   const auto counted = countedOf(at.field, std::nullopt, at.task.in, step.form, job);
+  if (!counted && counted.error().kind == engine::ErrorKind::kInput && choosesByMarks(step.form.region))
+    return engine::inputError(counted.error().what, shownInput(at.task.in),
+                              "let a step that marks come before it, or level by region = \"all\"");
   if (!counted) return tl::unexpected(counted.error());
   const auto levelling = levellingOf(*counted, at.task.in, at.imported, step.lines, step.form, job);
-  if (!levelling && levelling.error().kind == engine::ErrorKind::kInput && choosesByMarks(step.form.region))
-    return engine::inputError(levelling.error().what, levelling.error().where,
-                              "let a step that marks come before it, or level by region = \"all\"");
   if (!levelling) return tl::unexpected(levelling.error());
   auto levelled = levelling->takenFrom(at.field, job);
   if (!levelled) return tl::unexpected(levelled.error());
@@ -184,7 +184,7 @@ engine::Status take(const RecipeFill& step, Applied& at, engine::JobControl& job
 engine::Status take(const RecipeRemove& step, Applied& at, engine::JobControl& job) {
   const auto options = removeOptionsOf(step.what, at.field.grid());
   if (!options) return tl::unexpected(options.error());
-  const auto counted = countedOf(at.field, std::nullopt, at.task.in, {.region = step.what.region}, job);
+  const auto counted = countedOrNone(at.field, std::nullopt, at.task.in, {.region = step.what.region}, job);
   if (!counted) return tl::unexpected(counted.error());
   auto removed = removedFrom(at.field, *counted, step.what.region, *options, at.task.in, job);
   if (!removed) return tl::unexpected(removed.error());

@@ -83,11 +83,7 @@ engine::Result<std::vector<engine::FitRegion>> regionsOf(const FitArguments& opt
       return engine::inputError("there is no line to keep a margin from", "--margin", "give --lines");
     auto whole = engine::wholeRegion(field, counted, job);
     if (!whole) return tl::unexpected(whole.error());
-    if (whole->samples == 0)
-      return engine::inputError("no sample counts", shownInput(options.scan),
-                                choosesByMarks(options.region)
-                                    ? "give marks with --marks, or take --region all"
-                                    : "is every sample a hole? fettle info counts them");
+    if (whole->samples == 0) return engine::nothingIn(counted, shownInput(options.scan));
     return std::vector<engine::FitRegion>{*std::move(whole)};
   }
   engine::FitRegionOptions how;

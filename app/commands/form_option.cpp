@@ -105,14 +105,7 @@ engine::Result<engine::FittedForm> formOf(const engine::Version& field, const st
   auto fit = engine::fitNominalForm(field, choice, job);
   if (!fit) {
     if (fit.error().kind != engine::ErrorKind::kInput) return fit;
-    // What a shape lacks is said by the fit.
-    const bool no_sample = fit.error().where == "form";
-    return engine::inputError(fit.error().what, shownInput(scan),
-                              !no_sample                  ? fit.error().remedy
-                              : arguments.region == "all" ? "is every sample a hole? fettle info counts them"
-                              : choosesByMarks(arguments.region)
-                                  ? "give marks with --marks, or take --region all"
-                                  : "take a larger region, or --region all");
+    return engine::inputError(fit.error().what, shownInput(scan), fit.error().remedy);
   }
   if (!fit->open.empty())
     warn(fmt::format("{}: {}: of the planes that come nearest to them it is the flattest", shownInput(scan),

@@ -131,6 +131,41 @@ tl::unexpected<engine::Error> noneInside(const engine::Grid& grid, const RegionR
                   from.y + size.y, row.world ? grid.lateral_unit.name : "mm"));
 }
 
+// Of a region that is chosen by marks. What to do depends on where the marks would come from.
+tl::unexpected<engine::Error> noneChosen(engine::Region region, const RegionArguments& arguments,
+                                         const std::string& scan) {
+  const std::string where = fmt::format("{} {}", arguments.option, arguments.region);
+  const std::string by = arguments.marks.empty() ? "" : fmt::format(" in {}", shownInput(arguments.marks));
+  if (region == engine::Region::kUnmarked)
+    return engine::inputError(
+        fmt::format("every sample of {} with a height is marked{}", shownInput(scan), by), where,
+        fmt::format("take {0} marked, or {0} all", arguments.option));
+  return engine::inputError(
+      fmt::format("no sample of {} with a height is marked{}", shownInput(scan), by), where,
+      arguments.marks.empty()
+          ? fmt::format("mark some with fettle mark and give the picture with {}, mark them in the window "
+                        "and give the session, or take {} all",
+                        arguments.marks_option, arguments.option)
+          : fmt::format("paint what counts in any colour but black, or take {} all", arguments.option));
+}
+
+engine::Result<engine::Version> measuredOf(const engine::Version& field,
+                                           const std::optional<engine::Version>& original,
+                                           const std::string& scan, const RegionArguments& arguments,
+                                           engine::JobControl& job) {
+  if (!original)
+    return engine::inputError("the file does not say which samples were filled", shownInput(scan),
+                              fmt::format("give the session of fettle fill, or its --filled-out as {} with "
+                                          "{} unmarked",
+                                          arguments.marks_option, arguments.option));
+  auto measured = engine::withoutFilled(field, *original, job);
+  if (measured && measured->reader().bounds().empty() && !field.reader().bounds().empty())
+    return engine::inputError(fmt::format("every height of {} was filled", shownInput(scan)),
+                              fmt::format("{} {}", arguments.option, arguments.region),
+                              fmt::format("take {} all", arguments.option));
+  return measured;
+}
+
 }  // namespace
 
 std::vector<Word> regionWords() {
@@ -213,17 +248,21 @@ engine::Result<engine::Version> countedOf(const engine::Version& field,
                                           const std::optional<engine::Version>& original,
                                           const std::string& scan, const RegionArguments& arguments,
                                           engine::JobControl& job) {
+  auto counted = countedOrNone(field, original, scan, arguments, job);
+  if (!counted || !choosesByMarks(arguments.region) || counted->reader().bounds().empty()) return counted;
+  const engine::Region region = regionOf(arguments.region);
+  if (!engine::anyIn(counted->reader(), region)) return noneChosen(region, arguments, scan);
+  return counted;
+}
+
+engine::Result<engine::Version> countedOrNone(const engine::Version& field,
+                                              const std::optional<engine::Version>& original,
+                                              const std::string& scan, const RegionArguments& arguments,
+                                              engine::JobControl& job) {
   const RegionRow* row = regionRowOf(arguments.region);
   if (row == nullptr || row->by == RegionBy::kAll || row->by == RegionBy::kMarks)
     return withMarks(field, arguments.marks, job);
-  if (row->by == RegionBy::kMeasured) {
-    if (!original)
-      return engine::inputError(
-          "the file does not say which samples were filled", shownInput(scan),
-          fmt::format("give the session of fettle fill, or its --filled-out as {} with {} unmarked",
-                      arguments.marks_option, arguments.option));
-    return engine::withoutFilled(field, *original, job);
-  }
+  if (row->by == RegionBy::kMeasured) return measuredOf(field, original, scan, arguments, job);
   std::vector<glm::dvec2> corners =
       shapeCorners(*row, arguments.region, row->world ? field.grid().lateral_unit.mm : 1.0);
   const engine::Grid& grid = field.grid();
@@ -242,12 +281,7 @@ engine::Result<engine::Version> chosenOf(const engine::Version& field,
   if (arguments.region == "all") return field;
   const auto counted = countedOf(field, original, scan, arguments, job);
   if (!counted) return tl::unexpected(counted.error());
-  auto chosen = engine::onlyRegion(field, *counted, regionOf(arguments.region), job);
-  if (chosen && chosen->reader().bounds().empty() && !field.reader().bounds().empty())
-    return engine::inputError(
-        fmt::format("no sample is in the region '{}'", arguments.region), shownInput(scan),
-        fmt::format("give marks with {}, or take {} all", arguments.marks_option, arguments.option));
-  return chosen;
+  return engine::onlyRegion(field, *counted, regionOf(arguments.region), job);
 }
 
 void warnOfFilled(const engine::Version& counted, const std::optional<engine::Version>& original,

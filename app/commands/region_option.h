@@ -52,15 +52,23 @@ void addRegionOptions(Command command, RegionArguments& arguments, const std::st
 /// samples that were filled since `original`, that of a session, or with the samples inside a shape marked. `scan` is its
 /// path. A rectangle has the samples on its sides, but for rounding; of a polygon those on lower and left sides (engine::Polygon).
 ///
-/// Errors: as withMarks; (kInput) the region "measured" without an original; a shape that no sample lies in, or holes alone; a
-/// polygon with a corner 2^20 samples away.
+/// Errors: as withMarks; (kInput) the region "measured" without an original, or of filled samples alone; marked samples where none
+/// with a height is marked, unmarked ones where all are; a shape that no sample lies in, or holes alone; a polygon with a corner
+/// 2^20 samples away. A field of holes alone has no region that is too small: whoever measures it says so.
 [[nodiscard]] engine::Result<engine::Version> countedOf(const engine::Version& field,
                                                         const std::optional<engine::Version>& original,
                                                         const std::string& scan,
                                                         const RegionArguments& arguments,
                                                         engine::JobControl& job);
 
-/// The field with holes wherever samples do not count. Errors: as countedOf; a region of marks that none of `field` is in (kInput).
+/// As countedOf, where a region of marks may have no sample: there nothing is done (removal).
+[[nodiscard]] engine::Result<engine::Version> countedOrNone(const engine::Version& field,
+                                                            const std::optional<engine::Version>& original,
+                                                            const std::string& scan,
+                                                            const RegionArguments& arguments,
+                                                            engine::JobControl& job);
+
+/// The field with holes wherever samples do not count. Errors: as countedOf.
 [[nodiscard]] engine::Result<engine::Version> chosenOf(const engine::Version& field,
                                                        const std::optional<engine::Version>& original,
                                                        const std::string& scan,

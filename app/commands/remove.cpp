@@ -65,7 +65,7 @@ engine::Result<Report> removeOne(const RemoveRun& options, const BatchTask& task
   if (!imported) return tl::unexpected(imported.error());
   const auto remove = removeOptionsOf(options.what, imported->field.grid());
   if (!remove) return tl::unexpected(remove.error());
-  const auto field = countedOf(imported->field, std::nullopt, task.in, options.region, job);
+  const auto field = countedOrNone(imported->field, std::nullopt, task.in, options.region, job);
   if (!field) return tl::unexpected(field.error());
   engine::Result<Foreseen> foreseen;
   if (memoryPlace(task.out) == nullptr)

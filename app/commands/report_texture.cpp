@@ -15,6 +15,7 @@
 #include "app/work/form_figures.h"
 #include "app/work/layer_over.h"
 #include "app/work/surface_numbers.h"
+#include "engine/marks/chosen_marks.h"
 
 namespace fettle::app {
 
@@ -69,9 +70,15 @@ ReportPage::Table noiseTable(const std::vector<ArealLine>& lines, std::vector<st
 engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
   std::vector<Report> reports;
   std::string tilt;
+  const engine::Version& last = draft.states.back().field;
   for (const ShownState& state : draft.states) {
+    // The marks of the field choose in the scan before it as well, which has none of them yet.
+    engine::Result<engine::Version> chosen = state.field;
+    if (choosesByMarks(draft.options.form.region) && &state.field != &last)
+      chosen = engine::withMarksFrom(state.field, last, draft.job);
+    if (!chosen) return tl::unexpected(chosen.error());
     const auto counted =
-        countedOf(state.field, draft.imported.original, draft.options.scan, draft.options.form, draft.job);
+        countedOf(*chosen, draft.imported.original, draft.options.scan, draft.options.form, draft.job);
     if (!counted) return tl::unexpected(counted.error());
     const auto limited = scaleLimited(*counted, draft.options.scan, draft.imported, draft.options.form,
                                       draft.options.scale, draft.job);

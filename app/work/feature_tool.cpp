@@ -15,13 +15,7 @@ void FeatureTool::find(const LoopClient& client) {
         engine::fitForm(field, {.degree = what.degree, .region = what.what.region, .robust = false}, job);
     auto features = fit ? featuresOf(field, fit->form, what.what, "", job)
                         : engine::Result<FieldFeatures>(tl::unexpected(fit.error()));
-    if (!features) {
-      engine::Error error = features.error();
-      if (error.kind == engine::ErrorKind::kInput)
-        error.remedy = what.what.region == engine::Region::kAll ? "is every sample a hole?"
-                                                                : "mark samples, or take all of them";
-      return tl::unexpected(error);
-    }
+    if (!features) return tl::unexpected(features.error());
     const auto heights = featureHeights(*features, field.grid(), job);
     if (!heights) return tl::unexpected(heights.error());
     auto saddles = lessDistances(field, *heights, job);

@@ -8,6 +8,7 @@
 #include "app/work/less_distances.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/input_file.h"
+#include "engine/measure/region.h"
 
 namespace fettle::app {
 namespace {
@@ -34,10 +35,7 @@ engine::Result<std::vector<engine::FitRegion>> fittedRegions(const engine::Versi
   }
   auto whole = engine::wholeRegion(field, options.region, job);
   if (!whole) return tl::unexpected(whole.error());
-  if (whole->samples == 0)
-    return engine::inputError("no sample counts", "",
-                              options.region == engine::Region::kAll ? "every sample is a hole"
-                                                                     : "mark samples, or fit to all of them");
+  if (whole->samples == 0) return engine::nothingIn(options.region, "");
   return std::vector<engine::FitRegion>{*std::move(whole)};
 }
 

@@ -16,13 +16,7 @@ engine::Result<FormTool::Fit> fitOf(const engine::Version& field, const engine::
   const auto samples = engine::withoutLayer(field, job);
   if (!samples) return tl::unexpected(samples.error());
   auto fit = engine::fitNominalForm(*samples, options, job);
-  if (!fit) {
-    engine::Error error = fit.error();
-    if (error.kind == engine::ErrorKind::kInput && error.where == "form")
-      error.remedy = options.region == engine::Region::kAll ? "every sample is a hole"
-                                                            : "mark samples, or fit by all of them";
-    return tl::unexpected(error);
-  }
+  if (!fit) return tl::unexpected(fit.error());
   if (auto status = addThroughNoise(*fit, *samples, options, job); !status)
     return tl::unexpected(status.error());
   return FormTool::Fit{options,

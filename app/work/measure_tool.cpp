@@ -167,13 +167,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
       work.figures.curves.push_back(std::move(state->curves));
     }
     auto state = measuredState(after, what, job);
-    if (!state) {
-      engine::Error error = state.error();
-      if (error.kind == engine::ErrorKind::kInput && error.where == "form")
-        error.remedy =
-            what.where == Where::kAll ? "every sample is a hole" : "mark samples, or measure all of them";
-      return tl::unexpected(error);
-    }
+    if (!state) return tl::unexpected(state.error());
     work.figures.samples = state->report["samples"].get<std::int64_t>();
     reports.push_back(std::move(state->report));
     work.figures.curves.push_back(std::move(state->curves));

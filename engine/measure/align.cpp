@@ -19,6 +19,7 @@
 #include "engine/measure/align_search.h"
 #include "engine/measure/align_spread.h"
 #include "engine/measure/height_map.h"
+#include "engine/measure/region.h"
 
 namespace fettle::engine {
 
@@ -346,6 +347,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   for (const Version* field : {&first, &second})
     if (field->reader().bounds().empty())
       return inputError("a field without a height cannot be aligned", field == &first ? "A" : "B");
+  if (!anyIn(first.reader(), options.region)) return nothingIn(options.region, "A");
   const Grid &grid = first.grid(), &other = second.grid();
   // Heights less a height of each: what is small beside it keeps its digits.
   const auto of_first = heightsAround(first, options.region, job),
@@ -389,7 +391,7 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
                         "A",
                         options.region == Region::kAll
                             ? "give a scan that is some 20 samples wide and high, or fill its holes"
-                            : "take a larger region, or all");
+                            : "let a larger part of A count, or all of it");
     const bool last = k + 1 == sides.size();
     const double least = std::max(rounding_mm, 1e-12 * arm);
     std::vector<RigidMotion> starts;

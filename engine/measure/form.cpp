@@ -365,9 +365,7 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
   FormAxes axes{{0, grid.width}, {0, grid.height}};
   auto sums = sumsOf(field, options, axes, fit.form, {}, job);
   if (!sums) return tl::unexpected(sums.error());
-  if (sums->samples == 0)
-    return inputError("there is no sample that a form could be fitted to", "form",
-                      options.region == Region::kAll ? "" : "mark some, or fit it to all samples");
+  if (sums->samples == 0) return nothingIn(options.region, "form");
   SolvedForm solved = solveForm(sums->products(), options.degree, axes, grid);
   // On a small part of the field the terms hardly differ but about that part's middle.
   const FormAxes own = sums->axes();

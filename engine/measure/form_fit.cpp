@@ -86,16 +86,11 @@ std::string openTermsText(const FormFit& fit, std::string_view title) {
                      one ? "" : "s", one ? "s" : "", fit.decided, fit.terms, title, one ? "s" : "", fit.open);
 }
 
-tl::unexpected<Error> noSampleForForm(Region region) {
-  return inputError("there is no sample that a form could be fitted to", "form",
-                    region == Region::kAll ? "" : "mark some, or fit it to all samples");
-}
-
 Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const FormChoice& choice,
                                 JobControl& job) {
   const auto region = wholeRegion(field, choice.region, job);
   if (!region) return tl::unexpected(region.error());
-  if (region->samples == 0) return noSampleForForm(choice.region);
+  if (region->samples == 0) return nothingIn(choice.region, "form");
   const auto stride = static_cast<std::int32_t>(
       std::ceil(std::sqrt(static_cast<double>(region->samples) / kMostFitted) - 1e-9));
   FitSamples samples(field, *region, std::max(1, stride));

@@ -250,9 +250,7 @@ class LineSearch {
     overStrips([&](std::int32_t first, std::int32_t count) { countAndFit(first, count, !chain); });
     if (job_.cancelled()) return cancelled();
     found_.empty = static_cast<std::int32_t>(std::ranges::count(counts_, 0));
-    if (found_.empty == found_.lines)
-      return inputError("there is no sample that a line could be levelled by", "lines",
-                        options_.region == Region::kAll ? "" : "mark some, or take all samples");
+    if (found_.empty == found_.lines) return nothingIn(options_.region, "lines");
     if (chain) {
       findSources();
       overStrips([&](std::int32_t first, std::int32_t count) { fitSteps(first, count); });

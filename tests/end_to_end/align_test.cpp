@@ -79,13 +79,13 @@ TEST(AlignCommand, SaysWhatItCannotDo) {
                              {{"align", a, holes, out}, "a field without a height cannot be aligned"},
                              {{"align", a, a, a}, "would replace an input"},
                              {{"align", a, a, out, "--marks", "m.png"}, "marks choose nothing"},
-                             {{"align", a, a, out, "--region", "marked"}, "too few"},
+                             {{"align", a, a, out, "--region", "marked"}, "is marked"},
                              {{"align", a, a, "--moves", "level", "--rotation", "5"}, "does not rotate"},
                              {{"align", a, a, "--compress", "zstd"}, "no scan is written"},
                              {{"align", a, a, "--to", "tif"}, "no scan is written"},
                              {{"compare", a, a, "--rotation", "5"}, "nothing is aligned"},
                              {{"compare", a, a, "--align-region", "marked"}, "nothing is aligned"},
-                             {{"compare", a, a, "--region", "marked"}, "no sample is in the region"}}) {
+                             {{"compare", a, a, "--region", "marked"}, "is marked"}}) {
     std::vector<std::string> words = one.words;
     words.insert(words.end(), {"--unit", "mm"});
     const Outcome outcome = fettle(words);

@@ -133,7 +133,7 @@ TEST(FitCommand, SaysWhatItCannotDo) {
                              {{"--between", "1,1"}, "between a fit and itself"},
                              {{"--between", "1,2"}, "region 2 has no fit"},
                              {{"--marks", "m.png"}, "marks choose nothing"},
-                             {{"--region", "marked"}, "no sample counts"},
+                             {{"--region", "marked"}, "with a height is marked"},
                              {{"--residuals", scan}, "would replace an input"}}) {
     std::vector<std::string> words{"fit", scan, "--unit", "mm", "--csv", out};
     words.insert(words.end(), one.words.begin(), one.words.end());

@@ -252,6 +252,52 @@ TEST_F(RegionOption, SaysWhatIsNoRegion) {
   expectRefused(fettle({"remove", scan_, out_, "--region", "measured", "--unit", "mm"}), "is not one of");
 }
 
+// "Take a larger region" helps nobody who has marked nothing.
+TEST_F(RegionOption, WhereNothingIsMarkedEveryCommandSaysSoAndHowToMark) {
+  const std::string all = folder_.file("all.png"), none = folder_.file("none.png"),
+                    page = folder_.file("r.html");
+  run({"mark", scan_, all, "--invert"});
+  run({"mark", scan_, none, "--add", all, "--invert"});
+  const std::vector<std::vector<std::string>> commands = {
+      {"level", scan_, out_},
+      {"level", scan_, out_, "--form", "none", "--rows", "median"},
+      {"level", scan_, folder_.file("o.fettle"), "--layer", "put"},
+      {"fit", scan_},
+      {"measure", scan_},
+      {"features", scan_},
+      {"report", scan_, page},
+      {"section", scan_, "--start", "0,4", "--end", "8.9,4"},
+      {"align", scan_, scan_},
+      {"compare", scan_, scan_}};
+  for (std::vector<std::string> line : commands) {
+    const std::string name = line[0];
+    line.insert(line.end(), {"--unit", "mm", "--region", "marked"});
+    Outcome outcome = fettle(line);
+    expectRefused(outcome, "no sample of " + scan_ + " with a height is marked, --region marked, ");
+    for (const char* part : {"fettle mark", "--marks", "in the window", "--region all"})
+      EXPECT_NE(outcome.err.find(part), std::string::npos) << name << ": " << outcome.err;
+    line.insert(line.end(), {"--marks", none});
+    outcome = fettle(line);
+    EXPECT_EQ(outcome.status, 2) << name;
+    EXPECT_NE(outcome.err.find("is marked in " + none), std::string::npos) << name << ": " << outcome.err;
+    line[line.size() - 3] = "unmarked";
+    line.back() = all;
+    outcome = fettle(line);
+    EXPECT_EQ(outcome.status, 2) << name;
+    EXPECT_NE(outcome.err.find("every sample of " + scan_ + " with a height is marked in " + all),
+              std::string::npos)
+        << name << ": " << outcome.err;
+    // And with marks that hold something nothing is refused.
+    line[line.size() - 3] = "marked";
+    EXPECT_EQ(fettle(line).status, 0) << name;
+  }
+  const Outcome aligned =
+      fettle({"compare", scan_, scan_, "--unit", "mm", "--align", "all", "--align-region", "marked"});
+  EXPECT_NE(aligned.err.find("with a height is marked, --align-region marked"), std::string::npos)
+      << aligned.err;
+  EXPECT_NE(aligned.err.find("--align-marks"), std::string::npos) << aligned.err;
+}
+
 // A hole in its middle does not matter, holes alone do: nothing of them could be marked.
 TEST_F(RegionOption, MarksWhatHasAHeightAroundAHole) {
   // Column 13, row 16 is a hole, and every sample beside it has a height.

@@ -18,6 +18,7 @@
 #include "app/work/kept_sections.h"
 #include "engine/filter/filter.h"
 #include "engine/formats/formats.h"
+#include "engine/marks/chosen_marks.h"
 #include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
 #include "tests/support/temp_folder.h"
@@ -176,6 +177,35 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
 }
 
 // One content: what the HTML page says in its tables, captions and plots is text in the PDF.
+// The scan before has none of the marks that were made in the session.
+TEST(ReportPage, OfMarkedSamplesMeasuresTheSameOnesBeforeAndAfter) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), page = folder.file("r.html");
+  makeSession(scan, work);
+  const engine::SampleRect part{20, 10, 50, 40};
+  engine::JobControl job;
+  auto session = engine::openSession(work, {}, engine::importField, job);
+  ASSERT_TRUE(session) << session.error().line();
+  const auto marked = engine::onlyMarked(
+      session->history.current(),
+      [&](std::int32_t tc, std::int32_t tr) { return engine::rowsInside(part, tc, tr); }, job);
+  ASSERT_TRUE(marked);
+  engine::StepInfo info;
+  info.name = "Marks";
+  ASSERT_TRUE(session->history.push(info, *marked));
+  ASSERT_TRUE(engine::saveSession(*session, work, job));
+  const auto report = fettleJson({"report", work, page, "--region", "marked"});
+  const auto sqOf = [&](const std::string& of, const std::string& region) {
+    return fettleJson({"measure", of, "--region", region, "--only", "height", "--noise-trials", "0"})["sq"]
+        .get<double>();
+  };
+  EXPECT_EQ(report["sq"], sqOf(work, "marked"));
+  const double spacing = session->original.grid().spacingXMm();
+  const std::string same =
+      fmt::format("rectangle {},{},{},{}", 20 * spacing, 10 * spacing, 69 * spacing, 49 * spacing);
+  EXPECT_EQ(report["sq_before"], sqOf(scan, same));
+}
+
 TEST(ReportPage, AsPdfHasTheSameTextAndNoDateOfNow) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), work = folder.file("w.fettle"), pdf = folder.file("r.pdf");

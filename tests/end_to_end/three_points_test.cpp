@@ -128,7 +128,7 @@ TEST_F(ThreePoints, ThatSayNothingAreRefused) {
   refused({"--through", "1,1:11,1:1,1", "--probe", "0.2"}, "nearly on a line");
   refused({"--through", kThrough, "--form", "poly2"}, "three points are those of a plane");
   refused({"--through", kThrough, "--robust"}, "around three points all samples count");
-  refused({"--through", kThrough, "--region", "marked"}, "no sample counts within");
+  refused({"--through", kThrough, "--region", "marked"}, "with a height is marked");
   refused({"--probe", "1"}, "there are no points around which samples would count");
   std::ofstream(file("bad.toml")) << "recipe = 1\n[[step]]\ndo = \"level\"\nthrough = [[1, 1], [2, 2]]\n";
   expectRefused(fettle({"apply", file("bad.toml"), scan_, file("x.tif")}),

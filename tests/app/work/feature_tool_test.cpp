@@ -100,6 +100,7 @@ TEST_F(FeatureToolTest, writes_a_row_for_each_and_says_what_it_cannot_find) {
   tool.options.what.region = engine::Region::kMarked;
   find();
   ASSERT_FALSE(bench.notices().empty());
+  EXPECT_EQ(bench.notices().back().what, "nothing is marked that has a height");
   EXPECT_NE(bench.notices().back().remedy.find("mark samples"), std::string::npos);
 }
 

@@ -104,7 +104,8 @@ TEST_F(FitToolTest, nothing_to_fit_to_is_said) {
   ASSERT_TRUE(rest());
   EXPECT_EQ(tool.fits(), nullptr);
   ASSERT_EQ(bench.notices().size(), 1U);
-  EXPECT_EQ(bench.notices().front().what, "no sample counts");
+  EXPECT_EQ(bench.notices().front().what, "nothing is marked that has a height");
+  EXPECT_EQ(bench.notices().front().remedy, "mark samples, or take all of them");
 }
 
 TEST_F(FitToolTest, fits_are_written_by_the_ending) {

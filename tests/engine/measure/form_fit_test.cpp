@@ -191,8 +191,7 @@ TEST(ShapeForms, ThatSamplesDoNotDetermineAreRefused) {
         EXPECT_EQ(fit.error().kind, ErrorKind::kInput);
         return fit.error().what;
       };
-      EXPECT_EQ(refusal(fieldOf(20, 20, [](int, int) { return kHoleHere; })),
-                "there is no sample that a form could be fitted to");
+      EXPECT_EQ(refusal(fieldOf(20, 20, [](int, int) { return kHoleHere; })), "every sample is a hole");
       EXPECT_NE(refusal(fieldOf(70, 1, [](int c, int) { return 0.01 * c * c; })).find("do not determine"),
                 std::string::npos);
       EXPECT_NE(refusal(fieldOf(70, 50, [](int, int) { return 3.0; })).find("do not determine"),
@@ -207,7 +206,7 @@ TEST(ShapeForms, ThatSamplesDoNotDetermineAreRefused) {
                     .find("3 samples"),
                 std::string::npos);
       EXPECT_EQ(refusal(fieldOf(20, 20, [](int, int) { return 1.0; }), Region::kMarked),
-                "there is no sample that a form could be fitted to");
+                "nothing is marked that has a height");
     }
 }
 
