@@ -13,6 +13,7 @@
 #include "engine/field/grid.h"
 #include "engine/field/piece.h"
 #include "engine/field/sample_rect.h"
+#include "engine/field/tile_store.h"
 #include "engine/marks/chosen_marks.h"
 #include "engine/measure/form_kind.h"
 #include "engine/transform/rearrange.h"
@@ -162,7 +163,13 @@ PlannedOnPieces plannedTransform(const engine::Version& field, const engine::Ver
   whole.crop_samples.clear();
   const auto piece = [whole](const engine::Version& of, const engine::SampleRect& r,
                              engine::JobControl& job) -> engine::Result<engine::Version> {
-    auto done = transformed(engine::pieceOf(of, r.column, r.row, r.columns, r.rows), whole, job);
+    // A piece of what is seen under a form is seen under it, too.
+    const auto cut =
+        of.formOver() == nullptr
+            ? engine::Result<engine::Version>(engine::pieceOf(of, r.column, r.row, r.columns, r.rows))
+            : engine::cropped(of, r, job);
+    if (!cut) return tl::unexpected(cut.error());
+    auto done = transformed(*cut, whole, job);
     if (!done) return tl::unexpected(done.error());
     return std::move(done->field);
   };
@@ -177,7 +184,19 @@ PlannedOnPieces plannedTransform(const engine::Version& field, const engine::Ver
             const auto other = piece(original, r, job);
             return other ? done : other;
           },
+      .fields = field.formOver() == nullptr ? 1 : 2,  // samples, and what is seen of them
       .share = kept / static_cast<double>(field.grid().samples())};
+  if (field.formOver() != nullptr) {
+    // What is made of heights, with the form again, and what is seen of that, beside what was made of the field before the original: small
+    // pieces do not show it.
+    const double together = with == WithOriginal::kYes ? 5.0 : 3.0;
+    const auto made = transformedGrid(before, options);
+    const double larger = made ? static_cast<double>(made->samples()) / kept : 1.0;
+    planned.memory_each = together * std::max(1.0, larger) *
+                          static_cast<double>(engine::fieldBytes(static_cast<std::uint64_t>(before.width),
+                                                                 static_cast<std::uint64_t>(before.height))) /
+                          static_cast<double>(before.samples());
+  }
   if (with == WithOriginal::kYes)
     planned.of_original = [piece, &original](const engine::SampleRect& r, engine::JobControl& job) {
       return piece(original, r, job);

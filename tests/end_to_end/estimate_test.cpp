@@ -141,6 +141,36 @@ TEST(Estimate, OfTransformsAndFillsForeseesTheDiskOfTheResult) {
   EXPECT_TRUE(holed.contains("seconds")) << "the simulated scan has holes";
 }
 
+// What is seen under a form and the samples both go to their new places; the estimate is not that of the samples alone.
+TEST(Estimate, OfATransformCountsTheFormOverTheScan) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), plain = folder.file("plain.fettle"),
+                    formed = folder.file("formed.fettle"), out = folder.file("o.tif");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x1500"}).status, 0);
+  ASSERT_EQ(fettle({"convert", in, plain}).status, 0);
+  ASSERT_EQ(fettle({"level", in, formed, "--layer", "put", "--form", "poly5"}).status, 0);
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"--turn", "90"}, {"--angle", "20"}, {"--to-spacing", "0.06"}}) {
+    const auto estimateOf = [&](const std::string& scan) {
+      std::vector<std::string> words{"transform", scan, out, "--estimate"};
+      words.insert(words.end(), how.begin(), how.end());
+      return fettleJson(words);
+    };
+    std::vector<std::string> words{"transform", formed, out};
+    words.insert(words.end(), how.begin(), how.end());
+    const Outcome done = fettle(words);
+    ASSERT_EQ(done.status, 0) << done.err;
+    fs::remove(out);
+    const auto with = estimateOf(formed), without = estimateOf(plain);
+    const double ratio = with.at("memory_bytes").get<double>() / static_cast<double>(done.peak_bytes);
+    // Without the form a half to two thirds of it was foreseen.
+    EXPECT_GT(ratio, 0.85) << how[0] << " " << with.dump();
+    EXPECT_LT(ratio, 1.4) << how[0] << " " << with.dump();
+    EXPECT_GT(with.at("memory_bytes"), without.at("memory_bytes")) << how[0];
+    EXPECT_GT(with.at("work_seconds"), 0.0) << how[0];
+  }
+}
+
 // Nearly all triangles are at edges and holes, of which the middle of the simulated part has few.
 TEST(Estimate, OfAMeshWithAnErrorLooksAllOverTheScan) {
   const TempFolder folder;
