@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/texts/texts.h"
 #include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 
@@ -44,7 +45,7 @@ engine::Result<engine::Version> transformedBy(const engine::Version& field,
 
 void TransformTool::write(const LoopClient& client, const engine::SampleRect& seen, std::string path) {
   working_.start([field = client.newest(), scan = client.scan(), what = options, seen,
-                  path = std::move(path)](engine::JobControl& job) -> engine::Result<std::string> {
+                  path = std::move(path)](engine::JobControl& job) -> engine::Result<Work> {
     if (what.none())
       return engine::inputError("nothing is to be done", "", "choose a crop, a turn or a spacing");
     if (what.crop && (seen.columns <= 0 || seen.rows <= 0))
@@ -64,7 +65,7 @@ void TransformTool::write(const LoopClient& client, const engine::SampleRect& se
         "recipe = 1\n# Left out: what made the scan of step 0: the window transformed it\n";
     if (auto done = engine::exportField(*made, path, writing, job); !done)
       return tl::unexpected(done.error());
-    return path;
+    return Work{path, form != nullptr && made->formOver() == nullptr};
   });
 }
 
@@ -72,7 +73,14 @@ std::optional<std::string> TransformTool::poll(std::vector<Notice>& notices) {
   const bool dropped = working_.cancelling();
   auto done = working_.take();
   if (!done || dropped) return std::nullopt;
-  if (*done) return **std::move(done);
+  if (*done) {
+    if ((*done)->form_left_out)
+      notices.push_back(
+          {textOf("the form that lies over the scan has no place over the new samples: they have their "
+                  "heights with it"),
+           textOf("put a form over them, or choose a larger part")});
+    return std::move((*done)->path);
+  }
   if (done->error().kind != engine::ErrorKind::kCancelled) notices.push_back(noticeOf(done->error()));
   return std::nullopt;
 }

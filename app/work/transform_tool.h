@@ -35,14 +35,18 @@ class TransformTool {
   /// Writes the session `path`, which must not exist; `seen`: the rectangle that is visible.
   void write(const LoopClient& client, const engine::SampleRect& seen, std::string path);
   void cancel() noexcept { working_.cancel(); }
-  /// The session that was written, once.
+  /// The session that was written, once. A notice says where the form over the field did not go along.
   [[nodiscard]] std::optional<std::string> poll(std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
   [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
 
  private:
-  Background<std::string> working_;
+  struct Work {
+    std::string path;
+    bool form_left_out = false;  // the one that lies over the field, and has no place over the result
+  };
+  Background<Work> working_;
 };
 
 }  // namespace fettle::app

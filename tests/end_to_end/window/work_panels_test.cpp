@@ -1,12 +1,16 @@
 // Panels that work on the whole scan: sections kept with the session, holes and lines as steps, another scan to compare or join with, transforms.
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "engine/field/builder.h"
+#include "engine/formats/formats.h"
 #include "engine/measure/levelled_lines.h"
 #include "engine/measure/line_offsets.h"
 #include "tests/end_to_end/window/window_fixture.h"
@@ -431,6 +435,70 @@ TEST_F(WindowTest, another_scan_is_brought_onto_the_field) {
   (void)quit(user);
 }
 
+// The scan on a ball four times as wide, whose top is at `from` of its width.
+void layOnABall(const std::string& scan, double from) {
+  const engine::Version part = load(scan);
+  const engine::Grid& grid = part.grid();
+  const double mm = grid.height_unit.mm, radius = 4.0 * grid.width * grid.spacingXMm();
+  std::vector<float> z(static_cast<std::size_t>(grid.samples()));
+  part.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const double x = (c - from * grid.width) * grid.spacingXMm(),
+                   y = (r - 0.5 * grid.height) * grid.spacingYMm();
+      z[static_cast<std::size_t>(r * grid.width + c)] +=
+          static_cast<float>((std::sqrt(radius * radius - x * x - y * y) - radius) / mm);
+    }
+  engine::JobControl job;
+  ASSERT_TRUE(engine::exportField(engine::makeField(grid, z, {}), scan, {}, job));
+}
+
+void expectSameBall(const State& a, const State& b, double within) {
+  EXPECT_NEAR(a["radius_mm"].get<double>(), b["radius_mm"].get<double>(), within);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(a["point_mm"][k].get<double>(), b["point_mm"][k].get<double>(), within) << k;
+}
+
+TEST_F(WindowTest, a_form_goes_along_with_scans_that_are_joined) {
+  openPanels(folder, {"Join", "Form"});
+  const std::string drawn = folder.file("drawn.tif"), formed = folder.file("formed.fettle"),
+                    west = folder.file("west.fettle"), east = folder.file("east.fettle"),
+                    both = folder.file("both.fettle");
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "synth", drawn, "--size", "256x160"}).status, 0);
+  layOnABall(drawn, 0.3);
+  (void)jsonOf({"level", drawn, formed, "--layer", "put", "--form", "sphere"});
+  (void)jsonOf({"transform", formed, west, "--crop-samples", "0,0,160,160"});
+  (void)jsonOf({"transform", formed, east, "--crop-samples", "0,96,160,160"});
+  (void)jsonOf({"mosaic", west, east, both});
+  const State before = jsonOf({"info", west})["form_figures"];
+  const std::string radius = fmt::format("radius {:.5g} mm", before["radius_mm"].get<double>());
+  const auto program = start({west});
+  User user(display, *program, "join formed");
+  EXPECT_EQ(opened(*program)["form"], "sphere");
+  EXPECT_TRUE(user.reads(radius));
+  (void)user.press("alt+j");
+  user.type(east);
+  (void)user.press("Return");
+  EXPECT_TRUE(user.reads("east.fettle"));
+  (void)user.look("listed");
+  (void)user.click("Join them");
+  const State joined = program->until("opened", [&](const State& s) {
+    return s["settled"] == true &&
+           s["status"].get<std::string>().find("west_joined.fettle") != std::string::npos;
+  });
+  EXPECT_EQ(joined["form"], "sphere");
+  EXPECT_TRUE(user.reads(radius));
+  (void)user.look("joined");
+  (void)quit(user);
+  const std::string beside = (folder.path() / "west_joined.fettle").string();
+  const State after = jsonOf({"info", beside});
+  EXPECT_EQ(after["form"], "sphere");
+  // West lies where it lay, but for the place that the overlap decides.
+  expectSameBall(after["form_figures"], before, 1e-3);
+  EXPECT_EQ(after["form_figures"], jsonOf({"info", both})["form_figures"]);
+  EXPECT_EQ(jsonOf({"compare", beside, both})["max_abs"], 0.0);
+}
+
 TEST_F(WindowTest, scans_that_overlap_become_one_as_by_the_command) {
   openPanels(folder, {"Join"});
   const std::string drawn = folder.file("drawn.tif"), west = folder.file("west.tif"),
@@ -474,6 +542,43 @@ TEST_F(WindowTest, a_transformed_scan_is_a_session_beside_it) {
   (void)quit(user);
   const std::string mirrored = folder.file("mirrored.tif");
   (void)jsonOf({"transform", scan, mirrored, "--mirror", "x"});
+  EXPECT_EQ(jsonOf({"compare", beside, mirrored})["max_abs"], 0.0);
+}
+
+TEST_F(WindowTest, a_form_goes_along_with_what_is_transformed) {
+  openPanels(folder, {"Transform", "Form"});
+  layOnABall(scan, 0.3);
+  const std::string formed = folder.file("formed.fettle"), mirrored = folder.file("mirrored.fettle");
+  (void)jsonOf({"level", scan, formed, "--layer", "put", "--form", "sphere"});
+  (void)jsonOf({"transform", formed, mirrored, "--mirror", "x"});
+  const State before = jsonOf({"info", formed});
+  const std::string radius =
+      fmt::format("radius {:.5g} mm", before["form_figures"]["radius_mm"].get<double>());
+  const auto program = start({formed});
+  User user(display, *program, "transform formed");
+  EXPECT_EQ(opened(*program)["form"], "sphere");
+  EXPECT_TRUE(user.reads(radius));
+  (void)user.look("before");
+  (void)user.click("left and right change places");
+  (void)user.click("Make a session of it");
+  const State made = program->until("opened", [&](const State& s) {
+    return s["settled"] == true &&
+           s["status"].get<std::string>().find("formed_transformed.fettle") != std::string::npos;
+  });
+  EXPECT_EQ(made["form"], "sphere");
+  EXPECT_TRUE(user.reads(radius));
+  (void)user.look("after");
+  (void)quit(user);
+  const std::string beside = (folder.path() / "formed_transformed.fettle").string();
+  const State after = jsonOf({"info", beside});
+  EXPECT_EQ(after["form"], "sphere");
+  // The ball is where it was seen from the other side.
+  State expected = before["form_figures"];
+  const engine::Grid grid = load(scan).grid();
+  expected["point_mm"][0] =
+      (grid.width - 1) * grid.spacingXMm() - before["form_figures"]["point_mm"][0].get<double>();
+  expectSameBall(after["form_figures"], expected, 1e-9);
+  EXPECT_EQ(after["form_figures"], jsonOf({"info", mirrored})["form_figures"]);
   EXPECT_EQ(jsonOf({"compare", beside, mirrored})["max_abs"], 0.0);
 }
 
