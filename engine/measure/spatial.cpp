@@ -262,6 +262,18 @@ double betweenLags(const Autocorrelation& correlation, double x, double y) noexc
          corner(column, row + 1, (1.0 - u) * v) + corner(column + 1, row + 1, u * v);
 }
 
+// Str to 2 %, by directions half a degree apart; NaN where it is none.
+double roughAspect(const Autocorrelation& correlation, double level) noexcept {
+  constexpr int kAngles = 360;
+  double fast = std::numeric_limits<double>::infinity(), slow = 0.0;
+  for (int i = 0; i < kAngles; ++i) {
+    const double distance = correlation.decay(pi * i / kAngles, level);
+    fast = std::min(fast, distance);
+    slow = std::max(slow, distance);
+  }
+  return std::isinf(slow) ? kNone : fast / slow;
+}
+
 SpatialParameters parametersOf(const Autocorrelation& correlation, const AngularSpectrum& spectrum) {
   SpatialParameters result;
   const Extreme fast = extremeDecay(correlation, 1.0);
@@ -279,6 +291,10 @@ SpatialParameters parametersOf(const Autocorrelation& correlation, const Angular
       result.no_str =
           fmt::format("along {:.0f} degrees the autocorrelation stays above 0.2 within half of the surface",
                       result.slow_direction);
+    const double rough = roughAspect(correlation, kDecayLevel);
+    for (std::size_t k = 0; k < result.str_lowered.size(); ++k)
+      result.str_lowered[k] =
+          roughAspect(correlation, kDecayLevel * (1.0 - SpatialParameters::kLowered[k])) / rough;
   }
   const double direction = strongestDirection(spectrum);
   result.lay = std::isnan(direction) ? kNone : halfTurn(direction - 90.0);

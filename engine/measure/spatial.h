@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -56,6 +57,11 @@ struct SpatialParameters {
   double ssw = 0.0;
   /// Why a figure is NaN; empty where it is none.
   std::string no_sal, no_str, no_lay, no_ssw;
+  /// Str over itself were the level of decay lower by these shares of it, to 2 %; NaN where it would be none. Noise that neighbours do not share
+  /// and that makes a share of the mean square lowers the autocorrelation by this share at every lag but 0, so that without noise Str
+  /// is that at a lower level. A jump between two of them is another direction, or another wave, that decays last.
+  static constexpr std::array<double, 8> kLowered{0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
+  std::array<double, kLowered.size()> str_lowered{};
 };
 
 struct SpatialAnalysis {

@@ -57,6 +57,21 @@ constexpr ArealFigure kFigures[] = {
 // Noise over Sq from which on its hills are taken for the highest.
 constexpr double kOtherHills = 0.15;
 
+// Of what Str would be without noise, over what it is: beyond this another direction, or another wave, decays last.
+constexpr double kOtherDecay = 0.1;
+
+// Whether noise decides Str: where a level of decay that is lower by as much as noise lowers the autocorrelation, and by three standard deviations
+// of what it scatters that, is reached elsewhere. Trials do not see it, since more noise does not lead back.
+bool noiseDecidesDecay(const NoiseModel& noise, const ArealParameters& measured) noexcept {
+  const double share = noise.sigma * noise.sigma / (measured.sq * measured.sq);
+  const double lowered = share + 6.0 * std::sqrt(share / static_cast<double>(measured.samples));
+  for (std::size_t k = 0; k < SpatialParameters::kLowered.size(); ++k) {
+    if (!(std::abs(measured.spatial.str_lowered[k] - 1.0) <= kOtherDecay)) return true;
+    if (SpatialParameters::kLowered[k] >= lowered) return false;
+  }
+  return false;
+}
+
 // What lines share has all of its power in one direction, which a trial with as much of it again leaves as it is. Whether it decides the
 // direction, and the strongest wave, is seen by what is off along rows added along columns, and the other way round: a surface whose own lay has less
 // power than so much of the lines' variance loses its direction to that.
@@ -93,7 +108,9 @@ Status leaveOutOfLines(std::span<NoiseEffect> effects, const Version& field, con
   const auto again = measuredWithLinesTurned(field, noise, measure, options, job);
   if (!again) return tl::unexpected(again.error());
   const double away = again->spatial.lay - measured.spatial.lay;
-  if (!std::isnan(direction.without) && !(std::abs(away - 180.0 * std::round(away / 180.0)) <= kTurnedAway))
+  // One along the lines that are off is drawn to them, and lines across it do not show that.
+  if (!std::isnan(direction.without) && (liesAlongLines(noise, measured.spatial.lay) ||
+                                         !(std::abs(away - 180.0 * std::round(away / 180.0)) <= kTurnedAway)))
     direction = {kNone, kNone, "its direction may be that of the lines that are off"};
   if (!std::isnan(wave.without) &&
       !(std::abs(again->spatial.ssw - measured.spatial.ssw) <= kOtherWave * measured.spatial.ssw))
@@ -112,6 +129,11 @@ const ArealFigure& arealFigure(std::string_view key) noexcept {
       std::ranges::find_if(kFigures, [key](const ArealFigure& figure) { return figure.key == key; });
   assert(found != std::end(kFigures));
   return *found;
+}
+
+bool liesAlongLines(const NoiseModel& noise, double lay_deg) noexcept {
+  return (noise.whole_rows > 0.0 && std::abs(lay_deg - 180.0 * std::round(lay_deg / 180.0)) < kTurnedAway) ||
+         (noise.whole_columns > 0.0 && std::abs(lay_deg - 90.0) < kTurnedAway);
 }
 
 std::vector<double> valuesOf(const ArealParameters& measured) {
@@ -161,6 +183,10 @@ void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
   // What a parabola leaves of Sa of kinks and levels: 0.2 % with noise of 0.2, 0.6 % with 0.3.
   NoiseEffect& sa = effects[indexOfFigure("sa")];
   sa.error = std::hypot(sa.error, std::pow(share, 4) * sa.without);
+  NoiseEffect& aspect = effects[indexOfFigure("str")];
+  if (!std::isnan(aspect.without) && noiseDecidesDecay(noise, measured))
+    aspect = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+              "noise decides which direction decays last"};
   // Five highest peaks of hills that noise made are others' (0.6 of S5p is left on steps), and extremes say not how many.
   if (share < kOtherHills) return;
   const auto hillsChange = [&](std::string_view density) {

@@ -31,9 +31,12 @@ struct ArealFigure {
 void keepWithinRanges(std::span<NoiseEffect> effects, const ArealParameters& measured);
 
 /// Adds to the errors of ranks, and of Sa, what nothing says of them where noise is as large as the surface, and takes away means of
-/// five extremes where noise of 0.15 of Sq and more decides which hills are the highest.
+/// five extremes where noise of 0.15 of Sq and more decides which hills are the highest, and Str where noise decides which direction decays last.
 void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
                        const ArealParameters& measured);
+
+/// Whether a texture direction [degrees] is within 3 degrees of rows, or of columns, that are off together: these draw it to themselves.
+[[nodiscard]] bool liesAlongLines(const NoiseModel& noise, double lay_deg) noexcept;
 
 /// Measures the parameters of a field; of TrialNoise::kLouder spatial and feature parameters do not count.
 using ArealTrialOf = std::function<Result<ArealParameters>(const Version& field, TrialNoise noise)>;
@@ -42,7 +45,7 @@ using ArealTrialOf = std::function<Result<ArealParameters>(const Version& field,
 [[nodiscard]] ArealOptions optionsOf(ArealOptions options, TrialNoise noise);
 
 /// noiseEffects() of the parameters of a field, with addDominanceDoubt() and keepWithinRanges(). `measure` measures them of a field as `measured` was.
-/// Where whole rows or columns are off it does so once more, with such offsets in the other direction: Std and Ssw that these change are not stated.
+/// Where whole rows or columns are off it does so once more, with such offsets in the other direction: Std and Ssw that these change are not stated, nor is Std along lines that are off (liesAlongLines()).
 [[nodiscard]] Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseModel& noise,
                                                             const ArealParameters& measured,
                                                             const ArealTrialOf& measure,

@@ -63,8 +63,6 @@ Result<Version> changedBy(const Version& surface, const Version& before, const V
   return makeField(grid, z);
 }
 
-constexpr double kAtLines = 3.0;  // [degrees]
-
 struct MeanSquare {
   double sum = 0.0;
   std::int64_t count = 0;
@@ -254,10 +252,7 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
         ((key == "str" || key == "std") && !(slowest < reach)))
       result.effects[i] = {kNoEffect, kNoEffect, "it reaches over half of the squares of trials"};
     // Whether lines that are off decide it only the whole would show (areal_figures.cpp).
-    const double lay = measured.spatial.lay;
-    if (key == "std" &&
-        ((noise.whole_rows > 0.0 && std::abs(lay - 180.0 * std::round(lay / 180.0)) < kAtLines) ||
-         (noise.whole_columns > 0.0 && std::abs(lay - 90.0) < kAtLines)))
+    if (key == "std" && liesAlongLines(noise, measured.spatial.lay))
       result.effects[i] = {kNoEffect, kNoEffect, "its direction may be that of the lines that are off"};
     if (key == "ssw")
       result.effects[i] = {kNoEffect, kNoEffect, "no wave goes on from one square of trials to the next"};

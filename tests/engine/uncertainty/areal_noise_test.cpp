@@ -101,11 +101,10 @@ int seedsOf(int few) {
   return typed == nullptr ? few : std::atoi(typed);
 }
 
-// What no error covers (docs/decisions/parameter-errors.md): Str of waves that just reach a correlation of 0.2 in one direction jumps
-// between two directions, Std of waves along y has an error of 1e-3 degrees, below its search; peaks and Smrk1 of a
+// What no error covers (docs/decisions/parameter-errors.md): Std of waves along y has an error of 1e-3 degrees, below its search; peaks and Smrk1 of a
 // surface with steps as high as ten times the noise.
 bool excepted(const std::string& surface, double sigma, std::string_view key) {
-  if (surface == "waves") return key == "str" || key == "std";
+  if (surface == "waves") return key == "std";
   return surface == "steps" && sigma > 0.05 && (key == "smrk1" || key == "spc" || key == "spk");
 }
 
@@ -195,6 +194,17 @@ TEST(ArealNoise, MeansOfFiveExtremesUnderLoudNoise) {
   }
 }
 
+// Waves that just reach a correlation of 0.2 in one direction have a Str of 0.15, or of 0.45 where noise lowers it to there; trials with more noise
+// do not lead back, so that it was stated as 0.45 with an error of a hundredth.
+TEST(ArealNoise, StrIsNotStatedWhereNoiseDecidesWhichDirectionDecaysLast) {
+  const auto str = static_cast<std::size_t>(&arealFigure("str") - arealFigures().data());
+  const int seeds = 2;
+  EXPECT_EQ(coverageOf(kSurfaces[3].heights(), 0.1, seeds, 2, 1000)[str].stated, 0);
+  const Coverage lay = coverageOf(kSurfaces[1].heights(), 0.1, seeds, 2, 1000)[str];
+  EXPECT_EQ(lay.stated, seeds);
+  EXPECT_EQ(lay.within[2], seeds);
+}
+
 // Rows that are off have their power in one direction, which is no lay, and waves along it: Std and Ssw are not stated where they may decide them,
 // and stated where they do not.
 TEST(ArealNoise, SpatialParametersWhereRowsAreOff) {
@@ -220,8 +230,9 @@ TEST(ArealNoise, SpatialParametersWhereRowsAreOff) {
       if (rows_off > 0.9) {
         EXPECT_EQ(all[indexOf("std")].stated, 0) << surface->name;
       }
+      // A lay along rows is drawn to 0 by rows that are off: stated, its error was 0.42 of what it was off.
       if (rows_off < 0.1 && surface != &kSurfaces[0]) {
-        EXPECT_EQ(all[indexOf("std")].stated, seeds) << surface->name;
+        EXPECT_EQ(all[indexOf("std")].stated, surface == &kLays[0] ? 0 : seeds) << surface->name;
       }
     }
   fmt::print("together {}: {} {} {}\n", together.stated, together.within[0], together.within[1],
