@@ -15,10 +15,22 @@
 
 namespace fettle::app {
 
+namespace {
+
+// On Linux the number is of a thread, not of its process.
+bool setNice(int nice) noexcept {
+  return setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice) == 0;
+}
+
+}  // namespace
+
 void goBehindTheWindow() noexcept {
-  constexpr int kNice = 10;
-  // On Linux the number is of a thread, not of its process. Where it is refused all threads are as before.
-  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
+  // Where it is refused all threads are as before.
+  static_cast<void>(setNice(10));
+}
+
+bool comeBeforeOtherWork() noexcept {
+  return setNice(-10);
 }
 
 int putWorkersBehindTheWindow() {

@@ -35,6 +35,19 @@ TEST(BehindTheWindow, AllWorkersAreAndTheThreadThatAsksIsNot) {
   for (const int worker : of_workers) EXPECT_EQ(worker, std::max(before, 10));
 }
 
+// In a thread of its own: what is allowed to come before others need not be allowed to go back.
+TEST(BehindTheWindow, WhatDrawsComesBeforeOthersWhereItMay) {
+  const int before = nice();
+  std::thread([&] {
+    const bool allowed = comeBeforeOtherWork();
+    EXPECT_EQ(nice(), allowed ? -10 : before);
+    std::thread([&] { EXPECT_EQ(nice(), allowed ? -10 : before) << "a thread of its own"; }).join();
+    goBehindTheWindow();
+    EXPECT_EQ(nice(), 10);
+  }).join();
+  EXPECT_EQ(nice(), before);
+}
+
 TEST(BehindTheWindow, ALongJobIs) {
   Background<int> job;
   job.start([](engine::JobControl&) -> engine::Result<int> { return nice(); });
