@@ -15,6 +15,7 @@
 #include "app/window/files.h"
 #include "app/window/flight.h"
 #include "app/window/marking.h"
+#include "app/window/notice_room.h"
 #include "app/window/opening.h"
 #include "app/window/overlays.h"
 #include "app/window/questions.h"
@@ -63,6 +64,7 @@ struct Parts {
   Settings settings;
   RecentFiles recent;
   Feedback feedback;
+  NoticeRoom notice_room;
   Files files;
   ScanOptions usual_reading;  ///< as the command line says, of every scan that nothing else was said of
   ScanOptions reading;        ///< of the open scan

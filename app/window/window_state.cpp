@@ -349,6 +349,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("a section", p.section.busy());
   waits("marks", p.marking.busy());
   waits("a histogram", p.colours.busy());
+  waits("notices", p.notice_room.waits());
   if (p.picture.empty()) {
     waits("a picture", true);
     return names;

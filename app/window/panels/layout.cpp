@@ -13,6 +13,15 @@ namespace {
 constexpr float kSide = 320.0F;  // of the side panel, at scale 1 [pixels]
 constexpr float kNarrowest = 160.0F;
 
+// The height under the panels, which end at `bottom`, that notices have now.
+float roomOfNotices(Parts& parts, float side, float bottom) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto now = NoticeRoom::Clock::now();
+  if (ImGui::IsAnyMouseDown() && io.MousePos.x >= io.DisplaySize.x - side)
+    parts.notice_room.press(bottom - io.MousePos.y, now);
+  return parts.notice_room.follow(noticesHeight(parts.feedback.notices, side), now);
+}
+
 // The side panel with the menus above and the status bar below, both `bar` high; returns the remaining width.
 float sideOf(Parts& parts, const Act& act, float bar, LoopRequests& requests) {
   const auto scale = static_cast<float>(parts.window.scale());
@@ -24,7 +33,7 @@ float sideOf(Parts& parts, const Act& act, float bar, LoopRequests& requests) {
   const float side =
       std::clamp(set * scale, kNarrowest * scale, std::max(0.6F * size.x, (kNarrowest + 1.0F) * scale));
   ImGui::SetNextWindowPos(ImVec2(size.x - side, bar));
-  const float said = noticesHeight(parts.feedback.notices, side), height = size.y - 2.0F * bar - said;
+  const float said = roomOfNotices(parts, side, size.y - bar), height = size.y - 2.0F * bar - said;
   ImGui::SetNextWindowSize(ImVec2(side, height));
   ImGui::SetNextWindowSizeConstraints(ImVec2(kNarrowest * scale, 0.0F), size);
   // ImGui rounds sizes, and changes those of a window without size: only the user sets the width.
