@@ -95,6 +95,9 @@ void arealTable(const MeasureTool& measure, bool noise, WithSdc sdc) {
   if (before) cell(tr("scan"));
   cell(before ? tr("now") : tr("value"));
   cell("");
+  // Figures of before are pale while others are worked out, and when the field has changed.
+  const bool past = figures && (measure.busy() || measure.outdated());
+  const ImGuiStyle& style = ImGui::GetStyle();
   for (const ArealLine& line : figures ? figures->lines : arealNames(sdc)) {
     ImGui::TableNextRow();
     cell(line.name);
@@ -103,7 +106,9 @@ void arealTable(const MeasureTool& measure, bool noise, WithSdc sdc) {
     for (std::size_t i = 0; i < line.values.size(); ++i) {
       // A reason is longer than a figure: it is the tip of a dash.
       const bool stated = line.values[i].find(' ') == std::string::npos;
+      ImGui::PushStyleColor(ImGuiCol_Text, style.Colors[past ? ImGuiCol_TextDisabled : ImGuiCol_Text]);
       cell(stated ? line.values[i] : "-");
+      ImGui::PopStyleColor();
       if (ImGui::IsItemHovered()) {
         if (!stated)
           valueTip(line.values[i]);
