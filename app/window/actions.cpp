@@ -79,8 +79,8 @@ constexpr ActionRow kRows[] = {
 
     ActionRow{Action::kUndo, "Edit", "Undo", letter('Z'), kControl, kNoKey, kFirst, kField, undo, nullptr,
               canUndo},
-    ActionRow{Action::kRedo, "Edit", "Redo", letter('Z'), kControlShift, kNoKey, kFirst, kField, redo,
-              nullptr, canRedo},
+    ActionRow{Action::kRedo, "Edit", "Redo", letter('Z'), kControlShift, letter('Y'), kFirst, kField, redo,
+              nullptr, canRedo, kControl},
 
     ActionRow{Action::kNavigate, "Tool", "End the tool: the mouse moves the view", Key::kEscape, kPlain,
               kNoKey, kFirst, kField, navigate, navigates},
@@ -122,7 +122,7 @@ constexpr ActionRow kRows[] = {
     ActionRow{Action::kRemoveLine, "Marks", "Remove the chosen edge line", letter('Y'), kShift, kNoKey,
               kSecond, kField, removeLine, nullptr, hasChosenLine},
     ActionRow{Action::kJoinLine, "Marks", "Join the chosen edge line with the nearest end", letter('Y'),
-              kControl, kNoKey, kSecond, kField, joinLine, nullptr, hasChosenLine},
+              kControlShift, kNoKey, kSecond, kField, joinLine, nullptr, hasChosenLine},
     ActionRow{Action::kClearLines, "Marks", "Remove all edge lines", letter('Y'), kAlt, kNoKey, kSecond,
               kField, clearLines, nullptr, hasLines},
     ActionRow{Action::kNextPlace, "Marks", "Go to the next place where a line is worth most", letter('Z'),
@@ -372,7 +372,9 @@ void carryOut(Action action, Parts& parts) {
 std::optional<Action> actionOf(Key key, Modifiers modifiers) {
   if (key == Key::kNone) return std::nullopt;
   for (const ActionRow& row : kRows)
-    if ((row.key == key || row.other_key == key) && row.modifiers == modifiers) return row.action;
+    if ((row.key == key && row.modifiers == modifiers) ||
+        (row.other_key == key && row.modifiersOfOther() == modifiers))
+      return row.action;
   return std::nullopt;
 }
 

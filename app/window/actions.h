@@ -175,13 +175,18 @@ struct ActionRow {
   std::string_view name;     ///< what it does, for menus and the list of keys (F1)
   render::Key key;
   render::Modifiers modifiers;
-  render::Key other_key;  ///< for keyboards that lack the first
+  render::Key other_key;  ///< for keyboards that lack the first, or for other habits
   MenuPlace menu;
   Needs needs;
   void (*carry_out)(Parts& parts);
   bool (*ticked)(const Parts& parts) = nullptr;   ///< shown in the menu; null: never
   bool (*enabled)(const Parts& parts) = nullptr;  ///< in the menu; null: when what it needs exists
+  /// Those of the other key; nothing: as for the first.
+  std::optional<render::Modifiers> other_modifiers = std::nullopt;
 
+  [[nodiscard]] render::Modifiers modifiersOfOther() const noexcept {
+    return other_modifiers.value_or(modifiers);
+  }
   [[nodiscard]] std::string_view menuTitle() const noexcept {
     return menu.menu.empty() ? section : menu.menu;
   }

@@ -182,7 +182,8 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
       ImGui::TextUnformatted(title.data(), title.data() + title.size());
     }
     std::string keys = keyText(row.key, row.modifiers);
-    if (row.other_key != Key::kNone) keys = trFormat("{} or {}", keys, keyText(row.other_key, row.modifiers));
+    if (row.other_key != Key::kNone)
+      keys = trFormat("{} or {}", keys, keyText(row.other_key, row.modifiersOfOther()));
     ImGui::Text("  %-24s", keys.c_str());
     ImGui::SameLine(220.0F * scale);
     writeWrapped(std::string(tr(row.name)));

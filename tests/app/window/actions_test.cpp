@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -25,12 +26,21 @@ TEST(Actions, every_action_has_one_line_a_key_and_a_name) {
 TEST(Actions, no_key_stands_for_two_actions) {
   std::map<std::tuple<render::Key, bool, bool, bool>, std::string_view> keys;
   for (const ActionRow& s : actions())
-    for (const render::Key key : {s.key, s.other_key}) {
+    for (const auto& [key, modifiers] :
+         {std::pair{s.key, s.modifiers}, std::pair{s.other_key, s.modifiersOfOther()}}) {
       if (key == render::Key::kNone) continue;
+      EXPECT_EQ(actionOf(key, modifiers), s.action) << s.name;
       const auto [at, fresh] =
-          keys.emplace(std::tuple{key, s.modifiers.control, s.modifiers.shift, s.modifiers.alt}, s.name);
+          keys.emplace(std::tuple{key, modifiers.control, modifiers.shift, modifiers.alt}, s.name);
       EXPECT_TRUE(fresh) << s.name << " and " << at->second;
     }
+}
+
+TEST(Actions, both_habits_redo) {
+  using render::letter;
+  EXPECT_EQ(actionOf(letter('Z'), {.control = true, .shift = true}), Action::kRedo);
+  EXPECT_EQ(actionOf(letter('Y'), {.control = true}), Action::kRedo);
+  EXPECT_NE(actionOf(letter('Y'), {.control = true, .shift = true}), Action::kRedo);
 }
 
 TEST(Actions, disarming_gives_way_to_typing_alone_and_pause_to_nothing) {
