@@ -1,6 +1,9 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
@@ -26,6 +29,7 @@ struct ConvertArguments {
   ScanOptions reading;
   engine::ExportOptions writing;
   std::string max_error;
+  std::string mesh_unit;
   bool estimate = false;
   ShardOptions shards;
 };
@@ -51,6 +55,7 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
     if (!error) return tl::unexpected(error.error());
     writing.max_error = *error;
   }
+  if (!options.mesh_unit.empty()) writing.mesh_unit = engine::lengthUnitFromName(options.mesh_unit);
   const PlannedWork planned{
       .field = imported->field,
       .original = imported->original ? *imported->original : imported->field,
@@ -80,6 +85,20 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
                 {"warnings", written->warnings}};
 }
 
+// What --mesh-unit says, before a file of many is written.
+engine::Status checkMeshUnit(const ConvertArguments& options, const std::vector<BatchTask>& tasks) {
+  if (options.mesh_unit.empty()) return {};
+  if (!engine::lengthUnitFromName(options.mesh_unit))
+    return engine::inputError(fmt::format("unknown unit {}", options.mesh_unit), "--mesh-unit",
+                              fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
+  for (const BatchTask& task : tasks)
+    if (const std::string extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out);
+        !extension.empty() && extension != ".stl")
+      return engine::inputError("only .stl is written in a unit that is chosen", shownOutput(task.out),
+                                "write that or omit --mesh-unit: others state the unit of their numbers");
+  return {};
+}
+
 // What a band of one scan is told; options that are of a whole scan are refused.
 engine::Result<BandWork> convertedBandOf(const ConvertArguments& options) {
   if (options.files.many() || options.files.files.size() != 2)
@@ -87,7 +106,7 @@ engine::Result<BandWork> convertedBandOf(const ConvertArguments& options) {
   if (options.estimate)
     return engine::inputError("--estimate is not divided into shards", "--estimate",
                               "fettle plan says what a shard will take");
-  if (!options.max_error.empty() || options.writing.mesh)
+  if (!options.max_error.empty() || options.writing.mesh || !options.mesh_unit.empty())
     return engine::inputError("a mesh is made of the whole field", "--mesh", "leave shards out");
   const std::vector<BatchTask> task{
       {options.files.files[0], options.files.files[1], options.files.extension}};
@@ -112,6 +131,7 @@ engine::Result<Report> convert(const ConvertArguments& options, const std::vecto
   const auto tasks = batchTasks(options.files, {}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
+  if (auto status = checkMeshUnit(options, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) { return convertOne(options, task, j); };
   if (options.files.many()) {
     const auto mine = ListShard::begin(*tasks, options.shards.shard,
@@ -137,6 +157,13 @@ void addConvertRows(Command command, const std::shared_ptr<ConvertArguments>& op
            .to = &options->max_error,
            .text = "Mesh: as few triangles as possible with every sample within this height",
            .kind = ValueKind::kLength},
+          {.name = "--mesh-unit",
+           .to = &options->mesh_unit,
+           .text = fmt::format("STL: unit of its numbers, which CAD programs take for mm: {}; numbers in "
+                               "another unit than the scan's are rounded by up to 6e-8 of them",
+                               fmt::join(engine::lengthUnitNames(), ", ")),
+           .proposed = engine::lengthUnitNames(),
+           .otherwise = "the scan's"},
           {.name = "--ascii", .to = &options->writing.ascii, .text = "SDF: as text instead of binary"},
           {.name = "--cloud-optimised",
            .to = &options->writing.cloud_optimised,
@@ -160,6 +187,8 @@ void addConvert(Command root, Chosen& chosen) {
   addShardOptions(command, options->shards);
   command.examples({{"fettle convert scan.tif scan.stl --max-error 10um",
                      "A mesh with as few triangles as that error allows"},
+                    {"fettle convert scan.tif scan.stl --mesh-unit mm",
+                     "A mesh in mm, as CAD programs expect it, whatever the scan's unit"},
                     {"fettle convert scan.tif other.tif --out-dir packed --to tif --compress zstd",
                      "Several scans, packed, into a folder"}});
 }

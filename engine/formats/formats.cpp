@@ -203,6 +203,11 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
       format = each;
   if ((options.mesh || options.max_error) && !(format != nullptr && format->mesh))
     return inputError("only .ply and .stl store a mesh", path, "write one of these or omit --mesh");
+  if (options.mesh_unit && format != &kStlFormat)
+    return inputError("only .stl is written in a unit that is chosen", path,
+                      "write that or omit --mesh-unit: others state the unit of their numbers");
+  if (options.mesh_unit && !(std::isfinite(options.mesh_unit->mm) && options.mesh_unit->mm > 0.0))
+    return inputError(fmt::format("a unit of {} mm is not valid", options.mesh_unit->mm), path);
   if (options.cloud_optimised && !(format != nullptr && format->tiff))
     return inputError("only .tif can be cloud-optimised", path, "write that or omit the option");
   if (options.ascii && !(format != nullptr && format->ascii))

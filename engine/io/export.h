@@ -32,6 +32,9 @@ struct ExportOptions {
   /// Mesh: as few triangles as possible with every sample within this distance of the surface [height_unit],
   /// finite, >= 0; without it two per cell. Implies mesh.
   std::optional<double> max_error;
+  /// STL: the unit of its numbers; without it that of x and y. In the same unit as the field's every bit is kept, in another
+  /// one each number is multiplied once and rounded to float: by no more than 6e-8 of it.
+  std::optional<LengthUnit> mesh_unit;
   /// SDF: as text instead of binary.
   bool ascii = false;
   /// TIFF: laid out for reading parts over a network, with overviews (means of 2 x 2, 4 x 4 ... samples).

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/vec2.hpp>
 
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/little_endian.h"
@@ -74,7 +75,7 @@ Status writeTriangles(const SurfaceMesh& mesh, TextWriter& out, std::uint64_t tr
 
 }  // namespace
 
-// The surface as triangles, binary; x and y from the field's corner, float32, lateral unit.
+// The surface as triangles, binary; x and y from the field's corner, float32, all in one unit.
 Result<Exported> writeStl(const Version& field, const std::string& path, const ExportOptions& options,
                           JobControl& job) {
   const Grid& grid = field.grid();
@@ -85,16 +86,19 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  out.text = stlHeader(grid);
+  const LengthUnit& unit = options.mesh_unit ? *options.mesh_unit : grid.lateral_unit;
+  // 1.0 in equal units, which changes no bit.
+  const double xy_unit = grid.lateral_unit.mm / unit.mm, z_unit = grid.height_unit.mm / unit.mm;
+  const glm::dvec2 zero = glm::dvec2(grid.origin_x, grid.origin_y) * xy_unit;
+  out.text = stlHeader(unit, zero);
   appendLittle(out.text, static_cast<std::uint32_t>(all->triangles));
-  const double z_unit = grid.height_unit.mm / grid.lateral_unit.mm;
   const auto width = static_cast<std::uint64_t>(grid.width);
   const Status status =
       writeTriangles(*mesh, out, all->triangles, job, [&](const SurfaceMesh::Triangle& t, std::string& text) {
         std::array<std::array<double, 3>, 3> p{};
         for (std::size_t k = 0; k < 3; ++k)
-          p[k] = {static_cast<double>(t[k] % width) * grid.spacing_x,
-                  static_cast<double>(t[k] / width) * grid.spacing_y,
+          p[k] = {static_cast<double>(t[k] % width) * grid.spacing_x * xy_unit,
+                  static_cast<double>(t[k] / width) * grid.spacing_y * xy_unit,
                   static_cast<double>(mesh->height(t[k])) * z_unit};
         std::array<double, 3> u{}, v{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -112,12 +116,21 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   if (!status) return tl::unexpected(status.error());
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());
   std::vector<std::string> warnings = describe(*mesh, field, options, all->triangles);
-  warnings.push_back(fmt::format("STL has no units, all lengths are in {}", grid.lateral_unit.name));
-  if (grid.origin_x != 0.0 || grid.origin_y != 0.0)
+  warnings.push_back(fmt::format("STL has no units, all lengths are in {}", unit.name));
+  if (xy_unit != 1.0 || z_unit != 1.0)
+    warnings.push_back(fmt::format(
+        "{} were converted to {}, each number rounded by up to 6e-8 of it",
+        xy_unit == 1.0  ? fmt::format("heights in {}", grid.height_unit.name)
+        : z_unit == 1.0 ? fmt::format("x and y in {}", grid.lateral_unit.name)
+        : grid.lateral_unit.name == grid.height_unit.name
+            ? fmt::format("lengths in {}", grid.lateral_unit.name)
+            : fmt::format("x and y in {} and heights in {}", grid.lateral_unit.name, grid.height_unit.name),
+        unit.name));
+  if (zero != glm::dvec2(0.0))
     warnings.push_back(
         fmt::format("STL has few digits: x and y are relative to the field's corner at {}, {}, which its "
                     "header states for Fettle alone",
-                    grid.origin_x, grid.origin_y));
+                    zero.x, zero.y));
   return Exported{"STL", std::move(warnings)};
 }
 

@@ -89,14 +89,14 @@ Status readText(const InputFile& file, TriangleMesh& mesh, JobControl& job) {
 
 }  // namespace
 
-std::string stlHeader(const Grid& grid) {
+std::string stlHeader(const LengthUnit& unit, const glm::dvec2& zero) {
   // It must not begin with "solid", otherwise readers take the file for text.
-  std::string text = fmt::format("field, units {}", grid.lateral_unit.name);
+  std::string text = fmt::format("field, units {}", unit.name);
   if (text.size() > kHeaderText) text = "field";
-  if (grid.origin_x != 0.0 || grid.origin_y != 0.0) {
+  if (zero != glm::dvec2(0.0)) {
     // The shortest digits that give the same doubles: 80 bytes hold them beside any unit of ours.
-    const std::string zero = fmt::format("{}{} {}", kZeroAt, grid.origin_x, grid.origin_y);
-    if (text.size() + zero.size() <= kHeaderText) text += zero;
+    const std::string at = fmt::format("{}{} {}", kZeroAt, zero.x, zero.y);
+    if (text.size() + at.size() <= kHeaderText) text += at;
   }
   text.resize(kHeaderText, ' ');
   return text;

@@ -16,8 +16,8 @@
 namespace fettle::engine {
 
 /// The 80 bytes before the triangles of a binary STL, in which the format says nothing: the unit of the numbers, and where
-/// their zero lies in the world, as far as both fit.
-[[nodiscard]] std::string stlHeader(const Grid& grid);
+/// their zero lies in the world [unit], as far as both fit.
+[[nodiscard]] std::string stlHeader(const LengthUnit& unit, const glm::dvec2& zero);
 
 /// What such a header states; of another program's, nothing but a unit named as "units mm".
 struct StlHeader {

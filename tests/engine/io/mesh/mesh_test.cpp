@@ -149,6 +149,50 @@ TEST(Mesh, AWholeMeshBringsEverySampleBack) {
   EXPECT_EQ(readBytes(folder.file("a.stl")).size(), 84U + 50U * 2 * 89 * 69);
 }
 
+TEST(Mesh, AnStlIsWrittenInTheUnitThatIsChosen) {
+  const TempFolder folder;
+  const Version in_mm = hills(40, 30, 0.5F, 0.0);
+  Grid grid = in_mm.grid();
+  grid.lateral_unit = grid.height_unit = {"um", 1e-3};
+  const Version field = in_mm.withGrid(grid);
+  ExportOptions options;
+  ASSERT_TRUE(save(field, folder.file("own.stl")));
+  options.mesh_unit = grid.lateral_unit;
+  ASSERT_TRUE(save(field, folder.file("um.stl"), options));
+  EXPECT_EQ(readBytes(folder.file("um.stl")), readBytes(folder.file("own.stl")))
+      << "in equal units every bit";
+
+  options.mesh_unit = LengthUnit();
+  const auto written = save(field, folder.file("mm.stl"), options);
+  ASSERT_TRUE(written) << written.error().line();
+  EXPECT_TRUE(warned(written->warnings, "all lengths are in mm"));
+  EXPECT_TRUE(warned(written->warnings, "lengths in um were converted to mm"));
+  EXPECT_TRUE(warned(written->warnings, "corner at 5000.000125, -0.0035"));
+  const std::string own = readBytes(folder.file("own.stl")), mm = readBytes(folder.file("mm.stl"));
+  EXPECT_TRUE(mm.starts_with("field, units mm, zero at 5000.000125 -0.0035 "));
+  ASSERT_EQ(mm.size(), own.size());
+  // Corners, behind the normal of each triangle: within 6e-8 of what they are in um.
+  constexpr std::size_t kHead = 84, kTriangle = 50, kNormal = 12, kCorners = 36;
+  for (std::size_t t = kHead; t < mm.size(); t += kTriangle)
+    for (std::size_t at = t + kNormal; at < t + kNormal + kCorners; at += sizeof(float)) {
+      float a = 0.0F, b = 0.0F;
+      std::memcpy(&a, own.data() + at, sizeof(a));
+      std::memcpy(&b, mm.data() + at, sizeof(b));
+      const double exact = static_cast<double>(a) * 1e-3;
+      // x and y in um are multiples of 0.25 and no larger than 15, which a float holds as they are.
+      ASSERT_LE(std::abs(static_cast<double>(b) - exact), 6e-8 * std::abs(exact)) << at;
+    }
+  FETTLE_LOAD(again, folder.file("mm.stl"));
+  EXPECT_EQ(again.field.grid().lateral_unit, LengthUnit());
+  EXPECT_NEAR(again.field.grid().spacingXMm(), 0.25e-3, 1e-10);
+  EXPECT_NEAR(again.field.grid().origin_x, 5000.000125, 1e-9);
+
+  EXPECT_FALSE(save(field, folder.file("a.ply"), options));
+  EXPECT_FALSE(save(field, folder.file("a.tif"), options));
+  options.mesh_unit->mm = 0.0;
+  EXPECT_FALSE(save(field, folder.file("b.stl"), options));
+}
+
 TEST(Mesh, CornersRoundedToFloatsAreStillTheirSamples) {
   // 0.05 is no float: at 40 mm a corner is off by 2e-6 mm, 4e-5 of a step. Heights of all magnitudes side by
   // side would show any interpolation.

@@ -93,23 +93,20 @@ TEST(NominalFile, ReadsBytesAndTextAlike) {
 }
 
 TEST(NominalFile, AHeaderSaysUnitAndZeroToTheLastDigit) {
-  Grid grid;
-  grid.lateral_unit = grid.height_unit = {"ftUS", 304.8006096012192};
+  LengthUnit unit{"ftUS", 304.8006096012192};
   for (const double x : {0.0, 0.1, -5000000.125, -1.2345678901234567e-105, 1e15})
     for (const double y : {0.0, 1.0 / 3.0, -1.2345678901234567e-105}) {
-      grid.origin_x = x;
-      grid.origin_y = y;
-      const std::string text = stlHeader(grid);
+      const std::string text = stlHeader(unit, {x, y});
       ASSERT_EQ(text.size(), 80U);
       EXPECT_NE(text.substr(0, 5), "solid");
       const StlHeader read = stlHeaderOf(text);
-      EXPECT_EQ(read.unit, grid.lateral_unit) << text;
+      EXPECT_EQ(read.unit, unit) << text;
       EXPECT_EQ(read.zero, glm::dvec2(x, y)) << text;
     }
-  grid.lateral_unit.name = std::string(90, 'u');
-  grid.origin_x = 7.0;
-  EXPECT_EQ(stlHeaderOf(stlHeader(grid)).zero, glm::dvec2(7.0, -1.2345678901234567e-105));
-  EXPECT_FALSE(stlHeaderOf(stlHeader(grid)).unit);
+  unit.name = std::string(90, 'u');
+  const glm::dvec2 zero(7.0, -1.2345678901234567e-105);
+  EXPECT_EQ(stlHeaderOf(stlHeader(unit, zero)).zero, zero);
+  EXPECT_FALSE(stlHeaderOf(stlHeader(unit, zero)).unit);
 }
 
 TEST(NominalFile, OtherHeadersMoveNothing) {
