@@ -8,6 +8,7 @@
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
+#include "app/window/screen_text.h"
 #include "haptic/contact/sphere_tip.h"
 
 namespace fettle::app {
@@ -72,7 +73,7 @@ void wrapped(const std::string& text) {
 }
 
 std::string duration(double ns) {
-  return ns < 999.5 ? trFormat("{:.0f} ns", ns) : trFormat("{:.3g} us", 1e-3 * ns);
+  return ns < 999.5 ? trFormat("{:.0f} ns", ns) : screenText(trFormat("{:.3g} us", 1e-3 * ns));
 }
 
 // Lengths that may be only rounding, beside a spacing of `cell_mm`.

@@ -13,6 +13,7 @@
 #include "app/window/panels/dialog_button.h"
 #include "app/window/panels/panels.h"
 #include "app/window/result_files.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -206,9 +207,9 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
 
 std::optional<Choice> messageDialog(const Question& question, Questions& questions, float scale) {
   ImGui::PushTextWrapPos(600.0F * scale);
-  ImGui::TextUnformatted(std::string(tr(std::string_view(question.said.what))).c_str());
+  ImGui::TextUnformatted(screenText(tr(std::string_view(question.said.what))).c_str());
   if (!question.said.remedy.empty())
-    ImGui::TextDisabled("%s", std::string(tr(std::string_view(question.said.remedy))).c_str());
+    ImGui::TextDisabled("%s", screenText(tr(std::string_view(question.said.remedy))).c_str());
   ImGui::PopTextWrapPos();
   const bool read = dialogButton("OK", questions, Key::kEscape) || questions.take(Key::kEnter);
   return read ? std::optional(Choice::kBack) : std::nullopt;

@@ -49,7 +49,7 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
     if (octave > 0) ImGui::SameLine(left + bar * static_cast<float>(octave));
     ImGui::TextDisabled("%s", text);
   };
-  mark(0, "1 us");
+  mark(0, "1 \u00b5s");
   mark(3, "8");
   mark(6, "64");
   mark(9, "0.5 ms");

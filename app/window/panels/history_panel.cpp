@@ -54,7 +54,9 @@ void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std
       context.client.goTo(chosen);
     }
   }
+  const float wheel = wheelPastEnd();
   ImGui::EndChild();
+  scrollOn(wheel);
 }
 
 }  // namespace fettle::app

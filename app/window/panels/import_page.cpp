@@ -12,6 +12,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
 #include "app/window/panels/scan_picture.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -78,10 +79,10 @@ void spacingFields(Files& files) {
 void unitChoice(Files& files) {
   std::string as_it_is = tr("as in the file, else mm");
   if (files.found_grid && files.form.unit.empty())
-    as_it_is = fmt::format("{}, {}", files.found_grid->height_unit.name,
+    as_it_is = fmt::format("{}, {}", screenText(files.found_grid->height_unit.name),
                            isAssumed(files.found_warnings, "--unit") ? tr("guessed") : tr("as in the file"));
   std::vector<std::pair<std::string, std::string>> words{{"", as_it_is}};
-  for (const std::string& name : engine::lengthUnitNames()) words.emplace_back(name, name);
+  for (const std::string& name : engine::lengthUnitNames()) words.emplace_back(name, screenText(name));
   choice("--unit", files.form.unit, words);
 }
 
@@ -148,16 +149,17 @@ void fields(Files& files, const ScanThumbnail* picture) {
   if (files.apply.camera) cameraFields(form);
   endFields();
   if (files.found_grid)
-    ImGui::TextDisabled("%s", trFormat("units now: {} across, {} up", files.found_grid->lateral_unit.name,
-                                       files.found_grid->height_unit.name)
-                                  .c_str());
+    ImGui::TextDisabled(
+        "%s", screenText(trFormat("units now: {} across, {} up", files.found_grid->lateral_unit.name,
+                                  files.found_grid->height_unit.name))
+                  .c_str());
 }
 
 void bullets(const std::vector<std::string>& warnings, bool guesses) {
   for (const std::string& warning : warnings)
     if (isGuess(warning) == guesses) {
       ImGui::Bullet();
-      ImGui::TextWrapped("%s", inFieldWords(warning).c_str());
+      ImGui::TextWrapped("%s", screenText(inFieldWords(warning)).c_str());
     }
 }
 
@@ -173,7 +175,7 @@ void found(const ThumbnailShelf::Shown& shown, const Files& files) {
     const ReadingSources sources = readingSources(files.reading, picture.warnings, files.apply);
     for (const std::string& line : {sizeText(picture), extentText(picture), heightsText(picture),
                                     picture.whole ? sources.file : std::string(), sources.person})
-      if (!line.empty()) ImGui::TextUnformatted(line.c_str());
+      if (!line.empty()) ImGui::TextUnformatted(screenText(line).c_str());
     if (!picture.whole)
       ImGui::TextDisabled("%s", tr("a coarse look: what is guessed is said when all of it is read"));
     else if (anyGuess(picture.warnings))

@@ -16,16 +16,17 @@ namespace {
 // the hand is at other rows.
 constexpr int kLineRows = 7;
 
-void lineList(const PanelContext& context, LineTool& lines, const std::vector<LineFigures>& figures) {
+// Returns what the wheel goes beyond its end.
+float lineList(const PanelContext& context, LineTool& lines, const std::vector<LineFigures>& figures) {
   if (!ImGui::BeginTable("##lines", 5,
                          ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp,
                          ImGui::GetContentRegionAvail()))
-    return;
+    return 0.0F;
   ImGui::TableSetupScrollFreeze(0, 1);
   const render::ShownUnit &length = context.units.length, &upward = context.units.height;
   const double mm =
       length.per_unit / context.client.field().grid().lateral_unit.mm;  // shown units in a millimetre
-  const std::string off = "+- " + length.name, step = trFormat("step {}", upward.name);
+  const std::string off = "\u00b1 " + length.name, step = trFormat("step {}", upward.name);
   const std::array columns{
       std::pair{std::string(tr("line")), textOf("A click chooses a line; Y goes to the next.")},
       std::pair{length.name, textOf("How long the line is.")},
@@ -65,7 +66,9 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
         ImGui::TextUnformatted(text.c_str());
       }
     }
+  const float wheel = wheelPastEnd();
   ImGui::EndTable();
+  return wheel;
 }
 
 }  // namespace
@@ -93,14 +96,16 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
   actionButton("Remove all", Action::kClearLines, context.act);
   ImGui::EndDisabled();
   beginPlace("##lines place", kLineRows);
+  float wheel = 0.0F;
   if (figures.empty())
     writeIn(
         render::PanelColour::kMuted,
         "Draw along an edge with the mark tool. Each line is listed here: how long it is, on how much of it "
         "there is an edge, how surely it lies there, and how high it is.");
   else
-    lineList(context, lines, figures);
+    wheel = lineList(context, lines, figures);
   endPlace();
+  scrollOn(wheel);
 }
 
 }  // namespace fettle::app

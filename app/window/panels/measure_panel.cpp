@@ -10,6 +10,7 @@
 #include "app/texts/texts.h"
 #include "app/window/panels/curve_plot.h"
 #include "app/window/panels/panels.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -61,7 +62,7 @@ void measureFields(MeasureTool::Options& options) {
 
 void cell(const std::string& text) {
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(screenText(text).c_str());
 }
 
 constexpr int kCaptionLines = 2;

@@ -9,6 +9,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scan_facts.h"
 #include "app/window/panels/scan_picture.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -40,7 +41,7 @@ bool card(const std::string& path, int number, Parts& parts, float scale) {
   ImGui::PopID();
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + size.x);
   ImGui::TextUnformatted(trFormat("{} (Ctrl+{})", file.filename().string(), number).c_str());
-  if (shown.problem != nullptr) ImGui::TextDisabled("%s", shown.problem->what.c_str());
+  if (shown.problem != nullptr) ImGui::TextDisabled("%s", screenText(shown.problem->what).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
   return chosen;

@@ -11,6 +11,7 @@
 #include "app/texts/texts.h"
 #include "app/window/action_tips.h"
 #include "app/window/broken_text.h"
+#include "app/window/screen_text.h"
 #include "app/work/typed_number.h"
 
 namespace fettle::app {
@@ -35,7 +36,7 @@ ImU32 colourOf(render::PanelColour colour) {
 
 void textIn(render::PanelColour colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colourOf(colour));
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(screenText(text).c_str());
   ImGui::PopStyleColor();
 }
 
@@ -49,7 +50,8 @@ void writeIn(render::PanelColour colour, const char* text) {
   writeIn(colour, std::string(tr(text)));
 }
 
-void figure(const char* source_name, const std::string& value) {
+void figure(const char* source_name, const std::string& ascii) {
+  const std::string value = screenText(ascii);
   const char* const name = tr(source_name);
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::TextDisabled("%s", name);
@@ -90,14 +92,36 @@ void beginPlace(const char* id, int lines) {
 }
 
 void endPlace() {
+  const float wheel = wheelPastEnd();
   ImGui::EndChild();
+  scrollOn(wheel);
+}
+
+float wheelPastEnd() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.MouseWheel == 0.0F || io.KeyCtrl || io.KeyShift || !ImGui::IsWindowHovered()) return 0.0F;
+  // A list without an end to scroll to is passed over by ImGui itself.
+  if (!(ImGui::GetScrollMaxY() > 0.0F)) return 0.0F;
+  const bool ended =
+      io.MouseWheel < 0.0F ? ImGui::GetScrollY() >= ImGui::GetScrollMaxY() : ImGui::GetScrollY() <= 0.0F;
+  return ended ? io.MouseWheel : 0.0F;
+}
+
+void scrollOn(float wheel) {
+  if (wheel == 0.0F) return;
+  // As far as ImGui goes for a notch.
+  constexpr float kLines = 5.0F, kMostOfHeight = 0.67F;
+  const float step =
+      std::floor(std::min(kLines * ImGui::GetFontSize(), kMostOfHeight * ImGui::GetWindowHeight()));
+  ImGui::SetScrollY(std::clamp(ImGui::GetScrollY() - wheel * step, 0.0F, ImGui::GetScrollMaxY()));
 }
 
 namespace {
 
 // A tip has its size before its first frame: no frame follows one in which nothing moves, and a tip next to another would keep
 // the size of that one. `wrap`: 0: lines as they are.
-void writeTip(std::string_view says, float wrap) {
+void writeTip(std::string_view ascii, float wrap) {
+  const std::string says = screenText(ascii);
   const char *const begin = says.data(), *const end = begin + says.size();
   const ImVec2 text = ImGui::CalcTextSize(begin, end, false, wrap > 0.0F ? wrap : -1.0F),
                around = ImGui::GetStyle().WindowPadding;
@@ -218,7 +242,7 @@ void previewButton(PreviewWord word, const char* id, Action action, const Act& a
 }
 
 std::string inLines(const std::string& text, float width) {
-  return brokenText(text, width, [](std::string_view part) {
+  return brokenText(screenText(text), width, [](std::string_view part) {
     return ImGui::CalcTextSize(part.data(), part.data() + part.size()).x;
   });
 }

@@ -15,7 +15,8 @@
 #include "render/plan/panel_colours.h"
 
 // What stands in the source as a name, a label, a tip or a text, `const char*` or of a table, is translated here (app/texts): the
-// ids of widgets do not depend on the language. Text that was made, a std::string, is shown as it is.
+// ids of widgets do not depend on the language. Text that was made, a std::string, is not translated; what is written here is
+// written as screenText() has it.
 namespace fettle::app {
 
 /// The theme of all that is laid out from now on. Once per frame, as ImGui's own style.
@@ -43,6 +44,10 @@ void workBar(const WorkProgress& progress, float width, const char* what);
 /// A place of so many lines for what comes and goes, up to endPlace(): what is below stays where it is. More of it scrolls.
 void beginPlace(const char* id, int lines);
 void endPlace();
+/// A list at its end does not keep the wheel: before its end, how far the wheel goes beyond it [notches], and behind it the same
+/// for the window that it is in. Both are in endPlace().
+[[nodiscard]] float wheelPastEnd();
+void scrollOn(float wheel);
 
 /// Receives the actions of buttons, tick boxes and menus.
 using Act = std::function<void(Action)>;
