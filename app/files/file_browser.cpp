@@ -15,6 +15,7 @@ void FileBrowser::goTo(const std::string& folder, std::string chosen, std::strin
 void FileBrowser::begin(const std::string& folder, std::string chosen, FilesOf files) {
   view_.files = files;
   view_.typed.clear();
+  view_.endings.clear();
   goTo(folder, std::move(chosen));
 }
 

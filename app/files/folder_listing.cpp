@@ -109,7 +109,11 @@ std::vector<std::size_t> shownEntries(const FolderListing& listing, const Folder
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const FolderEntry& entry = entries[i];
     if (!view.hidden && entry.name.starts_with('.')) continue;
-    const bool sought = view.files == FilesOf::kScenes ? entry.scene : entry.scan;
+    const bool sought = !view.endings.empty()
+                            ? std::find(view.endings.begin(), view.endings.end(),
+                                        engine::extensionOf(entry.name)) != view.endings.end()
+                        : view.files == FilesOf::kScenes ? entry.scene
+                                                         : entry.scan;
     if (!view.all_files && !entry.folder && !sought) continue;
     if (!typed.empty() && lower(entry.name).find(typed) == std::string::npos) continue;
     shown.push_back(i);

@@ -41,6 +41,8 @@ struct FolderView {
   FolderOrder order = FolderOrder::kName;
   bool descending = false;
   bool all_files = false;  ///< else folders and those of `files`
+  std::vector<std::string> endings =
+      {};                  ///< ".tif": instead of those of `files`, in small letters; empty: those
   bool hidden = false;     ///< names that begin with a point
   std::string typed = {};  ///< only names that contain it, in any case; empty: every name
 };

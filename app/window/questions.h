@@ -56,9 +56,10 @@ struct Question {
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.
   std::shared_ptr<const ScanThumbnail> guessed = {};
-  std::string sought = {};                 ///< kShortcuts: as typed so far
-  bool stop_asking = false;                ///< kUnsaved, kUnsavedScene: ticked so far
-  Notice said = {};                        ///< kMessage
+  std::string sought = {};   ///< kShortcuts: as typed so far
+  bool stop_asking = false;  ///< kUnsaved, kUnsavedScene: ticked so far
+  Notice said =
+      {};  ///< kMessage; kOpen, kCompare, kJoin, kOpenScene: why the file of the path could not be read
   Kind from = Kind::kSaveAs;               ///< kReplace, kImport: the dialog of the path
   bool typed = false;                      ///< the path came from there, and the user can go back to it
   std::vector<std::string> replaced = {};  ///< kReplace: a sentence for each file to be replaced

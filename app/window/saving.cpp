@@ -12,8 +12,10 @@
 #include "app/work/outputs.h"
 #include "app/work/session_guard.h"
 #include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
 #include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
+#include "engine/io/units.h"
 
 namespace fettle::app {
 namespace {
@@ -61,13 +63,11 @@ std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keep
 }
 
 engine::Result<Saving::Written> writeFiles(const std::string& path, const std::vector<std::string>& outputs,
-                                           const engine::Version& field, const engine::Version& original,
+                                           const engine::Version& field, const engine::ExportOptions& options,
                                            engine::JobControl& job) {
   ScanGuard guard;  // of other sessions: this one does not need the file any more
   for (const std::string& output : outputs)
     if (auto spared = guard.protectSessions(output, job); !spared) return tl::unexpected(spared.error());
-  engine::ExportOptions options;
-  options.original = original;
   auto done = engine::exportField(field, path, options, job);
   if (!done) return tl::unexpected(done.error());
   if (anyMark(field) && !isSessionPath(path))
@@ -81,10 +81,17 @@ engine::Result<Saving::Written> writeFiles(const std::string& path, const std::v
 
 }  // namespace
 
+bool Saving::hasMeshChoice(const engine::Grid& grid) {
+  const std::string& name = grid.lateral_unit.name;
+  // A degree is no length, and its millimetres are a guess.
+  return grid.lateral_unit.mm != 1.0 && name != "deg" && !engine::isNoLength(name);
+}
+
 void Saving::begin(std::int64_t samples) {
   path_.clear();
   exported_.reset();
   embeds = samples <= kEmbedded;
+  mesh_in_mm = true;
 }
 
 void Saving::save(ActiveDocument& document, Feedback& feedback, Afterwards afterwards) {
@@ -158,8 +165,12 @@ void Saving::write(ActiveDocument& document) {
     return;
   }
   outputs_ = outputsOf(target_, keeping_, document);
-  writing_.start([path = target_, outputs = outputs_, field = client.upright(), original = client.original()](
-                     engine::JobControl& job) { return writeFiles(path, outputs, field, original, job); });
+  engine::ExportOptions options;
+  options.original = client.original();
+  if (engine::extensionOf(target_) == ".stl" && mesh_in_mm && hasMeshChoice(client.upright().grid()))
+    options.mesh_unit = engine::LengthUnit();
+  writing_.start([path = target_, outputs = outputs_, field = client.upright(), options](
+                     engine::JobControl& job) { return writeFiles(path, outputs, field, options, job); });
 }
 
 void Saving::cancel(ActiveDocument& document) {

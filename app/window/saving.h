@@ -67,6 +67,11 @@ class Saving {
   [[nodiscard]] std::string exportedTo(const ActiveDocument& document) const;
 
   bool embeds = true;  ///< the scan is stored in a session saved as
+  bool mesh_in_mm =
+      true;  ///< numbers of a mesh without units are millimetres, where that can be chosen; else the scan's
+
+  /// Whether the numbers of a mesh without units can be in two units: the scan's is a length other than mm.
+  [[nodiscard]] static bool hasMeshChoice(const engine::Grid& grid);
 
  private:
   void write(ActiveDocument& document);

@@ -35,13 +35,13 @@ void SceneFiles::begin(const LoopClient& client, std::string path) {
 
 bool SceneFiles::open(const std::string& path, LoopClient& client, Feedback& feedback) {
   const auto scene = readSceneFor(path, client.field().grid());
-  if (!scene) {
-    feedback.notices.push_back(
-        {fmt::format("{}: {}", nameIn(path), scene.error().what), scene.error().remedy});
-    return false;
-  }
-  if (const engine::Status set = client.setScene(*scene); !set) {
-    feedback.notices.push_back({fmt::format("{}: {}", nameIn(path), set.error().what), set.error().remedy});
+  const engine::Status set = scene ? client.setScene(*scene) : tl::unexpected(scene.error());
+  if (!set) {
+    // Back to the dialog in which it was chosen.
+    feedback.questions.ask(
+        {.kind = Question::Kind::kOpenScene,
+         .path = path,
+         .said = {fmt::format("{}: {}", nameIn(path), set.error().what), set.error().remedy}});
     return false;
   }
   begin(client, path);

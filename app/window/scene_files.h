@@ -16,8 +16,8 @@ class SceneFiles {
 
   /// A document was opened with its scene. `path`: of the file that the scene is from; empty: of none.
   void begin(const LoopClient& client, std::string path);
-  /// Reads a scene and lets it be felt. False, with one notice and nothing changed: it cannot be read, has a problem in a line,
-  /// or is more than the device holds.
+  /// Reads a scene and lets it be felt. False, with nothing changed and the dialog of its path, which says why: it cannot be read, has
+  /// a problem in a line, or is more than the device holds.
   bool open(const std::string& path, LoopClient& client, Feedback& feedback);
   /// Saves to the path of `from`, a question for one, after a question where a file would be replaced. True: it is saved.
   bool askToSave(Question from, const LoopClient& client, Feedback& feedback);

@@ -3,6 +3,8 @@
 #include <array>
 #include <ctime>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "app/window/panels/scan_facts.h"
 #include "app/window/panels/scan_picture.h"
 #include "app/window/result_files.h"
+#include "app/window/screen_text.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 
@@ -239,9 +242,9 @@ void preview(const Question& question, Parts& parts, ImVec2 size) {
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
           if (!text.empty()) ImGui::TextUnformatted(text.c_str());
         for (const std::string& warning : shown.picture->warnings)
-          ImGui::TextDisabled("%s", inFieldWords(warning).c_str());
+          ImGui::TextDisabled("%s", screenText(inFieldWords(warning)).c_str());
       } else if (shown.problem != nullptr) {
-        ImGui::TextUnformatted(shown.problem->what.c_str());
+        ImGui::TextUnformatted(screenText(shown.problem->what).c_str());
       } else {
         ImGui::TextDisabled("%s", tr("reading"));
       }
@@ -308,12 +311,33 @@ void resultHelp(Question& question, const ResultFile& file, Parts& parts) {
   if (question.kind == Kind::kExportSections) sectionChoices(parts.section);
 }
 
-void writingHelp(Question& question, bool& embeds) {
+// The unit of the numbers of a mesh whose format knows none.
+void meshUnitChooser(const engine::Grid& grid, Saving& saving) {
+  const std::string own = trFormat("{}, as the scan", screenText(grid.lateral_unit.name));
+  const char* const now = saving.mesh_in_mm ? tr("mm, as CAD programs take them") : own.c_str();
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 16.0F);
+  if (!ImGui::BeginCombo(labelOf("numbers in"), now)) {
+    explain(
+        "STL knows no units, and CAD programs take its numbers for mm. In the scan's own unit every bit is "
+        "kept; in mm each number is rounded by no more than 6e-8 of it.");
+    return;
+  }
+  if (ImGui::Selectable(labelOf("mm, as CAD programs take them"), saving.mesh_in_mm))
+    saving.mesh_in_mm = true;
+  if (ImGui::Selectable(own.c_str(), !saving.mesh_in_mm)) saving.mesh_in_mm = false;
+  ImGui::EndCombo();
+}
+
+void writingHelp(Question& question, Parts& parts) {
   if (isScene(question)) {
     ImGui::TextDisabled("%s", tr("tip, force, brushes and effects with their numbers, as a .toml file"));
     return;
   }
   formatChooser(question);
+  const engine::Grid& grid = parts.document.client()->field().grid();
+  if (engine::extensionOf(question.path) == ".stl" && Saving::hasMeshChoice(grid))
+    meshUnitChooser(grid, parts.saving);
   const bool session = isSessionPath(question.path);
   ImGui::PushTextWrapPos(0.0F);
   ImGui::TextDisabled("%s", session ? tr("a session keeps everything, each step as it is made")
@@ -322,7 +346,7 @@ void writingHelp(Question& question, bool& embeds) {
   ImGui::PopTextWrapPos();
   if (question.kind != Kind::kSaveAs) return;
   ImGui::BeginDisabled(!session);
-  tickBox("store the scan in the session", embeds,
+  tickBox("store the scan in the session", parts.saving.embeds,
           "The session then opens without the file of the scan, and is larger by it.");
   ImGui::EndDisabled();
 }
@@ -340,6 +364,35 @@ void remark(const Question& question, const FileBrowser& browser, const ResultFi
     ImGui::SameLine();
     textIn(PanelColour::kWarning, tr("this file exists already"));
   }
+  if (question.said.what.empty()) return;
+  const std::string_view what = tr(std::string_view(question.said.what)),
+                         remedy = tr(std::string_view(question.said.remedy));
+  writeIn(PanelColour::kProblem, remedy.empty() ? std::string(what) : fmt::format("{}: {}", what, remedy));
+}
+
+// Of the files that are listed where one is written: those of its format.
+std::vector<std::string> endingsOf(const Question& question, const ResultFile* result) {
+  std::vector<std::string> endings;
+  if (reads(question) || isScene(question)) return endings;
+  if (result != nullptr) {
+    const ResultFormat* const now = formatOf(*result, question.path);
+    for (const ResultFormat& format : result->formats)
+      if (now == nullptr || now == &format) endings.emplace_back(format.ending);
+    return endings;
+  }
+  const std::string extension = engine::extensionOf(question.path);
+  for (const engine::FormatInfo& format : engine::formats())
+    if (format.writes && std::ranges::find(format.extensions, extension) != format.extensions.end())
+      endings.assign(format.extensions.begin(), format.extensions.end());
+  return endings;
+}
+
+void listFormat(const Question& question, const ResultFile* result, FileBrowser& browser) {
+  FolderView view = browser.view();
+  if (std::vector<std::string> endings = endingsOf(question, result); endings != view.endings) {
+    view.endings = std::move(endings);
+    browser.setView(std::move(view));
+  }
 }
 
 }  // namespace
@@ -349,11 +402,14 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   Files& files = parts.files;
   const auto scale = static_cast<float>(parts.window.scale());
   const bool appears = ImGui::IsWindowAppearing();
+  const ResultFile* const result = resultFileOf(question.kind);
+  const std::string path_before = question.path;
   if (appears) {
     if (question.path.empty()) question.path = firstFolder(parts.recent);
     files.begin(question.path, parts.recent.paths(), isScene(question) ? FilesOf::kScenes : FilesOf::kScans);
-    ImGui::SetKeyboardFocusHere();
   }
+  // Also after a name that is none: another one is typed in its place.
+  if (appears || (!question.said.what.empty() && !ImGui::IsAnyItemActive())) ImGui::SetKeyboardFocusHere();
   const auto before = files.browser.chosen();
   ImGui::SetNextItemWidth(-1.0F);
   bool confirmed =
@@ -363,6 +419,7 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
                        moveByKeys, &files.browser);
   if (!appears && ImGui::IsItemEdited() && files.browser.chosen() == before)
     files.follow(question.path, reads(question));
+  listFormat(question, result, files.browser);
   narrowByKeys(files.browser);
   const bool paged = pageByKeys(question, files);
   folderLine(question, parts);
@@ -378,11 +435,10 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const bool twice = fileTable(question, files, ImVec2(width, height), moved);
   ImGui::SameLine();
   preview(question, parts, ImVec2(kPreview * fit, height));
-  const ResultFile* const result = resultFileOf(question.kind);
   if (result != nullptr)
     resultHelp(question, *result, parts);
   else if (!reads(question))
-    writingHelp(question, parts.saving.embeds);
+    writingHelp(question, parts);
   confirmed = dialogButton(reads(question) ? textOf("Open") : textOf("Write"), questions, Key::kEnter) ||
               confirmed || twice;
   ImGui::SameLine();
@@ -391,6 +447,7 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
       pressButton("Read as ...", "Says unit, spacing, scale and holes of the file before it is opened.");
   if (question.kind == Kind::kOpen) ImGui::SameLine();
   const bool left = dialogButton("Cancel", questions, Key::kEscape);
+  if (!appears && question.path != path_before) question.said = {};  // it was said of another file
   remark(question, files.browser, result);
   if (left) return Choice::kBack;
   std::error_code error;
@@ -405,6 +462,11 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
       twice && chosen && files.browser.entry(*chosen).folder ? files.browser.pathOf(*chosen) : question.path;
   if (fs::is_directory(folder, error)) {
     enter(folder, question, files);
+    return std::nullopt;
+  }
+  if (reads(question) && !fs::exists(question.path, error)) {
+    question.said = {trFormat("there is no file {}", fs::path(question.path).filename().string()),
+                     tr("choose one in the list, or correct the name")};
     return std::nullopt;
   }
   if (result != nullptr && formatOf(*result, question.path) == nullptr) return std::nullopt;

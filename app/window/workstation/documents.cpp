@@ -67,6 +67,11 @@ void Workstation::takeOpened() {
   if (error.kind == engine::ErrorKind::kCancelled) return;
   if (!parts_.document.isOpen() && parts_.opening.path() == options_.scan)
     end_ = tl::unexpected(error);  // named on the command line: its errors are the command's
+  else if (std::exchange(dialog_path_, {}) == parts_.opening.path())
+    // Back to the dialog in which it was chosen: another one is chosen there, or how this one is read.
+    parts_.feedback.questions.ask({.kind = Question::Kind::kOpen,
+                                   .path = parts_.opening.path(),
+                                   .said = {inFieldWords(error.line()), ""}});
   else
     parts_.feedback.message(inFieldWords(error.line()), "");
 }

@@ -55,6 +55,9 @@ TEST_F(FolderListingTest, orders_by_size_and_date_and_filters) {
             (Names{"runs", "part10.tif", "part2.TIF"}));
   EXPECT_EQ(namesOf(listing, {.typed = "PART1"}), (Names{"part10.tif"}));
   EXPECT_EQ(namesOf(listing, {.all_files = true}), (Names{"runs", "notes.odt", "part2.TIF", "part10.tif"}));
+  EXPECT_EQ(namesOf(listing, {.endings = {".odt"}}), (Names{"runs", "notes.odt"}));
+  EXPECT_EQ(namesOf(listing, {.endings = {".png", ".tif"}}), (Names{"runs", "part2.TIF", "part10.tif"}));
+  EXPECT_EQ(namesOf(listing, {.all_files = true, .endings = {".png"}}).size(), 4U);
   EXPECT_EQ(namesOf(listing, {.hidden = true}), (Names{"runs", ".hidden.tif", "part2.TIF", "part10.tif"}));
 }
 

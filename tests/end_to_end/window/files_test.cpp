@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
+#include "engine/formats/formats.h"
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
 
@@ -275,6 +277,108 @@ TEST_F(WindowTest, the_format_of_what_is_exported_is_chosen_from_a_list) {
   program->until("written",
                  [&](const State& s) { return s["status"] == "written: " + folder.file("out.png"); });
   EXPECT_TRUE(fs::exists(folder.file("out.png")));
+  quit(user);
+}
+
+TEST_F(WindowTest, a_mesh_for_cad_is_in_mm_unless_the_unit_of_the_scan_is_chosen) {
+  const std::string in_um = folder.file("um.tif"), by_command = folder.file("command.stl");
+  engine::JobControl job;
+  engine::Version field = load(scan);
+  engine::Grid grid = field.grid();
+  grid.lateral_unit = grid.height_unit = {"um", 1e-3};
+  ASSERT_TRUE(engine::exportField(field.withGrid(grid), in_um, {}, job));
+  const auto program = start({in_um});
+  User user(display, *program, "mesh");
+  (void)opened(*program);
+  const auto written = [&](const std::string& path) {
+    return program->until(
+        "written", [&](const State& s) { return s["status"] == "written: " + path && s["settled"] == true; });
+  };
+  const auto bytesOf = [](const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  };
+  (void)user.press("ctrl+e");
+  program->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  user.type(folder.file("cad.stl"));
+  (void)user.rest();
+  EXPECT_TRUE(user.reads("mm, as CAD programs take them"));
+  (void)user.look("in mm");
+  (void)user.press("Return");
+  const State cad = written(folder.file("cad.stl"));
+  EXPECT_NE(cad["notices"].dump().find("all lengths are in mm"), std::string::npos) << cad["notices"];
+  EXPECT_TRUE(bytesOf(folder.file("cad.stl")).starts_with("field, units mm"));
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "convert", in_um, by_command, "--mesh-unit", "mm"}).status, 0);
+  EXPECT_EQ(bytesOf(folder.file("cad.stl")), bytesOf(by_command));
+  // In the scan's own unit, with every bit.
+  (void)user.press("ctrl+e");
+  program->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  user.type(folder.file("own.stl"));
+  (void)user.rest();
+  (void)user.click("mm, as CAD programs take them");
+  (void)user.click("\u00b5m, as the scan");
+  (void)user.look("in um");
+  (void)user.press("Return");
+  EXPECT_NE(written(folder.file("own.stl"))["notices"].dump().find("all lengths are in um"),
+            std::string::npos);
+  ASSERT_EQ(runProcess({FETTLE_PROGRAM, "convert", in_um, by_command, "--force"}).status, 0);
+  EXPECT_EQ(bytesOf(folder.file("own.stl")), bytesOf(by_command));
+  quit(user);
+}
+
+TEST_F(WindowTest, a_dialog_stays_with_what_is_wrong_with_its_file) {
+  const std::string broken = folder.file("broken.tif");
+  std::ofstream(broken) << "II*";  // and nothing behind it
+  const auto program = start({scan});
+  User user(display, *program, "unreadable");
+  (void)opened(*program);
+  const auto wrong = [](const State& s) {
+    return s["dialog"] == "open" && s["settled"] == true && s["message"] != "";
+  };
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(folder.file("nothing.tif"));
+  (void)user.press("Return");
+  const State missing = program->until("no such file", wrong);
+  EXPECT_NE(missing["message"].get<std::string>().find("there is no file nothing.tif"), std::string::npos);
+  EXPECT_TRUE(says(missing, "there is no file nothing.tif"));
+  (void)user.look("no such file");
+  user.type(broken);
+  const State another = program->until("another name", [&](const State& s) {
+    return opens(s) && s["dialog_path"] == broken && s["message"] == "";
+  });
+  EXPECT_FALSE(says(another, "there is no file"));
+  (void)user.press("Return");
+  const State unread = program->until("a broken one", wrong);
+  EXPECT_EQ(unread["dialog_path"], broken);
+  EXPECT_EQ(unread["path"], scan) << "the scan stays open";
+  EXPECT_TRUE(says(unread, "broken.tif"));
+  (void)user.look("a broken one");
+  (void)user.press("Escape");
+  program->until("the scan", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  quit(user);
+}
+
+TEST_F(WindowTest, where_a_file_is_written_those_of_its_format_are_listed) {
+  std::ofstream(folder.file("old.png")) << "x";
+  std::ofstream(folder.file("old.csv")) << "x";
+  const auto program = start({scan});
+  User user(display, *program, "listed");
+  (void)opened(*program);
+  (void)user.press("ctrl+e");
+  program->until("where to", [](const State& s) {
+    return s["dialog"] == "export" && s["settled"] == true && says(s, "part.tif");
+  });
+  EXPECT_FALSE(user.reads("old.png"));
+  EXPECT_FALSE(user.reads("old.csv"));
+  (void)user.click("GeoTIFF and TIFF");
+  (void)user.click("16-bit grey PNG (.png)");
+  const State png = user.rest();
+  EXPECT_TRUE(says(png, "old.png"));
+  EXPECT_FALSE(says(png, "part.tif"));
+  (void)user.look("png");
+  (void)user.click("all files");
+  EXPECT_TRUE(user.reads("old.csv"));
   quit(user);
 }
 
