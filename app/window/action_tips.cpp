@@ -20,8 +20,10 @@ constexpr Tip kTips[] = {
     {actionOf(haptic::Tool::kMark),
      "What is marked no filter and no stroke changes; or filters change it alone, with \"only marks\"."},
     {actionOf(haptic::Tool::kUnmark), "Takes marks away under the brush."},
-    {Action::kLasso, "Draw around a place."},
-    {Action::kBox, "Drag over a place, for spikes or a bad strip; then a filter with \"only marks\"."},
+    {Action::kLasso, "Draw around one place after the other; Esc or another tool ends it."},
+    {Action::kBox,
+     "Drag over one place after the other, for spikes or a bad strip; Esc or another tool ends it. Then a "
+     "filter with \"only marks\"."},
     {Action::kClearMarks, "Heights stay; undo brings them back."},
     {Action::kDrawLines,
      "A stroke along an edge is moved onto it, and filters work up to it from both sides and not across."},
@@ -38,6 +40,7 @@ constexpr Tip kTips[] = {
     {Action::kExportReport,
      "One page with pictures, surface texture, sections and steps, before and after, for a browser or as "
      "PDF."},
+    {Action::kNextMap, "Of heights: what has a sign, as a change, has blue below zero and red above."},
     {Action::kFilterPreview, "Shows the filter beside the scan and changes nothing."},
     {Action::kFilterAdd,
      "Keeps what is shown and puts another beside it, which follows the fields from then on."},

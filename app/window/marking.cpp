@@ -36,9 +36,15 @@ void Marking::leaveLasso() {
   held_ = false;
 }
 
+// The next line of the same shape, where the cursor is.
+void Marking::beginNext() {
+  lasso_.begin(lasso_.shape(), lasso_.cross());
+  drawn_ = held_ = false;
+}
+
 void Marking::finish(engine::MarkChange change, const Scope& scope) {
   if (!lasso_.closes()) {
-    lasso_.leave();
+    beginNext();
     return;
   }
   const std::string name = std::string(lasso_.shape() == Lasso::Shape::kBox ? "Box" : "Lasso") +
@@ -46,6 +52,7 @@ void Marking::finish(engine::MarkChange change, const Scope& scope) {
   const engine::Version& field = scope.client.field();
   engine::Polygon polygon = lasso_.finish(
       field.grid(), [&](const glm::dvec2& pixel) { return scope.picture.fieldAt(pixel, field, scope.view); });
+  beginNext();
   scope.display.marks = true;
   edit.ask(name,
            [polygon = std::move(polygon), change](const engine::Version& base, engine::JobControl& job) {
@@ -63,6 +70,7 @@ bool Marking::handle(const render::InputEvent& event, const Scope& scope) {
     case InputKind::kButtonDown:
       if (event.panels_mouse || !scope.picture.inside(event.x, event.y) || event.modifiers.alt) return false;
       if (event.button == MouseButton::kRight) {
+        if (lasso_.line().empty()) return false;  // nothing is begun: it moves the view
         finish(changeOf(event), scope);
         return true;
       }
@@ -103,10 +111,10 @@ bool Marking::handleKey(const render::InputEvent& event, const Scope& scope) {
       if (lasso_.set()) finish(changeOf(event), scope);
       return true;
     case Key::kBackspace:
-      if (!lasso_.takeBack()) leaveLasso();
-      return true;
+      return lasso_.takeBack();
     case Key::kEnter:
     case Key::kKeypadEnter:
+      if (lasso_.line().empty()) return false;  // it applies what is previewed
       finish(changeOf(event), scope);
       return true;
     case Key::kEscape:

@@ -12,7 +12,7 @@
 namespace fettle::app {
 
 /// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them; edge lines, and the places where
-/// they are worth most. Threading: main.
+/// they are worth most. Lasso and box stay on after each line, until another tool is chosen or Escape. Threading: main.
 class Marking {
  public:
   /// The environment of the lasso.
@@ -54,6 +54,7 @@ class Marking {
 
  private:
   bool handleKey(const render::InputEvent& event, const Scope& scope);
+  void beginNext();
   void finish(engine::MarkChange change, const Scope& scope);
 
   Lasso lasso_;

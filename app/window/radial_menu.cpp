@@ -15,9 +15,12 @@ using render::MouseButton;
 
 constexpr std::size_t kItemCount = RadialMenu::kItems.size();
 
+constexpr double kBesideBorder_px = 4.0;  // at scale 1
+
 // In one direction, where there is room; else the middle.
-double inside(double at, int low, int length, double margin) {
-  return length > 2.0 * margin ? std::clamp(at, low + margin, low + length - margin) : low + 0.5 * length;
+double inside(double at, int low, int length, double before, double after) {
+  return length > before + after ? std::clamp(at, low + before, low + length - after)
+                                 : low + 0.5 * (length + before - after);
 }
 
 }  // namespace
@@ -30,9 +33,13 @@ void RadialMenu::open(const glm::dvec2& cursor, const render::Rectangle& picture
   pointed_.reset();
   scale_ = scale;
   middle_ = cursor;
-  const double margin = 1.4 * kNames_px * scale;
-  drawn_at_ = {inside(cursor.x, picture.x, picture.width, margin),
-               inside(cursor.y, picture.y, picture.height, margin)};
+  picture_ = picture;
+}
+
+glm::dvec2 RadialMenu::drawnAt(const Reach& names) const noexcept {
+  const double border = kBesideBorder_px * scale_;
+  return {inside(middle_.x, picture_.x, picture_.width, names.left + border, names.right + border),
+          inside(middle_.y, picture_.y, picture_.height, names.up + border, names.down + border)};
 }
 
 void RadialMenu::point(const glm::dvec2& cursor) noexcept {

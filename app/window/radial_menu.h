@@ -62,8 +62,13 @@ class RadialMenu {
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// The item in whose direction the cursor is, or that an arrow key chose.
   [[nodiscard]] std::optional<std::size_t> pointed() const noexcept { return pointed_; }
-  /// Where it is drawn: whole in the picture. Directions count from where the cursor was.
-  [[nodiscard]] const glm::dvec2& drawnAt() const noexcept { return drawn_at_; }
+  /// How far its names reach from its middle [pixels].
+  struct Reach {
+    double left = 0.0, up = 0.0, right = 0.0, down = 0.0;
+  };
+  /// Where its middle is drawn: at the cursor, or as far from it as it takes to have all names in the picture; in the middle of a
+  /// picture that is too small. Directions count from where the cursor was.
+  [[nodiscard]] glm::dvec2 drawnAt(const Reach& names) const noexcept;
 
  private:
   void point(const glm::dvec2& cursor) noexcept;
@@ -77,7 +82,8 @@ class RadialMenu {
   bool of_device_ = false;
   bool was_pointed_ = false;  // at an item, since it was opened
   std::optional<std::size_t> pointed_;
-  glm::dvec2 middle_{0.0}, drawn_at_{0.0};
+  glm::dvec2 middle_{0.0};
+  render::Rectangle picture_{};
   double scale_ = 1.0;
 };
 

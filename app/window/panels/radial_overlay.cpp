@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string_view>
 
 #include <imgui.h>
 
@@ -14,13 +17,47 @@ using render::PanelColour;
 
 constexpr float kRing_px = 40.0F;  // radius of the ring that shows the direction, at scale 1
 
+// A name and its plate, from the middle of the menu.
+struct Plate {
+  std::string_view name;
+  ImVec2 text, half, at;
+};
+
+Plate plateOf(std::size_t item, float scale) {
+  constexpr auto kCount = static_cast<float>(RadialMenu::kItems.size());
+  Plate plate;
+  plate.name = tr(RadialMenu::kItems[item].name);
+  plate.text = ImGui::CalcTextSize(plate.name.data(), plate.name.data() + plate.name.size());
+  plate.half = ImVec2(0.5F * plate.text.x + 9.0F * scale, 0.5F * plate.text.y + 5.0F * scale);
+  const float turn = (static_cast<float>(item) / kCount - 0.25F) * 2.0F * std::numbers::pi_v<float>;
+  const float away = static_cast<float>(RadialMenu::kNames_px) * scale;
+  // Names to the sides begin where those above and below have their middle.
+  plate.at = ImVec2(std::cos(turn) * (away + 0.5F * plate.half.x), std::sin(turn) * away);
+  return plate;
+}
+
+RadialMenu::Reach reachOf(std::span<const Plate> plates) {
+  RadialMenu::Reach reach;
+  for (const Plate& plate : plates) {
+    reach.left = std::max(reach.left, static_cast<double>(plate.half.x - plate.at.x));
+    reach.right = std::max(reach.right, static_cast<double>(plate.half.x + plate.at.x));
+    reach.up = std::max(reach.up, static_cast<double>(plate.half.y - plate.at.y));
+    reach.down = std::max(reach.down, static_cast<double>(plate.half.y + plate.at.y));
+  }
+  return reach;
+}
+
 }  // namespace
 
 void radialOverlay(const Parts& parts) {
   const RadialMenu& menu = parts.radial;
   if (!menu.active()) return;
   const auto scale = static_cast<float>(parts.window.scale());
-  const ImVec2 middle(static_cast<float>(menu.drawnAt().x), static_cast<float>(menu.drawnAt().y));
+  // Names have another length in another language.
+  std::array<Plate, RadialMenu::kItems.size()> plates;
+  for (std::size_t i = 0; i < plates.size(); ++i) plates[i] = plateOf(i, scale);
+  const glm::dvec2 drawn_at = menu.drawnAt(reachOf(plates));
+  const ImVec2 middle(static_cast<float>(drawn_at.x), static_cast<float>(drawn_at.y));
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const float ring = kRing_px * scale, wide = 7.0F * scale;
   list.PathArcTo(middle, ring, 0.0F, 2.0F * std::numbers::pi_v<float>, 64);
@@ -37,12 +74,8 @@ void radialOverlay(const Parts& parts) {
       list.PathArcTo(middle, ring, turn - half, turn + half, 12);
       list.PathStroke(colourOf(PanelColour::kTick), ImDrawFlags_None, wide);
     }
-    const std::string_view name = tr(item.name);
-    const ImVec2 text = ImGui::CalcTextSize(name.data(), name.data() + name.size());
-    const ImVec2 half(0.5F * text.x + 9.0F * scale, 0.5F * text.y + 5.0F * scale);
-    const float away = static_cast<float>(RadialMenu::kNames_px) * scale;
-    // Names to the sides begin where those above and below have their middle.
-    const ImVec2 at(middle.x + std::cos(turn) * (away + 0.5F * half.x), middle.y + std::sin(turn) * away);
+    const auto& [name, text, half, off] = plates[i];
+    const ImVec2 at(middle.x + off.x, middle.y + off.y);
     const ImVec2 low(at.x - half.x, at.y - half.y), high(at.x + half.x, at.y + half.y);
     list.AddRectFilled(low, high, colourOf(pointed ? PanelColour::kButtonHeld : PanelColour::kPlate),
                        5.0F * scale);

@@ -6,12 +6,13 @@
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/scene_edits.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
 
 void text(const std::string& what) {
-  ImGui::TextUnformatted(what.c_str());
+  ImGui::TextUnformatted(screenText(what).c_str());
 }
 
 // Returns whether the user cancelled.
@@ -79,12 +80,6 @@ void content(Parts& parts) {
   const engine::EdgeSuggestion* const edges = parts.marking.edges.suggestion();
   if (parts.brush.active()) {
     text(brushText(parts.brush, *parts.document.client()));
-  } else if (lasso.active()) {
-    text(lasso.shape() == Lasso::Shape::kBox
-             ? tr("box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves")
-             : tr("lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with "
-                  "Ctrl "
-                  "unmarks; Esc leaves"));
   } else if (const auto& point = parts.plane_points.next()) {
     const ActionRow& key = rowOf(Action::kPlanePoint);
     text(trFormat(
@@ -107,6 +102,15 @@ void content(Parts& parts) {
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
     if (statusWork(parts.opening.progress(), 240.0F, textOf("opening"))) parts.opening.cancel();
+  } else if (lasso.active()) {
+    // It stays on for long: what is under the cursor is said as well.
+    const char* const how =
+        lasso.shape() == Lasso::Shape::kBox
+            ? tr("box after box: drag, or corners with arrows and Space; Enter marks, with Ctrl unmarks; Esc "
+                 "or another tool ends it")
+            : tr("line after line: draw, or corners by click or arrows and Space; Enter or right button "
+                 "marks, with Ctrl unmarks; Esc or another tool ends it");
+    text(how + placeText(parts));
   } else if (parts.marking.edit.busy()) {
     if (statusWork(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
       parts.marking.edit.cancel();

@@ -145,8 +145,14 @@ TEST(RadialMenu, it_is_drawn_whole_and_directions_count_from_the_cursor) {
   const glm::dvec2 corner{3, 22};
   for (const double scale : {1.0, 2.0}) {
     RadialMenu menu = opened(By::kKey, corner, scale);
-    EXPECT_GE(menu.drawnAt().x, RadialMenu::kNames_px * scale);
-    EXPECT_GE(menu.drawnAt().y, 20.0 + RadialMenu::kNames_px * scale);
+    // As far as the names reach, longer ones to one side.
+    const RadialMenu::Reach reach{150 * scale, 105 * scale, 170 * scale, 100 * scale};
+    EXPECT_GE(menu.drawnAt(reach).x, reach.left);
+    EXPECT_GE(menu.drawnAt(reach).y, 20.0 + reach.up);
+    const RadialMenu other = opened(By::kKey, {797, 618}, scale);
+    EXPECT_LE(other.drawnAt(reach).x, 800.0 - reach.right);
+    EXPECT_LE(other.drawnAt(reach).y, 620.0 - reach.down);
+    EXPECT_EQ(opened(By::kKey, kCursor, scale).drawnAt(reach), kCursor) << "where there is room";
     (void)menu.handle(moveTo(towards(4, 40.0 * scale, 0.0, corner)));
     EXPECT_EQ(menu.pointed(), 4U);
     (void)menu.handle(moveTo(towards(4, 20.0 * scale, 0.0, corner)));
@@ -155,7 +161,7 @@ TEST(RadialMenu, it_is_drawn_whole_and_directions_count_from_the_cursor) {
   // A picture that is too small for it shows its middle.
   RadialMenu menu;
   menu.open({5, 5}, {0, 0, 100, 60}, 1.0, By::kKey);
-  EXPECT_EQ(menu.drawnAt(), glm::dvec2(50, 30));
+  EXPECT_EQ(menu.drawnAt({150, 100, 150, 100}), glm::dvec2(50, 30));
 }
 
 TEST(RadialMenu, of_a_device_is_pointed_at_by_its_tip_and_chosen_by_its_button) {

@@ -296,5 +296,75 @@ TEST_F(HandTools, tools_around_the_cursor_are_chosen_by_a_direction) {
   end(*program);
 }
 
+TEST_F(HandTools, box_after_box_is_marked_until_escape_or_another_tool) {
+  openOnly({"Tool", "Filters"});
+  const auto program = start({scan});
+  User user(display, *program, "boxes");
+  (void)opened(*program);
+  (void)user.key("7");
+  (void)user.click("Box");
+  EXPECT_EQ(program->now()["lasso"], "box");
+  (void)user.look("hint");
+  EXPECT_TRUE(user.reads("Esc or another tool ends it"));
+  EXPECT_EQ(user.drag(1, {240, 300}, {280, 340}, 4)["steps"], 1);
+  EXPECT_EQ(program->now()["lasso"], "box") << "it stays";
+  EXPECT_EQ(user.drag(1, {300, 300}, {340, 340}, 4)["steps"], 2);
+  (void)user.look("two boxes");
+  // A click that encloses nothing is no box, and does not end it.
+  EXPECT_EQ(user.drag(1, {400, 400}, {400, 400}, 1)["steps"], 2);
+  EXPECT_EQ(user.key("BackSpace")["lasso"], "box") << "the corner is taken back";
+  // What is no line does what it does elsewhere: undo, and the right button that moves the view.
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 1);
+  EXPECT_EQ(program->now()["lasso"], "box");
+  const State before = program->now();
+  EXPECT_NE(user.drag(3, {360, 360}, {380, 360}, 3)["view"], before["view"]);
+  EXPECT_EQ(program->now()["steps"], 1);
+  // Enter applies a preview where no line is begun.
+  EXPECT_EQ(user.key("p")["variants"].size(), 1U);
+  EXPECT_EQ(user.key("Return")["steps"], 2);
+  EXPECT_EQ(program->now()["lasso"], "box");
+  EXPECT_EQ(user.key("Escape")["lasso"], "");
+  EXPECT_EQ(program->now()["tool"], "view");
+  // The lasso likewise, ended by another tool.
+  (void)user.click("Lasso");
+  EXPECT_EQ(user.drag(1, {260, 300}, {300, 360}, 2)["lasso"], "free");
+  (void)user.click("Smooth");
+  EXPECT_EQ(program->now()["lasso"], "");
+  EXPECT_EQ(program->now()["tool"], "smooth");
+  end(*program);
+}
+
+TEST_F(HandTools, all_names_around_the_cursor_are_seen_in_each_corner_of_the_picture) {
+  openOnly({});
+  const auto program = start({scan});
+  User user(display, *program, "radial corners");
+  (void)opened(*program);
+  const State picture = program->now()["picture"];
+  const int left = picture[0], top = picture[1], right = left + picture[2].get<int>() - 1,
+            bottom = top + picture[3].get<int>() - 1;
+  for (const auto& [x, y] : {std::pair{left + 2, top + 2},
+                             {right - 2, top + 2},
+                             {left + 2, bottom - 2},
+                             {right - 2, bottom - 2}}) {
+    user.at({x, y});
+    hold("space");
+    const State open = waitRadial(*program, "");
+    (void)user.look("corner");
+    const State now = program->now();
+    for (const char* name : {"Smooth", "Mark", "Unmark", "Lasso", "View", "Ball tip", "Point tip", "Feel"}) {
+      int whole = 0;
+      for (const State& text : now["texts"])
+        whole += text["text"] == name && text["cut"] == false && text["at"][0] >= left &&
+                 text["at"][0].get<int>() + text["at"][2].get<int>() <= right && text["at"][1] >= top &&
+                 text["at"][1].get<int>() + text["at"][3].get<int>() <= bottom;
+      EXPECT_GE(whole, 1) << name << " at " << x << ", " << y << ": " << now["texts"].dump();
+    }
+    (void)user.press("Escape");
+    letGo("space");
+    program->until("no menu", [](const State& s) { return s["radial"].is_null() && s["settled"] == true; });
+  }
+  end(*program);
+}
+
 }  // namespace
 }  // namespace fettle::tests
