@@ -155,7 +155,7 @@ engine::Result<engine::Version> benchPart(std::int32_t side) {
 }
 
 Scene plainScene(const engine::Version& field, const render::FrameInput& plain) {
-  return {"plain", {{field}, std::nullopt, render::MarksOverlay::kHide}, plain};
+  return {"plain", {{field}, std::nullopt, {}, render::MarksOverlay::kHide}, plain};
 }
 
 engine::Result<std::vector<Scene>> renderScenes(const engine::Version& field, const render::FrameInput& plain,

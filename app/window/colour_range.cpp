@@ -23,7 +23,7 @@ render::ValueRange turnedOver(const render::ValueRange& range) {
 }
 
 render::ValueRange rangeOfShare(const render::ValueSample& values, Quantity quantity, double share) {
-  if (quantity == Quantity::kDeviation) return values.symmetric(share);
+  if (ColourRange::isChange(quantity)) return values.symmetric(share);
   const render::ValueRange middle = values.middle(share);
   if (middle.low < middle.high || !(values.extreme.low < values.extreme.high)) return middle;
   // So many samples have one height that it is all of the share: a little on both sides of it.
@@ -75,7 +75,7 @@ bool ColourRange::poll(const render::Shown& shown, bool needed, bool working) {
   if (auto done = measuring_.take(); done && !dropped && isOfForm(shown)) {
     // Without memory for one: an empty sample, and the picture finds the range.
     sample_ = *done ? *std::move(*done) : render::ValueSample{};
-    sampled_ = measured_.original ? Quantity::kDeviation : Quantity::kHeight;
+    sampled_ = measured_.original.has_value();
     turned_ = isTurned(measured_.versions);
     changed = true;
   }
@@ -100,15 +100,16 @@ bool ColourRange::isOfForm(const render::Shown& shown) const {
 }
 
 Quantity ColourRange::quantityOf(const render::Shown& shown) noexcept {
-  return shown.original ? Quantity::kDeviation : Quantity::kHeight;
+  if (!shown.original) return Quantity::kHeight;
+  return shown.difference.one_sign ? Quantity::kOneSign : Quantity::kDeviation;
 }
 
 RangeRule& ColourRange::ruleOf(Display& display, Quantity quantity) noexcept {
-  return quantity == Quantity::kDeviation ? display.changes : display.heights;
+  return isChange(quantity) ? display.changes : display.heights;
 }
 
 const RangeRule& ColourRange::ruleOf(const Display& display, Quantity quantity) noexcept {
-  return quantity == Quantity::kDeviation ? display.changes : display.heights;
+  return isChange(quantity) ? display.changes : display.heights;
 }
 
 bool ColourRange::needsSample(const Display& display, const render::Shown& shown) noexcept {
@@ -121,7 +122,7 @@ std::optional<render::ValueRange> ColourRange::range(const Display& display,
   const Quantity quantity = quantityOf(shown);
   const RangeRule& rule = ruleOf(display, quantity);
   std::optional<render::ValueRange> range;
-  if (rule.kind == RuleKind::kTyped && quantity == Quantity::kDeviation && limit_)
+  if (rule.kind == RuleKind::kTyped && isChange(quantity) && limit_)
     range = render::ValueRange{-*limit_, *limit_};
   if (rule.kind == RuleKind::kTyped && quantity == Quantity::kHeight && heights_)
     range = isInverted(shown) ? turnedOver(*heights_) : *heights_;
@@ -139,18 +140,19 @@ std::optional<render::ValueRange> ColourRange::range(const Display& display,
 
 render::Colouring ColourRange::colouring(const Display& display, Quantity quantity) const {
   render::Colouring colouring;
-  colouring.map = display.map;
+  // What has a sign has the map with a middle: in another one nobody sees where zero is.
+  colouring.map = quantity == Quantity::kDeviation ? render::ColourMap::kDiverging : display.map;
   colouring.steps = display.colour_steps;
   colouring.tolerance = typed.tolerance;
-  colouring.contour_step = quantity == Quantity::kDeviation ? typed.change_contours : typed.height_contours;
+  colouring.contour_step = isChange(quantity) ? typed.change_contours : typed.height_contours;
   return colouring;
 }
 
 void ColourRange::type(Display& display, const render::Shown& shown, const render::ValueRange& range) {
   const Quantity quantity = quantityOf(shown);
   ruleOf(display, quantity).kind = RuleKind::kTyped;
-  if (quantity == Quantity::kDeviation)
-    limit_ = range.high;
+  if (isChange(quantity))
+    limit_ = std::max(std::abs(range.low), std::abs(range.high));
   else
     heights_ = isInverted(shown) ? turnedOver(range) : range;
 }

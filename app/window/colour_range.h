@@ -32,6 +32,10 @@ class ColourRange {
   /// stay as they are. True when something visible changed.
   [[nodiscard]] bool poll(const render::Shown& shown, bool needed, bool working);
 
+  /// Whether it is a difference from another field.
+  [[nodiscard]] static bool isChange(render::Quantity quantity) noexcept {
+    return quantity != render::Quantity::kHeight;
+  }
   /// Of what `shown` shows.
   [[nodiscard]] static render::Quantity quantityOf(const render::Shown& shown) noexcept;
   /// The rule for it.
@@ -43,14 +47,14 @@ class ColourRange {
   /// The range by the rule; nothing: the picture finds it itself (render::PictureSpec::range).
   [[nodiscard]] std::optional<render::ValueRange> range(const Display& display,
                                                         const render::Shown& shown) const;
-  /// How values become colours.
+  /// How values become colours. Of differences with a sign the map is the diverging one, whatever is chosen for heights.
   [[nodiscard]] render::Colouring colouring(const Display& display, render::Quantity quantity) const;
-  /// Sets the ends by hand: the rule becomes RangeRule::Kind::kTyped. low < high; of a deviation -high, high.
+  /// Sets the ends by hand: the rule becomes RangeRule::Kind::kTyped. low < high; of a difference the farther end counts, on both sides of zero.
   void type(Display& display, const render::Shown& shown, const render::ValueRange& range);
 
   /// Of what is shown, or was shown some frames ago; null while there is none.
   [[nodiscard]] const render::ValueSample* sample(render::Quantity quantity) const noexcept {
-    return sample_ && sampled_ == quantity ? &*sample_ : nullptr;
+    return sample_ && sampled_ == isChange(quantity) ? &*sample_ : nullptr;
   }
   [[nodiscard]] bool busy() const noexcept { return measuring_.busy(); }
 
@@ -79,7 +83,7 @@ class ColourRange {
   Background<render::ValueSample> measuring_;
   Values measured_;  // that measuring_ works on, or of sample_
   std::optional<render::ValueSample> sample_;
-  render::Quantity sampled_ = render::Quantity::kHeight;
+  bool sampled_ = false;                       // of a difference
   bool turned_ = false;                        // whether sample_ is of a field upside down
   std::optional<render::ValueRange> heights_;  // typed, of the field with sign +1
   std::optional<double> limit_;                // typed, of deviations

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/texts/texts.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -40,17 +41,34 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, c
   return input;
 }
 
-// What the colours show the difference from.
-std::optional<engine::Version> comparedWith(Parts& parts) {
-  if (const auto& form = parts.form.previewed()) return form->surface;
+// What the colours show the difference from, and what that is.
+struct Compared {
+  engine::Version with;
+  render::Difference difference;
+  bool residuals = false;  ///< its colours are read by the legend: nothing is tinted over them
+};
+
+std::optional<Compared> comparedWith(Parts& parts) {
+  const engine::Version& field = parts.document.client()->field();
+  if (const auto& form = parts.form.previewed()) return Compared{form->surface, {tr("deviation")}, true};
   if (parts.fit.shown)
-    if (const auto* surface = parts.fit.surface(parts.document.client()->field())) return *surface;
+    if (const auto* surface = parts.fit.surface(field)) return Compared{*surface, {tr("distance")}, true};
   if (parts.features.shown)
-    if (const auto* saddles = parts.features.saddles(parts.document.client()->field())) return *saddles;
+    if (const auto* saddles = parts.features.saddles(field)) {
+      const bool dales = (*parts.features.found())["kind"] == "dales";
+      return Compared{*saddles, {dales ? tr("dale depth") : tr("hill height"), true}, true};
+    }
   if (parts.compare.shown)
-    if (const auto* other = parts.compare.beside(parts.document.client()->field())) return *other;
-  if (parts.settings.display.deviation) return parts.document.client()->original();
+    if (const auto* other = parts.compare.beside(field)) return Compared{*other, {tr("deviation")}, true};
+  if (parts.settings.display.deviation)
+    return Compared{parts.document.client()->original(), {tr("deviation")}, false};
   return std::nullopt;
+}
+
+// A hand that marks has to see what it marks.
+bool handMarks(const Parts& parts) {
+  return parts.marking.lasso().active() ||
+         (parts.stylus.on() && haptic::isMarkTool(parts.document.client()->tool()));
 }
 
 // Means of a large field, in its place until the surface of a previewed form is there for all of its samples.
@@ -78,7 +96,11 @@ std::vector<PreviewPicture> previewsOf(Parts& parts) {
 render::Shown shownOf(Parts& parts, const std::vector<PreviewPicture>& previews) {
   const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
+  const auto compared = comparedWith(parts);
+  const bool tinted = display.marks && !(compared && compared->residuals && !handMarks(parts));
   render::Shown shown;
+  shown.marks = tinted ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+  if (compared) shown.difference = compared->difference;
   // All with the same sign: the loop inverts the field some ticks after the scene was changed, and a preview
   // may have been computed before that.
   const float sign = client.field().reader().sign();
@@ -90,27 +112,26 @@ render::Shown shownOf(Parts& parts, const std::vector<PreviewPicture>& previews)
   } else if (const CoarseForm* coarse = meansShown(parts)) {
     shown.versions.push_back(likeField(coarse->means));
     shown.original = likeField(coarse->surface);
-    shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
     return shown;
   } else {
     shown.versions.push_back(parts.marking.edges.over(client.field()));
   }
   for (const PreviewPicture& preview : previews) shown.versions.push_back(likeField(preview.field));
-  if (const auto original = comparedWith(parts)) shown.original = likeField(*original);
-  shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+  if (compared) shown.original = likeField(compared->with);
   if (parts.marking.edges.suggestion() != nullptr && !parts.shows_before) shown.accepted = client.field();
   return shown;
 }
 
 void addTitles(const Parts& parts, const std::vector<PreviewPicture>& previews, render::FrameInput& input) {
   if (const CoarseForm* coarse = meansShown(parts))
-    input.titles.push_back(trFormat("without the form: {}", coarseFormState(*coarse)));
+    input.titles.push_back(screenText(trFormat("without the form: {}", coarseFormState(*coarse))));
   if (previews.empty()) return;
   input.titles.emplace_back(tr("unchanged"));
   for (const PreviewPicture& preview : previews) input.titles.push_back(preview.title);
   // One plot has room for only one title.
   if (input.arrangement == render::Arrangement::kSplit)
     input.titles = {trFormat("left: unchanged, right: {}", input.titles[1]), ""};
+  for (std::string& title : input.titles) title = screenText(title);
 }
 
 }  // namespace

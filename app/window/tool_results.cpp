@@ -1,5 +1,6 @@
 #include "app/window/tool_results.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "app/window/overlays.h"
@@ -28,7 +29,11 @@ void noteHeights(Parts& p) {
 }  // namespace
 
 void ToolResults::begin(Parts& parts) {
-  form_ = parts.document.client()->field().formOver();
+  const LoopClient& client = *parts.document.client();
+  form_ = client.field().formOver();
+  step_ = client.history().number();
+  stepped_ = false;
+  extremes_ = client.upright().reader().bounds();
   noteHeights(parts);
 }
 
@@ -44,10 +49,35 @@ void ToolResults::followForm(Parts& p) {
   p.picture.requestRedraw();
 }
 
+// Colours whose range the picture finds follow a step that moves the extremes: after outliers are gone they would leave half of
+// themselves to nothing. Under a brush and after it they stay, since a hand compares what it sees.
+void ToolResults::followExtremes(Parts& p) {
+  const LoopClient& client = *p.document.client();
+  const engine::History& history = client.history();
+  const std::int64_t now = history.number();
+  if (now != step_) {
+    const auto changesHeights = [&](std::int64_t step) {
+      if (step <= history.first() || step > history.last()) return false;
+      const engine::StepKind kind = history.info(step).kind;
+      return kind == engine::StepKind::kFilter || kind == engine::StepKind::kImport;
+    };
+    for (std::int64_t step = std::min(now, step_) + 1; step <= std::max(now, step_); ++step)
+      stepped_ = stepped_ || changesHeights(step);
+    step_ = now;
+  }
+  if (!stepped_ || client.strokeIsUnderWay() || !(client.upright() == history.current())) return;
+  stepped_ = false;
+  const engine::HeightBounds extremes = client.upright().reader().bounds();
+  if (extremes == std::exchange(extremes_, extremes)) return;
+  p.picture.refreshColours();
+  p.picture.requestRedraw();
+}
+
 std::optional<std::string> ToolResults::take(Parts& p) {
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
   followForm(p);
+  followExtremes(p);
   const auto seen = [&] { return p.picture.seenPart(client.field().grid(), p.view); };
   if (p.filters.wantsView()) p.filters.look(seen());
   if (p.heights.wantsView()) p.heights.look(seen());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -18,8 +19,13 @@ class ToolResults {
 
  private:
   void followForm(Parts& parts);
+  void followExtremes(Parts& parts);
 
   engine::FieldForm form_;  // over the field of the last frame
+  std::int64_t step_ = 0;   // of the last frame
+  bool stepped_ =
+      false;  // a step that is none of a brush was made or taken back, and its colours are not found yet
+  engine::HeightBounds extremes_;  // by which they were found
 };
 
 }  // namespace fettle::app

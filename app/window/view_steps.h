@@ -151,7 +151,11 @@ inline void enterPanels(Parts& p) {
   p.window.enterPanels();
 }
 inline void nextMap(Parts& p) {
-  next(p.settings.display.map, 5);
+  if (ColourRange::quantityOf(p.picture.shown()) == render::Quantity::kDeviation)
+    p.feedback.status =
+        tr("what is shown has a sign: its colours are white at zero, and K chooses those of heights");
+  else
+    next(p.settings.display.map, 5);
 }
 inline void stereo(Parts& p) {
   next(p.settings.display.stereo, 3);

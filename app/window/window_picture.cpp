@@ -31,7 +31,7 @@ bool looksAlike(const render::FrameInput& a, const render::FrameInput& b) {
 
 bool same(const render::Shown& a, const render::Shown& b) {
   return a.versions == b.versions && a.original == b.original && a.marks == b.marks &&
-         a.accepted == b.accepted;
+         a.accepted == b.accepted && a.difference == b.difference;
 }
 
 }  // namespace
@@ -165,6 +165,10 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
 
 void WindowPicture::refreshRanges() {
   if (live_) live_->refreshRanges();
+}
+
+void WindowPicture::refreshColours() {
+  if (live_) live_->refreshColours();
 }
 
 bool WindowPicture::inside(double x, double y) const {

@@ -81,6 +81,8 @@ class WindowPicture {
   [[nodiscard]] bool draw(render::FrameInput input, Draws draws, std::string& status);
   /// Computes the ranges of colours again.
   void refreshRanges();
+  /// LivePicture::refreshColours().
+  void refreshColours();
 
   [[nodiscard]] const render::Shown& shown() const noexcept { return shown_; }
   [[nodiscard]] bool empty() const noexcept { return shown_.versions.empty(); }

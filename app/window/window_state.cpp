@@ -133,6 +133,9 @@ void addBrushAndView(const Parts& p, Report& r) {
   r["colours"] = {rounded(range.low), rounded(range.high)};
   const render::Shown& shown = p.picture.shown();
   const RangeRule& rule = ColourRange::ruleOf(display, ColourRange::quantityOf(shown));
+  r["colours_are"] = shown.original ? shown.difference.name : "height";
+  r["colour_map"] = static_cast<int>(p.colours.colouring(display, ColourRange::quantityOf(shown)).map);
+  r["marks_tinted"] = shown.marks == render::MarksOverlay::kShow;
   static constexpr const char* kRules[] = {"automatic", "share", "all", "typed"};
   r["colour_rule"] = kRules[static_cast<std::size_t>(rule.kind)];
   r["contour_step"] = p.picture.figures().contour_step;

@@ -203,6 +203,19 @@ std::string biasWarning(const Report& fit, bool vertical) {
                      vertical ? "take a larger region" : "--distance vertical has less of it");
 }
 
+std::string errorNoiseText(const Report& report) {
+  if (report["noise_mm"].is_null()) return {};
+  const auto read = [](double mm) {
+    const ReadAs as = readLengthAs(mm, 1.0, "mm");
+    return fmt::format("{:.4g} {}", mm / as.size, as.name);
+  };
+  std::string text = "noise between samples " + read(report["noise_mm"].get<double>());
+  for (const auto& [key, name] : {std::pair("noise_rows_mm", "rows"), {"noise_columns_mm", "columns"}})
+    if (const double mm = report[key].get<double>(); mm > 0.0)
+      text += fmt::format(", of whole {} {}", name, read(mm));
+  return text;
+}
+
 std::vector<FitLine> relationLines(const Report& between) {
   std::vector<FitLine> lines;
   for (const auto& [key, unit, title] : {std::tuple("angle", "deg", "angle"),

@@ -34,6 +34,10 @@ struct FitLine {
 /// Of the figure of a fitReport() that noise moves most on average in parts of its standard error, where that is more than a third of it: a warning;
 /// else empty.
 [[nodiscard]] std::string biasWarning(const Report& fit, bool vertical);
+/// The noise that standard errors are by, of the report of fits or of form (`noise_mm`, `noise_rows_mm`, `noise_columns_mm`): "noise
+/// between samples 0.31 um, of whole rows 2 um"; empty where it is not known.
+[[nodiscard]] std::string errorNoiseText(const Report& report);
+
 /// The same lines of a relationReport(), those that there are.
 [[nodiscard]] std::vector<FitLine> relationLines(const Report& between);
 

@@ -100,6 +100,7 @@ struct LivePicture::Impl {
   LiveEyes eyes;
   LiveFields fields;
   std::optional<PictureSpans> spans;
+  bool colours_outdated = false;  // spans->colours are of a state before
   PatchTreeCache patch_tree_cache;
   Canvas canvas;
   std::optional<SeenFrame> seen;
@@ -174,7 +175,11 @@ engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input,
         "a headset's eyes see a whole picture of one version in perspective, without decorations", "picture",
         "see FrameInput::eyes");
   const Shown& shown = fields.shown();
-  if (!spans) spans = spansOf(shown.versions, shown.original);
+  if (!spans)
+    spans = spansOf(shown.versions, shown.original);
+  else if (colours_outdated)
+    spans->colours = spansOf(shown.versions, shown.original).colours;
+  colours_outdated = false;
   engine::Result<PicturePlan> planned = planFrame(input, shown, *spans);
   if (!planned) return tl::unexpected(planned.error());
   for (const Rectangle& plot : planned->layout.plots)
@@ -493,6 +498,10 @@ std::optional<Framing> LivePicture::framing() const {
 
 void LivePicture::refreshRanges() {
   impl_->spans.reset();
+}
+
+void LivePicture::refreshColours() {
+  impl_->colours_outdated = true;
 }
 
 void LivePicture::finish() {

@@ -84,7 +84,8 @@ void appendStylus(const StylusState& state, double mm_per_newton, std::vector<Ov
 struct Shown {
   std::vector<engine::Version> versions;  ///< 1 .. 5, not empty; their grids may differ
   std::optional<engine::Version>
-      original;  ///< colours show version - original; all must have its width and height
+      original;             ///< colours show version - original; all must have its width and height
+  Difference difference{};  ///< what that is
   MarksOverlay marks = MarksOverlay::kHide;
   /// Marks of the first version that this state of the same field lacks are suggested ones, and are drawn in
   /// another colour.
@@ -323,6 +324,8 @@ class LivePicture {
 
   /// The next frame computes the ranges of colours and camera again.
   void refreshRanges();
+  /// The same of colours alone: the surface stays where it is.
+  void refreshColours();
 
   /// Waits until all frames are completed.
   void finish();

@@ -156,6 +156,7 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
   PictureSpec spec;
   spec.view = input.view;
   spec.deviation_from = shown.original;
+  spec.difference = shown.difference;
   spec.range = input.range;
   spec.marks = shown.marks;
   spec.marks_opacity = input.marks_opacity;

@@ -18,8 +18,8 @@ using ColourTable = std::array<glm::vec3, 256>;
 /// values, close to even in perceived lightness.
 [[nodiscard]] const ColourTable& colourTable(ColourMap map);
 
-/// The quantity that kAuto depends on.
-enum class Quantity { kHeight, kDeviation };
+/// The quantity that kAuto depends on. kOneSign: a difference of which all lies on one side of zero.
+enum class Quantity { kHeight, kDeviation, kOneSign };
 [[nodiscard]] ColourMap resolve(ColourMap map, Quantity quantity) noexcept;
 
 /// The colour of a value between low (first colour) and high (last), interpolated linearly between the

@@ -49,7 +49,7 @@ struct DecorationContent {
   ValueRange range;                   ///< of the colours [the field's height unit]
   bool colours = true;                ///< the picture has them: it gets the bar
   bool below = false, above = false;  ///< values outside it exist: the bar gets a pointed end
-  std::string quantity;               ///< "height" or "deviation"
+  std::string quantity;               ///< "height", or what the difference is
   std::string note;                   ///< small, under the bar; may be empty
   ShownUnit height_unit;              ///< in which the colours' numbers are written
   engine::LengthUnit lateral_unit;

@@ -121,12 +121,21 @@ struct Colouring {
   friend bool operator==(const Colouring&, const Colouring&) = default;
 };
 
+/// What the difference of a field from another one is.
+struct Difference {
+  std::string name = "deviation";  ///< over the colour bar
+  /// All of it lies on one side of zero: colours begin there and end at the farthest value, and the map is that of heights.
+  bool one_sign = false;
+  friend bool operator==(const Difference&, const Difference&) = default;
+};
+
 /// What a picture shows of its fields, and how.
 struct PictureSpec {
   View view;
   /// Colours show (field - this) instead of the height, symmetric about zero. Must have the width and height
   /// of all fields. A sample that is a hole in either is drawn as no-data.
   std::optional<engine::Version> deviation_from;
+  Difference difference{};  ///< of the field from that
   /// Range of the colours. Empty: robust, so that single spikes do not use up the colours
   /// (render/plan/value_range.h). For a deviation the larger absolute value of the two ends counts, on both
   /// sides.

@@ -91,7 +91,7 @@ glm::vec4 vec4Of(const glm::vec3& v, double w) {
 // Of heights as they are now: the spans may be those of before an edit, so that colours stay as they are. Deviations have no
 // pyramid; theirs are those of the span.
 ValueRange extremesNow(std::span<const engine::Version> fields, Quantity quantity, const ValueSpan& span) {
-  if (quantity == Quantity::kDeviation) return span.extreme;
+  if (quantity != Quantity::kHeight) return span.extreme;
   const double unit = fields.front().grid().height_unit.mm;
   ValueRange extreme{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const engine::Version& v : fields) {
@@ -163,16 +163,21 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   const double cut_z = (highest_drawn - reference) * mm_per_unit;
 
   // Colours.
-  const Quantity quantity = spec.deviation_from ? Quantity::kDeviation : Quantity::kHeight;
+  const Quantity quantity = !spec.deviation_from       ? Quantity::kHeight
+                            : spec.difference.one_sign ? Quantity::kOneSign
+                                                       : Quantity::kDeviation;
   plan.map = resolve(spec.colouring.map, quantity);
   plan.palette = paletteOf(spec.theme, plan.map);
   // Constant values: a bar of about the size of the relief, or of a hundredth of the field's width.
   const double flat_half =
       relief > 0.0 ? roundDown125(0.01 * relief) : roundDown125(0.01 * std::max(widest, 1e-6) / unit.mm);
   plan.range = opened(spec.range ? *spec.range : colours.robust, flat_half);
-  if (quantity == Quantity::kDeviation) {
+  if (quantity != Quantity::kHeight) {
     const double limit = std::max(std::abs(plan.range.low), std::abs(plan.range.high));
-    plan.range = {-limit, limit};
+    // Rounding may leave a little of the other sign.
+    const bool below = -colours.extreme.low > colours.extreme.high;
+    plan.range = {quantity == Quantity::kOneSign && !below ? 0.0 : -limit,
+                  quantity == Quantity::kOneSign && below ? 0.0 : limit};
   }
 
   const std::vector<Tick> steps = ticks(plan.range.low, plan.range.high, 13);
@@ -246,9 +251,11 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   DecorationContent& f = plan.decorations;
   f.range = plan.range;
   const ValueRange extreme = extremesNow(fields, quantity, colours);
-  f.below = !colours.empty && extreme.low < plan.range.low;
-  f.above = !colours.empty && extreme.high > plan.range.high;
-  f.quantity = quantity == Quantity::kDeviation ? "deviation" : "height";
+  // What rounding leaves on the other side of zero is no value that is missing.
+  const double rounding = quantity == Quantity::kOneSign ? 1e-6 * (plan.range.high - plan.range.low) : 0.0;
+  f.below = !colours.empty && extreme.low < plan.range.low - rounding;
+  f.above = !colours.empty && extreme.high > plan.range.high + rounding;
+  f.quantity = quantity == Quantity::kHeight ? "height" : spec.difference.name;
   f.height_unit = unitOfColours(quantity, fields.front().grid(), heights.robust, plan.range);
   f.lateral_unit = fields.front().grid().lateral_unit;
   f.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
@@ -262,7 +269,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   if (f.below || f.above) {
     f.note = fmt::format("lowest {}\nhighest {}", shortNumber(extreme.low * f.height_unit.per_unit),
                          shortNumber(extreme.high * f.height_unit.per_unit));
-    if (quantity == Quantity::kDeviation && !spec.range)
+    if (quantity != Quantity::kHeight && !spec.range)
       f.note += fmt::format("\nbar: {:.3g} %", 100.0 * colours.share);
   }
   if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})

@@ -30,6 +30,11 @@ ImU32 ofLight(const glm::vec3& light) {
 render::ValueRange axisOf(const render::ValueSample& values, Quantity quantity,
                           const render::ValueRange& range) {
   const double width = range.high - range.low;
+  if (quantity == Quantity::kOneSign) {
+    const double usual = values.empty() ? 0.0 : values.symmetric(0.998).high;
+    const double end = std::clamp(usual, 1.3 * width, 6.0 * width);
+    return range.low < 0.0 ? render::ValueRange{-end, 0.0} : render::ValueRange{0.0, end};
+  }
   if (quantity == Quantity::kDeviation) {
     const double usual = values.empty() ? 0.0 : values.symmetric(0.998).high;
     const double end = std::clamp(usual, 0.65 * width, 3.0 * width);
@@ -101,9 +106,10 @@ void drawHandle(const Chart& chart, double value, bool held) {
 // The ends after the handle was dragged to `x`; a pixel remains between two of them.
 render::ValueRange draggedTo(const Chart& chart, bool high, double x) {
   const double value = chart.valueAt(x), least = (chart.axis.high - chart.axis.low) / chart.size.x;
-  if (chart.quantity == Quantity::kDeviation) {
+  if (ColourRange::isChange(chart.quantity)) {
     const double limit = std::max(std::abs(value), least);
-    return {-limit, limit};
+    const bool one = chart.quantity == Quantity::kOneSign;
+    return {one && chart.range.low >= 0.0 ? 0.0 : -limit, one && chart.range.high <= 0.0 ? 0.0 : limit};
   }
   return high ? render::ValueRange{chart.range.low, std::max(value, chart.range.low + least)}
               : render::ValueRange{std::min(value, chart.range.high - least), chart.range.high};
@@ -140,8 +146,10 @@ void histogram(const render::ValueSample& values, Quantity quantity, const rende
       chart.corner, ImVec2(chart.corner.x + chart.size.x, chart.corner.y + chart.size.y),
       colourOf(PanelColour::kField), 3.0F);
   drawBars(chart, values, colours.colouring(display, quantity));
-  drawHandle(chart, chart.range.low, colours.drag && !colours.drag->high);
-  drawHandle(chart, chart.range.high, colours.drag && colours.drag->high);
+  // Zero, where all lies on one side of it, stays an end.
+  const bool one = quantity == Quantity::kOneSign;
+  if (!one || chart.range.low < 0.0) drawHandle(chart, chart.range.low, colours.drag && !colours.drag->high);
+  if (!one || chart.range.low >= 0.0) drawHandle(chart, chart.range.high, colours.drag && colours.drag->high);
   colours.handles = ColourRange::Handles{chart.xOf(chart.range.low), chart.xOf(chart.range.high),
                                          chart.corner.y + 0.5 * chart.size.y};
   if (ImGui::IsItemHovered() && !colours.drag) {
@@ -157,7 +165,7 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
   // "by hand" is what dragging and typing leave behind.
   const bool by_hand = rule.kind == RuleKind::kTyped;
   const char* const says =
-      quantity == Quantity::kDeviation
+      ColourRange::isChange(quantity)
           ? tr("usual: six times the median of what changed, or all but half a percent of it\na share: so "
                "many "
                "of "
@@ -185,11 +193,13 @@ void ruleFields(RangeRule& rule, Quantity quantity, const render::ValueSample* v
                              ? std::string("...")
                              : fmt::format("{:.4g} %{}", 100.0 * values->within(range.low, range.high),
                                            quantity == Quantity::kDeviation ? tr(" of the changes") : ""));
-  // Colours do not change while a brush works, nor after: what was found when they were switched on stays.
+  // Colours do not change while a brush works, nor after: what was found when they were switched on, or by the last step of
+  // another kind, stays.
   ImGui::BeginDisabled(rule.kind != RuleKind::kAutomatic);
   if (pressButton(
           "Find the range again",
-          "Colours keep their range while you work; this takes it from the values as they are now.")) {
+          "Colours keep their range under a brush and follow other steps; this takes it from the values as "
+          "they are now.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }
@@ -200,10 +210,11 @@ void rangeEnds(const render::ValueRange& range, Quantity quantity, const render:
                ColourRange& colours, Display& display, WindowPicture& picture) {
   render::ValueRange ends = range;
   bool changed = false;
-  if (quantity == Quantity::kDeviation) {
+  if (ColourRange::isChange(quantity)) {
+    double limit = std::max(std::abs(ends.low), std::abs(ends.high));
     changed = field("up to", "The change at which the colours end, up and down.",
-                    [&] { return typeLength("##limit", ends.high, 1e-30, 1e30, unit); });
-    ends.low = -ends.high;
+                    [&] { return typeLength("##limit", limit, 1e-30, 1e30, unit); });
+    ends = {-limit, limit};
   } else {
     changed |= field("highest", "The value with the last colour; what lies above has it, too.",
                      [&] { return typeLength("##highest", ends.high, -1e30, 1e30, unit); });
@@ -223,18 +234,39 @@ void rangeEnds(const render::ValueRange& range, Quantity quantity, const render:
   picture.requestRedraw();
 }
 
+void mapField(Quantity quantity, Display& display, WindowPicture& picture) {
+  constexpr const char* kSays = textOf(
+      "The colour map of heights. Automatic: viridis; cividis is seen alike by the colour-blind. What "
+      "has a sign, as a change or a deviation, has blue below zero, white at it and red above.");
+  if (quantity == Quantity::kDeviation) {
+    (void)field("colours", kSays, [] {
+      noField("diverging, white at zero");
+      return false;
+    });
+    return;
+  }
+  int map = static_cast<int>(display.map);
+  if (!field("colours", kSays, [&] {
+        return chooseWord("##colours", map, {"automatic", "viridis", "cividis", "grey", "diverging"});
+      }))
+    return;
+  display.map = static_cast<render::ColourMap>(map);
+  picture.requestRedraw();
+}
+
 }  // namespace
 
 void colourPanel(const PanelContext& context, Display& display, ColourRange& colours,
                  WindowPicture& picture) {
   actionTick("colours show the change", display.deviation, Action::kDeviation, context.act);
   const Quantity quantity = ColourRange::quantityOf(picture.shown());
-  const bool change = quantity == Quantity::kDeviation;
+  const bool change = ColourRange::isChange(quantity);
   const render::ValueRange range = picture.figures().range;
   if (!(range.low < range.high)) return;  // no frame yet
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit unit =
-      change ? render::deviationUnit(grid.height_unit, context.units.change, range.high)
+      change ? render::deviationUnit(grid.height_unit, context.units.change,
+                                     std::max(std::abs(range.low), std::abs(range.high)))
              : context.units.height;
   const render::ValueSample* const values = colours.sample(quantity);
   if (values != nullptr) {
@@ -248,21 +280,12 @@ void colourPanel(const PanelContext& context, Display& display, ColourRange& col
   beginFields();
   ruleFields(ColourRange::ruleOf(display, quantity), quantity, values, range, picture);
   rangeEnds(range, quantity, unit, colours, display, picture);
-  if (change && field("as zero up to",
-                      "A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.",
-                      [&] { return typeLength("##tolerance", colours.typed.tolerance, 0.0, 1e30, unit); }))
+  if (quantity == Quantity::kDeviation &&
+      field("as zero up to",
+            "A tolerance: smaller changes are white, larger ones differ from it at once. 0: none.",
+            [&] { return typeLength("##tolerance", colours.typed.tolerance, 0.0, 1e30, unit); }))
     picture.requestRedraw();
-  int map = static_cast<int>(display.map);
-  if (field("colours",
-            "The colour map. Automatic: one for heights, and one with white in its middle for changes; "
-            "cividis is "
-            "seen alike by the colour-blind.",
-            [&] {
-              return chooseWord("##colours", map, {"automatic", "viridis", "cividis", "grey", "diverging"});
-            })) {
-    display.map = static_cast<render::ColourMap>(map);
-    picture.requestRedraw();
-  }
+  mapField(quantity, display, picture);
   endFields();
   if (tickBox("in steps", display.colour_steps,
               "Each stretch of values has one colour, as on a map; else colours blend."))

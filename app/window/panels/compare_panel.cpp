@@ -6,6 +6,7 @@
 
 #include "app/window/panels/moves_choice.h"
 #include "app/window/panels/panels.h"
+#include "app/window/screen_text.h"
 #include "engine/io/import.h"
 
 namespace fettle::app {
@@ -18,11 +19,12 @@ constexpr int kComparedLines = 15, kUncomparedLines = 3;
 void meshFields(const PanelContext& context, NominalChoice& nominal) {
   (void)field("mesh in", "The unit of the numbers of an .stl; only one that Fettle wrote says it.", [&] {
     constexpr const char* kAsStated = textOf("as it says, else mm");
-    if (!ImGui::BeginCombo("##mesh unit", nominal.unit.empty() ? tr(kAsStated) : nominal.unit.c_str()))
+    if (!ImGui::BeginCombo("##mesh unit",
+                           nominal.unit.empty() ? tr(kAsStated) : screenText(nominal.unit).c_str()))
       return false;
     if (ImGui::Selectable(labelOf(kAsStated), nominal.unit.empty())) nominal.unit.clear();
     for (const std::string& unit : engine::lengthUnitNames())
-      if (ImGui::Selectable(unit.c_str(), unit == nominal.unit)) nominal.unit = unit;
+      if (ImGui::Selectable(screenText(unit).c_str(), unit == nominal.unit)) nominal.unit = unit;
     ImGui::EndCombo();
     return true;
   });
@@ -69,7 +71,8 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
     picture.requestRedraw();
   }
   if (tickBox("colours show the deviation from it", compare.shown,
-              "Red where this scan is higher than the other, blue where it is lower.")) {
+              "Red where this scan is higher than the other, blue where it is lower. Marks have no colour "
+              "meanwhile, unless a tool sets them.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

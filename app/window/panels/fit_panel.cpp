@@ -8,6 +8,7 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
@@ -55,7 +56,7 @@ void fitTable(const std::vector<FitLine>& lines, const char* id) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(std::string(tr(std::string_view(line.name))).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(line.text.c_str());
+    ImGui::TextUnformatted(screenText(line.text).c_str());
   }
   ImGui::EndTable();
 }
@@ -102,6 +103,8 @@ void outcome(FitTool& fit) {
       writeWrapped(trFormat("{} samples lie apart and do not count", left));
     fitTable(fitLines(one), trFormat("fit {}", ++number).c_str());
   }
+  if (const std::string noise = errorNoiseText(fits.report); !noise.empty())
+    writeIn(render::PanelColour::kMuted, trFormat("errors are by the {}", noise));
   for (const std::string& warning : fits.warnings) writeIn(render::PanelColour::kWarning, warning);
   for (const Report& one : fits.report["not_fitted"])
     writeIn(render::PanelColour::kMuted,
@@ -144,7 +147,8 @@ void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture)
     picture.requestRedraw();
   }
   if (tickBox("colours show the distances from it", fit.shown,
-              "Red where the surface lies above the shape, blue where it lies below.")) {
+              "Red where the surface lies above the shape, blue where it lies below. Marks have no colour "
+              "meanwhile, unless a tool sets them.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

@@ -87,5 +87,33 @@ TEST(ColourRange, what_is_typed_keeps_its_samples_upside_down_and_ends_with_the_
   EXPECT_EQ(colours.typed.tolerance, 0.0);
 }
 
+TEST(ColourRange, what_has_a_sign_has_the_map_with_a_middle) {
+  const ColourRange colours;
+  Display display;
+  for (const render::ColourMap map : {render::ColourMap::kAuto, render::ColourMap::kViridis,
+                                      render::ColourMap::kCividis, render::ColourMap::kGrey}) {
+    display.map = map;
+    EXPECT_EQ(colours.colouring(display, render::Quantity::kHeight).map, map);
+    EXPECT_EQ(colours.colouring(display, render::Quantity::kOneSign).map, map);
+    EXPECT_EQ(colours.colouring(display, render::Quantity::kDeviation).map, render::ColourMap::kDiverging);
+  }
+}
+
+TEST(ColourRange, a_difference_of_one_sign_has_the_limit_of_changes) {
+  ColourRange colours;
+  Display display;
+  render::Shown shown;
+  shown.versions = {rampOf(3.0)};
+  shown.original = rampOf();
+  shown.difference = {"hill height", true};
+  EXPECT_EQ(ColourRange::quantityOf(shown), render::Quantity::kOneSign);
+  colours.type(display, shown, {0.0, 2.0});
+  EXPECT_EQ(display.heights.kind, RuleKind::kAutomatic);
+  EXPECT_EQ(display.changes.kind, RuleKind::kTyped);
+  EXPECT_EQ(colours.range(display, shown), (render::ValueRange{-2, 2})) << "the picture takes its half";
+  colours.type(display, shown, {-1.5, 0.0});
+  EXPECT_EQ(colours.range(display, shown)->high, 1.5);
+}
+
 }  // namespace
 }  // namespace fettle::app

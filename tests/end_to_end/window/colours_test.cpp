@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <vector>
 
+#include "engine/field/builder.h"
+#include "engine/formats/formats.h"
 #include "tests/end_to_end/window/window_fixture.h"
 
 namespace fettle::tests {
@@ -139,6 +142,80 @@ TEST_F(ColoursTest, a_small_change_is_seen_beside_an_edge_that_moved_and_a_toler
   EXPECT_EQ(kept["colour_rule"], "share");
   EXPECT_EQ(kept["tolerance"], 0.0);
   (void)quit(next);
+}
+
+TEST_F(ColoursTest, what_has_a_sign_keeps_the_map_with_a_middle) {
+  const auto program = start({scan});
+  User user(display, *program, "signed");
+  (void)opened(*program);
+  (void)user.key("s");
+  (void)user.stroke({250, 330}, {480, 400}, 10);
+  (void)user.key("Escape");
+  EXPECT_EQ(user.key("k")["map"], 1) << "heights in another map";
+  user.at({20, 790});
+  const State change = user.key("d");
+  constexpr int kDiverging = 4;
+  EXPECT_EQ(change["colour_map"], kDiverging);
+  EXPECT_EQ(change["colours"][0], -change["colours"][1].get<double>());
+  EXPECT_EQ(change["colours_are"], "deviation");
+  const Screen seen = user.look("change");
+  EXPECT_TRUE(user.reads("diverging, white at zero"));
+  const State next = user.key("k");
+  EXPECT_EQ(next["colour_map"], kDiverging);
+  EXPECT_EQ(next["map"], 1) << "that of heights is chosen while they are seen";
+  EXPECT_NE(next["status"].get<std::string>().find("white at zero"), std::string::npos);
+  (void)user.same("the same map", seen);
+  EXPECT_EQ(user.key("d")["colour_map"], 1);
+  (void)quitWithoutSaving(user);
+}
+
+// Outliers that are gone would leave half of the colours to nothing.
+TEST_F(ColoursTest, the_range_follows_a_step_that_moves_the_extremes) {
+  // A tenth of the scan lies far below the rest: more than single spikes, which never count.
+  const std::string pit = folder.file("pit.tif");
+  const engine::Version field = load(scan);
+  std::vector<float> z;
+  for (std::int32_t r = 0; r < field.grid().height; ++r)
+    for (std::int32_t c = 0; c < field.grid().width; ++c)
+      z.push_back(c < field.grid().width / 10 ? -40.0F : field.reader().heightAt(c, r));
+  engine::JobControl job;
+  ASSERT_TRUE(engine::exportField(engine::makeField(field.grid(), z, {}), pit, {}, job));
+  const auto program = start({pit});
+  User user(display, *program, "extremes");
+  (void)opened(*program);
+  const State first = counted(*program);
+  EXPECT_EQ(first["colour_rule"], "automatic");
+  EXPECT_LT(first["colours"][0].get<double>(), -39.0);
+  (void)user.click("Colours");
+  (void)user.click("Remove samples");
+  user.at({20, 790});
+  const Screen before = user.look("with the pit");
+  (void)user.enter("lower than", "-20 mm");
+  const State after = user.click("Remove");
+  EXPECT_EQ(after["steps"], 1) << after["notices"].dump();
+  EXPECT_GT(after["colours"][0].get<double>(), -20.0) << "it follows";
+  EXPECT_EQ(after["view"], first["view"]);
+  user.at({20, 790});
+  const Screen gone = user.changed("without it", before, 2000);
+  EXPECT_EQ(user.key("ctrl+z")["colours"], first["colours"]);
+  user.at({20, 790});
+  (void)user.same("with the pit again", before);
+  EXPECT_EQ(user.key("ctrl+shift+z")["colours"], after["colours"]);
+  user.at({20, 790});
+  (void)user.same("without it again", gone);
+  // A brush leaves them, whatever it does to the extremes; and what a person set stays.
+  (void)user.key("s");
+  (void)user.stroke({300, 330}, {400, 380}, 6);
+  (void)user.key("Escape");
+  EXPECT_EQ(program->now()["steps"], 2);
+  EXPECT_EQ(program->now()["colours"], after["colours"]);
+  (void)user.click("Remove samples");
+  (void)user.click("Colours");
+  const State typed = user.enter("highest", "7.5");
+  EXPECT_EQ(typed["colour_rule"], "typed");
+  (void)user.key("ctrl+z");
+  EXPECT_EQ(user.key("ctrl+z")["colours"], typed["colours"]);
+  (void)quit(user);
 }
 
 }  // namespace

@@ -201,12 +201,22 @@ TEST_F(ResultFiles, hills_are_found_and_written_as_the_command_does) {
   EXPECT_TRUE(user.reads(fmt::format("{} hills at least", found["features"]["count"].get<int>())));
   user.at({20, 890});
   const Screen coloured = user.changed("heights above saddles", before);
+  // The bar is of what is drawn: nothing lies below its saddle.
+  EXPECT_EQ(found["colours_are"], "hill height");
+  EXPECT_EQ(found["colours"][0], 0.0);
+  EXPECT_GT(found["colours"][1], 0.0);
   (void)write(user, "alt+w", "export features", folder.file("window.csv"));
   command({"features", scan, "--csv", folder.file("command.csv")});
   EXPECT_EQ(bytes(folder.file("window.csv")), bytes(folder.file("command.csv")));
   (void)user.click("hills");
   (void)user.click("dales");
-  EXPECT_EQ(user.click("Find")["features"]["kind"], "dales");
+  const State dales = user.click("Find");
+  EXPECT_EQ(dales["features"]["kind"], "dales");
+  EXPECT_EQ(dales["colours_are"], "dale depth");
+  EXPECT_EQ(dales["colours"][1], 0.0);
+  EXPECT_LT(dales["colours"][0], 0.0);
+  user.at({20, 890});
+  (void)user.changed("depths below saddles", coloured);
   (void)user.click("colours show heights above saddles");
   user.at({20, 890});
   (void)user.same("colours of the scan", before);
@@ -249,6 +259,44 @@ TEST_F(ResultFiles, shapes_are_fitted_and_written_as_the_command_does) {
   (void)user.key("alt+r");
   EXPECT_TRUE(user.reads("the field has changed since"));
   EXPECT_TRUE(user.click("Remove")["fits"].is_null());
+  (void)quitWithoutSaving(user);
+}
+
+TEST_F(ResultFiles, distances_from_a_fit_lie_under_no_tint_but_while_marks_are_set) {
+  openPanel("Fit");
+  const auto program = start({scan});
+  User user(display, *program, "fit of marks");
+  (void)opened(*program);
+  (void)user.key("7");
+  (void)user.key("b");
+  (void)user.drag(1, {240, 300}, {440, 440}, 6);
+  EXPECT_EQ(user.key("Escape")["marks_tinted"], true);
+  user.at({20, 890});
+  const Screen marked = user.look("marked");
+  (void)user.click("the simplest");
+  (void)user.click("plane");
+  (void)user.click("all samples");
+  (void)user.click("marked samples");
+  const State fitted = user.key("ctrl+shift+f");
+  ASSERT_TRUE(fitted["fits"].is_object()) << fitted["notices"].dump();
+  EXPECT_EQ(fitted["colours_are"], "distance");
+  EXPECT_EQ(fitted["marks_tinted"], false);
+  EXPECT_EQ(fitted["marks"], true) << "the setting stays";
+  EXPECT_TRUE(user.reads("errors are by the noise between samples"));
+  EXPECT_TRUE(user.reads("\u00b1")) << "errors are written one way";
+  EXPECT_FALSE(user.reads("+-"));
+  EXPECT_FALSE(user.reads(" um"));
+  user.at({20, 890});
+  const Screen distances = user.changed("distances", marked);
+  // A hand that marks sees what it marks.
+  EXPECT_EQ(user.key("b")["marks_tinted"], true);
+  EXPECT_EQ(user.key("Escape")["marks_tinted"], false);
+  user.at({20, 890});
+  (void)user.same("distances again", distances);
+  (void)user.click("colours show the distances from it");
+  EXPECT_EQ(program->now()["marks_tinted"], true);
+  user.at({20, 890});
+  (void)user.same("marked again", marked);
   (void)quitWithoutSaving(user);
 }
 

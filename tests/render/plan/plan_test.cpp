@@ -343,6 +343,33 @@ TEST(Plan, ContourLinesAreAsFarApartAsAskedOrAtTheStepsOfTheBar) {
   EXPECT_FALSE(plan());
 }
 
+// Heights over saddles, depths below them: half of a bar about zero would be of values that cannot be.
+TEST(Plan, ADifferenceOfOneSignHasItsNameAndTheBarFromZero) {
+  const auto level = [](int, int) { return 0; };
+  const std::vector<engine::Version> hills{fieldOf(gridOf(64, 64), [](int c, int) { return c % 8; })},
+      dales{fieldOf(gridOf(64, 64), [](int c, int) { return -(c % 8); })};
+  PictureSpec spec;
+  spec.deviation_from = fieldOf(gridOf(64, 64), level);
+  const auto plan = [&](const std::vector<engine::Version>& fields) {
+    return *planPicture(spec, fields, spansOf(fields, spec.deviation_from),
+                        layOut(spec.view, spec.decoration, 1, Titles::kNone));
+  };
+  EXPECT_EQ(plan(hills).range, (ValueRange{-7, 7}));
+  EXPECT_EQ(plan(hills).decorations.quantity, "deviation");
+  EXPECT_EQ(plan(hills).map, ColourMap::kDiverging);
+  spec.difference = {"hill height", true};
+  EXPECT_EQ(plan(hills).range, (ValueRange{0, 7}));
+  EXPECT_EQ(plan(hills).decorations.range, (ValueRange{0, 7}));
+  EXPECT_EQ(plan(hills).decorations.quantity, "hill height");
+  EXPECT_FALSE(plan(hills).decorations.below);
+  EXPECT_EQ(plan(hills).map, ColourMap::kViridis);
+  EXPECT_EQ(plan(dales).range, (ValueRange{-7, 0}));
+  EXPECT_FALSE(plan(dales).decorations.above);
+  spec.range = ValueRange{-3, 3};
+  EXPECT_EQ(plan(hills).range, (ValueRange{0, 3}));
+  EXPECT_TRUE(plan(hills).decorations.above);
+}
+
 // Colours stay as they were planned while heights are edited; what stands below them is what there is now.
 TEST(Plan, TheNoteNamesTheExtremesOfNowWhateverTheColoursWereChosenBy) {
   const auto sloped = [](int c, int) { return c; };
