@@ -315,11 +315,9 @@ inline void suggestFilters(Parts& p) {
   if (!p.suggester.busy()) p.suggester.search(clientOf(p));
 }
 inline void nextFilter(Parts& p) {
-  engine::FilterSpec& spec = p.filters.spec;
-  spec.kind = engine::filters()[(static_cast<std::size_t>(spec.kind) + 1) % engine::filters().size()].kind;
-  spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
-  spec.nesting_mm = engine::usualNesting(engine::filterOf(spec.kind), clientOf(p).field().grid());
-  if (!engine::filterOf(spec.kind).has_element) spec.element = engine::FilterSpec{}.element;
+  const std::size_t now = static_cast<std::size_t>(p.filters.spec.kind);
+  p.filters.chooseKind(engine::filters()[(now + 1) % engine::filters().size()].kind,
+                       clientOf(p).field().grid());
 }
 template <FilterPreview::Keep keep>
 void preview(Parts& p) {

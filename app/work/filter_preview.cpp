@@ -90,6 +90,22 @@ std::optional<double> FilterPreview::rangeOfNoise(const LoopClient& client) {
   return ready ? std::optional(ready->range_sigma) : std::nullopt;
 }
 
+void FilterPreview::chooseKind(engine::FilterKind kind, const engine::Grid& grid) {
+  if (kind == spec.kind) return;
+  said_[spec.kind] = spec;
+  const auto said = said_.find(kind);
+  engine::FilterSpec next;
+  if (said != said_.end()) {
+    next = said->second;
+  } else {
+    next.kind = kind;
+    next.nesting_mm = engine::usualNesting(engine::filterOf(kind), grid);
+  }
+  next.max_change = spec.max_change;
+  next.scope = spec.scope;
+  spec = next;
+}
+
 void FilterPreview::choose(const engine::FilterSpec& filter) {
   spec = limitedAs(spec, filter);
 }
@@ -224,6 +240,7 @@ void FilterPreview::cancel(LoopClient& client) {
 
 void FilterPreview::finish(LoopClient& client) {
   cancel(client);
+  said_.clear();  // its lengths may mean nothing in another field
   noise_.clear();
   (void)applying_.wait();
 }

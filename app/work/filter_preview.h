@@ -48,6 +48,9 @@ class FilterPreview {
 
   [[nodiscard]] bool measuresNoise() const noexcept { return noise_.busy(); }
 
+  /// Another filter in the fields, with the numbers that were said for it, else its usual ones on `grid`; limit of change and
+  /// scope stay as they are.
+  void chooseKind(engine::FilterKind kind, const engine::Grid& grid);
   /// Puts a filter with its numbers into the fields; the limit of change stays as it is.
   void choose(const engine::FilterSpec& filter);
   /// Whether the fields say this filter, whatever the limit of change.
@@ -113,6 +116,7 @@ class FilterPreview {
   void adopt(LoopClient& client, Variant variant);
 
   std::vector<Variant> variants_;
+  std::map<engine::FilterKind, engine::FilterSpec> said_;  // of filters that were in the fields before
   Keep keep_ = Keep::kReplace;
   bool apply_when_done_ = false;
   bool shown_instead_ = false;  // of a preview of another filter, which was to be applied

@@ -6,13 +6,15 @@
 
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
+#include "app/window/screen_text.h"
 
 namespace fettle::app {
 namespace {
 
 constexpr int kPreviewLines = 5;
 
-void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
+void kindField(FilterPreview& filters, const engine::Grid& grid) {
+  const engine::FilterSpec& spec = filters.spec;
   fieldName("filter", engine::filterOf(spec.kind).says);
   const bool open =
       ImGui::BeginCombo("##filter", tr(engine::filterOf(spec.kind).title), ImGuiComboFlags_HeightLargest);
@@ -23,13 +25,7 @@ void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
   for (const engine::Filter& each : engine::filters()) {
     const bool chosen = ImGui::Selectable(labelOf(each.title), each.kind == spec.kind);
     explain(each.says);
-    if (chosen && each.kind != spec.kind) {
-      spec.kind = each.kind;
-      spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
-      spec.nesting_mm = engine::usualNesting(each, grid);
-      if (!each.has_element) spec.element = engine::FilterSpec{}.element;
-      if (!each.window.exists()) spec.window = engine::FilterSpec{}.window;
-    }
+    if (chosen) filters.chooseKind(each.kind, grid);
   }
   ImGui::EndCombo();
 }
@@ -95,9 +91,10 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
                                          : "0: " + std::string(tr(std::string_view(filter.sigma.when_zero))));
     });
   // With its number as soon as that is known.
-  const std::string by_noise = range_of_noise
-                                   ? trFormat("{} by the noise", lengthText(*range_of_noise, units.change, 3))
-                                   : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
+  const std::string by_noise =
+      range_of_noise
+          ? trFormat("{} by the noise between samples", lengthText(*range_of_noise, units.change, 3))
+          : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
   if (filter.range_sigma.exists())
     (void)field(
         "range sigma",
@@ -166,7 +163,8 @@ void previewList(bool anything_marked, const render::ShownUnit& change, FilterPr
                                   : std::string());
     const std::string warning = engine::warningOf(v.result.report);
     ImGui::TextUnformatted(
-        fmt::format("{}\n{}{}{}", filterName(v.spec), came, warning.empty() ? "" : ";\n", warning).c_str());
+        screenText(fmt::format("{}\n{}{}{}", filterName(v.spec), came, warning.empty() ? "" : ";\n", warning))
+            .c_str());
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);
@@ -178,7 +176,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   engine::FilterSpec& spec = filters.spec;
   const engine::Grid& grid = context.client.field().grid();
   beginFields();
-  kindField(spec, grid);
+  kindField(filters, grid);
   sizeFields(spec, grid, context.units);
   sigmaFields(spec, context.units, filters.rangeOfNoise(context.client));
   (void)limitField(context, spec.max_change, Action::kFilterMaxChange);

@@ -195,13 +195,34 @@ TEST_F(WindowTest, a_preview_follows_its_fields) {
   EXPECT_EQ(user.key("o")["preview_is_behind"], false);
   EXPECT_EQ(program->now()["steps"], 0);
   const State another = user.key("n");
-  EXPECT_EQ(another["filter"], "Bilateral 9 x 9");
+  EXPECT_EQ(another["filter"], "Bilateral 3 x 3") << "another filter has numbers of its own";
   EXPECT_EQ(another["variants"], State{"Median 9 x 9"});
   EXPECT_EQ(another["preview_is_behind"], true);
   EXPECT_TRUE(user.reads("Show it"));
   (void)user.look("another filter");
-  EXPECT_EQ(user.click("Show it")["variants"], State{"Bilateral 9 x 9"});
+  EXPECT_EQ(user.click("Show it")["variants"], State{"Bilateral 3 x 3"});
   EXPECT_TRUE(user.reads("Preview"));
+  (void)quit(user);
+}
+
+// What is put beside a preview is the filter that is chosen now, with its own numbers.
+TEST_F(WindowTest, a_filter_put_beside_another_has_the_numbers_said_for_it) {
+  const auto program = start({scan});
+  User user(display, *program, "beside");
+  (void)opened(*program);
+  (void)user.click("Tool");
+  for (int i = 0; i < 2; ++i) (void)user.key("n");
+  EXPECT_EQ(user.enter("window", "11")["filter"], "Median 11 x 11");
+  EXPECT_EQ(user.key("p")["variants"], State{"Median 11 x 11"});
+  (void)user.click("Median");
+  EXPECT_EQ(user.click("Gaussian")["filter"], "Gaussian 3 x 3");
+  EXPECT_EQ(user.click("Add preview")["variants"], (State{"Median 11 x 11", "Gaussian 3 x 3"}));
+  EXPECT_EQ(user.enter("window", "7")["filter"], "Gaussian 7 x 7");
+  // Back to the first one, as it was said.
+  (void)user.click("Gaussian");
+  EXPECT_EQ(user.click("Median")["filter"], "Median 11 x 11");
+  (void)user.click("Median");
+  EXPECT_EQ(user.click("Gaussian")["filter"], "Gaussian 7 x 7");
   (void)quit(user);
 }
 
