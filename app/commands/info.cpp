@@ -246,11 +246,13 @@ void addInfo(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
       batchStatus);
   command.notes(
-      "noise: standard deviation in the height unit, in windows of 16 x 16 samples that show no edge.\n"
+      "noise: standard deviation of the whole scan's in the height unit, in windows of 16 x 16 samples that "
+      "show no edge.\n"
       "noise_uncorrelated: share of its square that neighbours do not have in common; noise_rows, "
       "noise_columns: offsets of whole rows and columns; noise_least, noise_most: where in the field it is "
       "least and most, in 8 x 8 parts. What is correlated along rows and columns counts as surface.\n"
-      "noise_finest: 1.4826 median(|d|) / 6 of d, the second difference along rows and columns; what range "
+      "noise_finest: that between samples, 1.4826 median(|d|) / 6 of d, the second difference along rows and "
+      "columns; what range "
       "sigmas follow.\n"
       "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
       "its middle in the file's coordinates.");

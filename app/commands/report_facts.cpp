@@ -70,7 +70,7 @@ engine::Status addScanFacts(ReportDraft& draft) {
   draft.report["hash"] = hashOf(draft.states.back().field);
   addLayer(draft.report, draft.imported.field);
   if (draft.states.size() > 1) draft.report["original_hash"] = hashOf(draft.states.front().field);
-  std::vector<std::string> row = {"Noise, standard deviation"};
+  std::vector<std::string> row = {"Noise of the whole scan, standard deviation"};
   for (const ShownState& state : draft.states) {
     const auto noise = engine::measureNoise(state.field, draft.job);
     if (!noise) return tl::unexpected(noise.error());

@@ -27,7 +27,7 @@ std::string otherShape(const FittedRegion& fitted, double noise_mm) {
   const double times = found.rms_mm / std::max(noise_mm, rounding);
   if (!(times > kUnlike)) return {};
   return fmt::format(
-      "region {}: the samples lie {:.0f} times their noise off the {}, so it is another shape, "
+      "region {}: the samples lie {:.0f} times the scan's noise off the {}, so it is another shape, "
       "or several, and "
       "the errors say little: divide it by edge lines, or look at the residuals",
       fitted.number, times, engine::infoOf(found.shape.kind).word);

@@ -80,7 +80,8 @@ std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& a
     if (flattest == nullptr || c.error_flat < flattest->error_flat) flattest = &c;
   }
   const std::string tolerance = errorText(asked.tolerance, unit);
-  std::string why = trFormat("The noise is {}. ", errorText(found.sigma, unit));
+  std::string why = trFormat("The noise of the whole scan, offsets of rows and columns included, is {}. ",
+                             errorText(found.sigma, unit));
   if (isUnchanged(pick) && found.met())
     return why + trFormat("The unchanged scan stays within {}: no filter is needed.", tolerance);
   if (found.met()) {
