@@ -15,7 +15,6 @@
 #include "engine/io/files/input_file.h"
 #include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
-#include "engine/io/units.h"
 
 namespace fettle::app {
 namespace {
@@ -82,9 +81,8 @@ engine::Result<Saving::Written> writeFiles(const std::string& path, const std::v
 }  // namespace
 
 bool Saving::hasMeshChoice(const engine::Grid& grid) {
-  const std::string& name = grid.lateral_unit.name;
   // A degree is no length, and its millimetres are a guess.
-  return grid.lateral_unit.mm != 1.0 && name != "deg" && !engine::isNoLength(name);
+  return grid.lateral_unit.mm != 1.0 && grid.lateral_unit.name != "deg";
 }
 
 void Saving::begin(std::int64_t samples) {

@@ -66,7 +66,8 @@ void ChoiceCosts::measureDetail(const engine::Version& field, const render::View
     job.begin("level of detail", std::size(kDetail) + 1);
     auto picture = render::LivePicture::create();
     if (!picture) return tl::unexpected(picture.error());
-    if (auto ok = (*picture)->update(render::Shown{{field}, std::nullopt, {}, render::MarksOverlay::kHide}); !ok)
+    if (auto ok = (*picture)->update(render::Shown{{field}, std::nullopt, {}, render::MarksOverlay::kHide});
+        !ok)
       return tl::unexpected(ok.error());
     render::FrameInput input;
     input.view = view;

@@ -43,7 +43,8 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   if (!created) return tl::unexpected(created.error());
   render::LivePicture& picture = **created;
   for (const StudiedScan& subject : *scans) {
-    if (auto ok = picture.update(render::Shown{{subject.field}, std::nullopt, {}, render::MarksOverlay::kHide});
+    if (auto ok =
+            picture.update(render::Shown{{subject.field}, std::nullopt, {}, render::MarksOverlay::kHide});
         !ok)
       return tl::unexpected(ok.error());
     picture.finish();
