@@ -359,28 +359,5 @@ TEST_F(WindowTest, a_dialog_stays_with_what_is_wrong_with_its_file) {
   quit(user);
 }
 
-TEST_F(WindowTest, where_a_file_is_written_those_of_its_format_are_listed) {
-  std::ofstream(folder.file("old.png")) << "x";
-  std::ofstream(folder.file("old.csv")) << "x";
-  const auto program = start({scan});
-  User user(display, *program, "listed");
-  (void)opened(*program);
-  (void)user.press("ctrl+e");
-  program->until("where to", [](const State& s) {
-    return s["dialog"] == "export" && s["settled"] == true && says(s, "part.tif");
-  });
-  EXPECT_FALSE(user.reads("old.png"));
-  EXPECT_FALSE(user.reads("old.csv"));
-  (void)user.click("GeoTIFF and TIFF");
-  (void)user.click("16-bit grey PNG (.png)");
-  const State png = user.rest();
-  EXPECT_TRUE(says(png, "old.png"));
-  EXPECT_FALSE(says(png, "part.tif"));
-  (void)user.look("png");
-  (void)user.click("all files");
-  EXPECT_TRUE(user.reads("old.csv"));
-  quit(user);
-}
-
 }  // namespace
 }  // namespace fettle::tests

@@ -338,40 +338,5 @@ TEST_F(SteadyRows, what_is_said_of_a_number_that_was_typed_moves_no_row) {
   expectSilence(*program);
 }
 
-// A list inside the panels that is at its end does not keep the wheel.
-TEST_F(WindowTest, the_wheel_goes_on_with_the_panels_where_an_inner_list_ends) {
-  State panels{{"Steps", true}};
-  for (const char* each : {"Tool", "Filters", "Change since the scan"}) panels[each] = false;
-  for (const char* each : {"Measure", "Fit", "Features", "Compare", "Colours", "Display"})
-    panels[each] = true;
-  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"edge_lines", false}, {"panels", panels}};
-  const auto program = start({scan});
-  User user(display, *program, "wheel");
-  (void)opened(*program);
-  constexpr int kSteps = 12;  // of which six are seen
-  for (int i = 0; i < kSteps; ++i) (void)user.key("ctrl+i");
-  const auto rowOf = [&](const std::string& text) {
-    for (const State& each : program->now()["texts"])
-      if (each["text"].get<std::string>().starts_with(text)) return each["at"][1].get<int>();
-    return -1;
-  };
-  const int undo = rowOf("Undo"), newest = rowOf("12  Invert marks");
-  ASSERT_GT(undo, 0);
-  ASSERT_GT(newest, undo) << program->now()["texts"].dump();
-  const State picture = program->now()["picture"];
-  user.at({picture[0].get<int>() + picture[2].get<int>() + 100, newest - 20});
-  (void)user.look("at the end of the list");
-  // At its end already, where the newest step is: the panels go on.
-  (void)user.wheel(-1);
-  const int moved = rowOf("Undo");
-  EXPECT_LT(moved, undo);
-  (void)user.look("the panels went on");
-  (void)user.wheel(1);
-  // Where the list has not ended the list moves alone.
-  EXPECT_EQ(rowOf("Undo"), moved);
-  EXPECT_EQ(rowOf("12  Invert marks"), -1) << "it is scrolled up";
-  (void)quitWithoutSaving(user);
-}
-
 }  // namespace
 }  // namespace fettle::tests
