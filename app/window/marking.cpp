@@ -50,8 +50,14 @@ void Marking::finish(engine::MarkChange change, const Scope& scope) {
   const std::string name = std::string(lasso_.shape() == Lasso::Shape::kBox ? "Box" : "Lasso") +
                            (change == engine::MarkChange::kUnmark ? ", unmark" : "");
   const engine::Version& field = scope.client.field();
-  engine::Polygon polygon = lasso_.finish(
-      field.grid(), [&](const glm::dvec2& pixel) { return scope.picture.fieldAt(pixel, field, scope.view); });
+  const auto onSurface = [&](const glm::dvec2& pixel) {
+    const auto picked = scope.picture.pick(pixel.x, pixel.y);
+    return picked ? std::optional(picked->position_mm) : std::nullopt;
+  };
+  const auto onLevel = [&](const glm::dvec2& pixel, std::optional<double> height) {
+    return scope.picture.levelAt(pixel, field, scope.view, height);
+  };
+  engine::Polygon polygon = lasso_.finish(field.grid(), {onSurface, onLevel});
   beginNext();
   scope.display.marks = true;
   edit.ask(name,

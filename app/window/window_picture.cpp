@@ -199,12 +199,19 @@ std::optional<render::Grip> WindowPicture::gripInMiddle() const {
 std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                  const render::View& view) const {
   if (const auto picked = pick(pixel.x, pixel.y)) return glm::dvec2(picked->position_mm);
+  return levelAt(pixel, field, view);
+}
+
+std::optional<glm::dvec2> WindowPicture::levelAt(const glm::dvec2& pixel, const engine::Version& field,
+                                                 const render::View& view,
+                                                 std::optional<double> height) const {
   if (!live_) return std::nullopt;
   const engine::Grid& grid = field.grid();
   const engine::HeightBounds bounds = field.reader().bounds();
   if (bounds.empty()) return std::nullopt;
-  const double z =
+  const double middle_height =
       0.5 * (static_cast<double>(bounds.min) + static_cast<double>(bounds.max)) * grid.height_unit.mm;
+  const double z = height.value_or(middle_height);
   const double wide = std::max(grid.width - 1, 1) * grid.spacingXMm(),
                tall = std::max(grid.height - 1, 1) * grid.spacingYMm();
   const double reach = 0.25 * std::max(wide, tall) / view.zoom;

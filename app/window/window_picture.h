@@ -99,7 +99,11 @@ class WindowPicture {
   [[nodiscard]] bool inside(double x, double y) const;
   /// The surface at that position; nothing while the device is lost.
   [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
-  /// The same; where there is no surface, the plane at half the height of `field` [mm].
+  /// The level plane at that position, of `height` or of the middle one of `field` [mm].
+  [[nodiscard]] std::optional<glm::dvec2> levelAt(const glm::dvec2& pixel, const engine::Version& field,
+                                                  const render::View& view,
+                                                  std::optional<double> height = std::nullopt) const;
+  /// The surface, and where there is none the plane at half the height of `field` [mm].
   [[nodiscard]] std::optional<glm::dvec2> fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                   const render::View& view) const;
   /// Where a place of the field [mm] is seen in the first plot; nothing while there is no picture.

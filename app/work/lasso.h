@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "engine/field/grid.h"
 #include "engine/marks/polygon.h"
@@ -18,8 +19,13 @@ namespace fettle::app {
 class Lasso {
  public:
   enum class Shape : std::uint8_t { kFree, kBox };
-  /// Position in the field's plane of a point of the picture [mm]; empty where there is none.
-  using Locate = std::function<std::optional<glm::dvec2>(const glm::dvec2& pixel)>;
+  /// Positions in the field of a point of the picture [mm]; empty where there is none.
+  struct Places {
+    /// On the surface that is seen there.
+    std::function<std::optional<glm::dvec3>(const glm::dvec2& pixel)> on_surface;
+    /// On the level plane of that height [mm], or of the middle one.
+    std::function<std::optional<glm::dvec2>(const glm::dvec2& pixel, std::optional<double> height)> on_level;
+  };
 
   void begin(Shape shape, const glm::dvec2& cross);
   void leave() { active_ = false; }
@@ -40,8 +46,9 @@ class Lasso {
   /// Whether it encloses an area: a single click does not.
   [[nodiscard]] bool closes() const;
   /// Ends the line and returns it in the field's samples. Its straight sides are followed over the surface in
-  /// pieces of 8 pixels; points without a position are left out.
-  [[nodiscard]] engine::Polygon finish(const engine::Grid& grid, const Locate& locate);
+  /// pieces of 8 pixels. Over holes and beside the field it goes on at the height of the surface where it was seen last, along
+  /// the line in either direction; points without a position are left out.
+  [[nodiscard]] engine::Polygon finish(const engine::Grid& grid, const Places& places);
 
  private:
   bool active_ = false;

@@ -28,7 +28,8 @@ ReadAs readLengthAs(double length, double unit_mm, const std::string& unit) {
 }
 
 ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
-  const double least_mm = spacing * unit_mm < 10.0 ? 1.0 : 1e3;
+  const double spacing_mm = spacing * unit_mm;
+  const double least_mm = spacing_mm < 1e-4 ? 1e-3 : spacing_mm < 10.0 ? 1.0 : 1e3;
   return readLengthAs(least_mm / unit_mm, unit_mm, unit);
 }
 

@@ -17,7 +17,7 @@ struct ReadAs {
 [[nodiscard]] ReadAs readLengthAs(double length, double unit_mm, const std::string& unit);
 
 /// The unit for lengths along a surface whose samples are `spacing` apart: of metric ones mm, as drawings state them, m where
-/// samples are 10 mm apart and more.
+/// samples are 10 mm apart and more, um where they are less than 100 nm apart.
 [[nodiscard]] ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit);
 
 /// As readLengthAs() for the window, whose lengths read "\u00b5m".

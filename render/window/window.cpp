@@ -130,6 +130,10 @@ struct Window::Impl {
   void noteAt(InputEvent event, double x, double y) {
     event.panels_key = ui->typing() || ui->entered() || render::UiLayer::listIsOpen();
     event.panels_mouse = ui->panelsHaveMouse(x, y);
+    // They close an open list or choose from it, and nothing else: no dialog and no tool behind it.
+    const bool of_list =
+        event.key == Key::kEscape || event.key == Key::kEnter || event.key == Key::kKeypadEnter;
+    if (event.kind == InputKind::kKeyDown && of_list && render::UiLayer::listIsOpen()) event.key = Key::kNone;
     input.push_back(event);
   }
   static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }

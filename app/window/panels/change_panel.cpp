@@ -63,10 +63,12 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
 }  // namespace
 
 void changePanel(const PanelContext& context, const ChangeFigures& change) {
-  const render::ShownUnit& unit = context.units.change;
+  const auto& live = change.live();
+  const render::ShownUnit unit =
+      render::deviationUnit(context.client.field().grid().height_unit, context.units.change,
+                            live ? std::max(live->max_abs, live->sq_original) : 0.0);
   // All rows from the first frame on: figures come into them, and what is below stays where it is.
   constexpr const char* kYet = "...";
-  const auto& live = change.live();
   figure("largest", live ? lengthText(live->max_abs, unit) : kYet);
   figure("rms", live ? lengthText(live->rms, unit) : kYet);
   // Exact figures of the whole field follow after the stroke.

@@ -143,7 +143,8 @@ void previewSoFar(const FilterPreview& filters) {
                           so_far.step, so_far.step));
 }
 
-void previewList(bool anything_marked, const render::ShownUnit& change, FilterPreview& filters) {
+void previewList(bool anything_marked, const engine::LengthUnit& height, const render::ShownUnit& change,
+                 FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -152,12 +153,13 @@ void previewList(bool anything_marked, const render::ShownUnit& change, FilterPr
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
     // Broken here, or a narrow panel would break a number at its point.
+    const double most = v.result.report.max_change;
     const bool nothing_marked =
         v.spec.scope == engine::FilterScope::kOnlyMarks && v.result.report.changed == 0 && !anything_marked;
     const std::string came =
         nothing_marked ? tr("nothing is marked: with \"only marks\" nothing changes")
-                       : trFormat("{} change, by up to {:.3g} {}", v.result.report.changed,
-                                  v.result.report.max_change * change.per_unit, change.name) +
+                       : trFormat("{} change, by up to {}", v.result.report.changed,
+                                  lengthText(most, render::deviationUnit(height, change, most), 3)) +
                              (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
                                   ? ";\n" + std::string(tr("the limit counts from the scan as it was opened"))
                                   : std::string());
@@ -198,7 +200,8 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   previewSoFar(filters);
   if (filters.variants().empty() && !isRunning(filters))
     writeIn(render::PanelColour::kMuted, "A preview says here what it changes.");
-  previewList(context.client.field().reader().root().marked_children != 0, context.units.change, filters);
+  previewList(context.client.field().reader().root().marked_children != 0, grid.height_unit,
+              context.units.change, filters);
   endPlace();
 }
 

@@ -14,6 +14,14 @@ TEST(ReadUnits, OneIsAsManyOfAnotherAsTheirSizesSay) {
   EXPECT_EQ(ratioOfUnits("mm", "counts"), std::nullopt);
 }
 
+TEST(ReadUnits, LengthsAlongASurfaceGoByItsSpacing) {
+  EXPECT_EQ(readAcrossAs(0.05, 1.0, "mm"), (ReadAs{"mm", 1.0}));
+  EXPECT_EQ(readAcrossAs(0.5, 1000.0, "m").name, "m");
+  const ReadAs of_film = readAcrossAs(0.977, 1e-6, "nm");  // of an atomic force microscope
+  EXPECT_EQ(of_film.name, "um");
+  EXPECT_DOUBLE_EQ(of_film.size, 1000.0);
+}
+
 TEST(ReadUnits, OnTheScreenMicrometresHaveTheirSign) {
   EXPECT_EQ(readLengthAs(0.02, 1.0, "mm").name, "um");
   const ReadAs as = readOnScreenAs(0.02, 1.0, "mm");
