@@ -62,8 +62,7 @@ void SphereWindow::Collector::steepMinimum(std::int32_t i, std::int32_t j, Valle
 // pieces finds it, and some 250 pieces of every cell around the ball would be searched for minima among roundings, 20 ms a
 // tick. Scans hold such heights where 3.4e38 stands for a hole that the file does not declare.
 void SphereWindow::Collector::steep(std::int32_t i, std::int32_t j, Valley& g, SphereSearch search) noexcept {
-  constexpr double kNarrowest = 4e-16;
-  if (std::min(g.sx, g.sy) < kNarrowest * std::abs(g.d)) return;
+  if (w_.tooNarrow(g.d)) return;
   constexpr int kPieces = kSphereContactLanes;
   constexpr int kBlock = 4 * kPieces;
   const Valley::Pieces pieces(g);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -30,6 +31,11 @@ constexpr int kDropHeights = 2;
 constexpr int kLiftHeights = 6;
 // What a search counts for among steep cells, all of whose minima are searched for.
 constexpr int kSteepSearch = 2;
+// Steep cells within reach from which a place is looked at by its samples before it is searched; a ball of two cells
+// among needles has 8.
+constexpr int kDearSearch = 12;
+// Tries that a tick makes whatever its work, so that every tick leads on.
+constexpr int kLeastTries = 2;
 // Curvature along a step at least, of that of a plane seen from the endpoint: where the way bends downwards, Newton's step is
 // at most ten times as long as the plain one.
 constexpr double kLeastStiffness = 0.1;
@@ -55,10 +61,11 @@ std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& g
 }
 
 SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps, SphereSearch search,
-                             int most_searches, BallMinima minima, BallSteps steps) noexcept
+                             int most_searches, BallMinima minima, BallSteps steps, int most_work) noexcept
     : plan_(steps == BallSteps::kInPlan),
       most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
       most_searches_(std::clamp(most_searches, 0, kMostBallSearches)),
+      most_work_(plan_ ? std::clamp(most_work, 0, kMostBallWork) : 0),
       search_(search),
       window_(minima, steps) {
   const double cell = smallerSpacing(grid);
@@ -107,6 +114,24 @@ void SphereTracker::hold(const Surface& surface, const glm::dvec3& centre) noexc
   if (!window_.holds(centre)) window_.load(surface, centre, radius_ + slack_, kRoomSteps * step_);
 }
 
+// Of a place that the window holds.
+int SphereTracker::steepCells(const glm::dvec3& centre) noexcept {
+  if (counted_at_ != centre) {
+    counted_ = window_.steepCells(centre, radius_ + slack_);
+    counted_at_ = centre;
+  }
+  return counted_;
+}
+
+// Whether a search there would be dear and would find material nearer than `distance`. It decides by the field alone,
+// whatever was loaded or gathered before.
+bool SphereTracker::dearAndInTheWay(const Surface& surface, const glm::dvec3& centre,
+                                    double distance) noexcept {
+  if (most_work_ == 0) return false;
+  hold(surface, centre);
+  return steepCells(centre) > kDearSearch && window_.columnWithin(centre, distance);
+}
+
 void SphereTracker::findContacts(const Surface& surface, const glm::dvec3& centre,
                                  SphereContactList& out) noexcept {
   hold(surface, centre);
@@ -117,7 +142,11 @@ void SphereTracker::findContacts(const Surface& surface, const glm::dvec3& centr
   if (out.below) {
     out.count = 0;
     out.nearest_mm = HUGE_VAL;
-  } else if (search_ == SphereSearch::kBounded) [[likely]] {
+    list_centres_[&out == &lists_[0] ? 0 : 1] = centre;
+    return;
+  }
+  if (most_work_ > 0) work_ += steepCells(centre);
+  if (search_ == SphereSearch::kBounded) [[likely]] {
     window_.contacts(centre, reach, kNearSteps * step_, out);
   } else {
     window_.contactsCellByCell(centre, reach, out);
@@ -153,7 +182,9 @@ double SphereTracker::riseOutOf(const SphereContactList& there, const glm::dvec3
 void SphereTracker::lift(const Surface& surface) noexcept {
   SphereContactList& near = lists_[here_];
   const auto isFree = [&](double z) {
-    findContacts(surface, {centre_.x, centre_.y, z}, near);
+    const glm::dvec3 at(centre_.x, centre_.y, z);
+    if (dearAndInTheWay(surface, at, radius_)) return false;
+    findContacts(surface, at, near);
     return !near.below && near.nearest_mm >= radius_;
   };
   if (isFree(centre_.z)) return;
@@ -164,7 +195,7 @@ void SphereTracker::lift(const Surface& surface) noexcept {
       const double z = i == 0 ? std::max(centre_.z, window_.overSamples(centre_, radius_))
                               : centre_.z + riseOutOf(near, centre_);
       centre_.z = z + past;
-      if (!(centre_.z < top)) break;
+      if (!(centre_.z < top) || (most_work_ > 0 && work_ >= most_work_)) break;
       if (isFree(centre_.z)) return;
     }
     centre_.z = top;
@@ -329,8 +360,14 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   Arrival arrival = Arrival::kBound;
   const int last_search = most_searches_ > 0 ? (plan_ ? first_search_ : searches_) + most_searches_
                                              : std::numeric_limits<int>::max();
+  const int last_work = most_work_ > 0 ? first_work_ + most_work_ : std::numeric_limits<int>::max();
+  const Unfinished begun = std::exchange(unfinished_, {});
+  cuts = begun.cuts;
+  int tries = 0;  // in this tick
   const auto limited = [this](const glm::dvec3& a) { return plan_ ? glm::dvec3(a.x, a.y, 0.0) : a; };
-  for (; steps < most_steps_ && searches_ < last_search && arrival == Arrival::kBound; ++steps) {
+  for (; steps < most_steps_ && searches_ < last_search && (steps == 0 || work_ < last_work) &&
+         arrival == Arrival::kBound;
+       ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
     made_from = here_;
     const auto takeHalfSpaces = [&] {
@@ -346,7 +383,11 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
     const double reach_in = std::max(tolerance, 0.5 * (radius_ - lists_[here_].nearest_mm));
     SphereContactList& there = lists_[1 - here_];
     const glm::dvec3 start = centre_;
+    bool refused = false;  // whether the last try was in the way of samples, and not searched
     const auto tryOut = [&](const glm::dvec3& to) {
+      ++tries;
+      refused = dearAndInTheWay(surface, to, radius_ - reach_in - tolerance);
+      if (refused) return false;
       findContacts(surface, to, there);
       if (there.below || !(there.nearest_mm >= radius_ - reach_in)) return false;
       centre_ = to;
@@ -358,30 +399,41 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
     const auto nearer = [&](const glm::dvec3& to) {
       return inside || length2(endpoint - to) <= farthest * farthest;
     };
-    // In plan a step may end at its bound, but for the first, which makes sure that a ball arrives.
-    const auto spent = [&] { return plan_ && steps > 0 && searches_ >= last_search; };
+    // In plan a step may end at its bound of searches, but for the first, which makes sure that a ball arrives. The first ends at
+    // that of work, and the next tick goes on with it.
+    const auto spent = [&] {
+      return plan_ && ((steps > 0 && searches_ >= last_search) ||
+                       (work_ >= last_work && (steps > 0 || tries >= kLeastTries)));
+    };
+    const Unfinished go_on = steps == 0 ? begun : Unfinished{};
     double part = 1.0;
+    double limit = 1.0;  // of the step's length, after places that were refused
     bool dropped = false;
     double bent_length2 = -1.0;  // squared length of a bent step that was taken
     bool moved = false;
+    int drop = go_on.drop;
+    bool drop_tried = false;
     glm::dvec3 slide{0.0};
     // On top of what is in its way: the free space has no ceiling.
     const auto drops = [&] {
-      double length = part;
-      for (int drop = 0; drop < kDrops; ++drop, length *= 0.5) {
+      double length = std::ldexp(part, -drop);
+      for (; drop < kDrops && !spent(); ++drop, length *= 0.5) {
         glm::dvec3 to = centre_ + length * step.y;
         hold(surface, to);
         for (int i = 0; i < kDropHeights && !spent(); ++i) {
           to.z = (i == 0 ? std::max(to.z, window_.overSamples(to, radius_)) : to.z + riseOutOf(there, to)) +
                  0.5 * tolerance;
           if (!nearer(to)) break;
+          drop_tried = true;
           if (tryOut(to)) return true;
+          if (refused) break;
         }
       }
       return false;
     };
     const int rounds = kCutRounds + (plan_ ? kQuarterings : kHalvings);
-    for (int round = 0; round < rounds && !moved && !spent(); ++round) {
+    int round = 0;
+    for (; round < rounds && !moved && !spent(); ++round) {
       if (plan_ && round == kCutRoundsBeforeDrop) {
         dropped = moved = drops();
         if (moved || spent()) break;
@@ -398,15 +450,16 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
           const double came = glm::length(limited(last));
           longest = back < 0.0 && -2.0 * back > far * came ? 0.5 * came : std::min(step_, 1.3 * longest);
         }
-        part = far > longest ? longest / far : 1.0;
+        part = limit * (far > longest ? longest / far : 1.0);
         slide = slideOf(step);
         glm::dvec3 bent;
-        if (round == 0 && bentStep(step, slide, seen, longest, bent) &&
+        if (round == 0 && go_on.round == 0 && bentStep(step, slide, seen, longest, bent) &&
             length2(limited(bent)) <= longest * longest) {
           const auto shortens = [&] { return length2(goal - bent) < length2(goal); };
           if (shortens()) {
             moved = tryOut(centre_ + bent);
-            if (!moved && !spent() && liftedOut(there, bent) && shortens()) moved = tryOut(centre_ + bent);
+            if (!moved && !refused && !spent() && liftedOut(there, bent) && shortens())
+              moved = tryOut(centre_ + bent);
           }
           bent_length2 = length2(bent);
           if (moved) break;
@@ -420,7 +473,23 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       const glm::dvec3 to = centre_ + part * step.y;
       if (plan_ && !nearer(to)) break;
       moved = tryOut(to);
-      if (!moved && round < kCutRounds - 1) cuts = addCuts(to, there, tolerance, seen, cuts);
+      if (moved) continue;
+      if (!refused) {
+        if (round < kCutRounds - 1) cuts = addCuts(to, there, tolerance, seen, cuts);
+      } else if (round < kCutRoundsBeforeDrop) {
+        round = kCutRoundsBeforeDrop - 1;
+      } else if (round < kCutRounds) {
+        limit *= 0.25;
+      }
+      if (round < go_on.round) {  // after the try that a hand that has moved is due
+        round = go_on.round - 1;
+        limit = go_on.limit;
+        if (round + 1 >= kCutRounds) part *= limit;
+      }
+    }
+    if (!moved && steps == 0 && spent()) {
+      if (round >= kCutRounds) limit *= std::ldexp(1.0, -2 * (round - kCutRounds));
+      unfinished_ = {cuts, std::max(round, 1), drop + (drop_tried ? 1 : 0), limit};
     }
     if (!moved && spent()) break;
     if (!moved) {
@@ -464,10 +533,13 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
   Contact contact;
   const bool was_placed = placed_;
   searches_ = first_search_ = 0;
+  work_ = first_work_ = 0;
+  counted_at_ = glm::dvec3(NAN);
   const glm::dvec3 moved = endpoint - previous_;
   previous_ = endpoint;
   placed_ = true;
   if (!touching_ && clearOfAll(surface, was_placed ? centre_ : endpoint, endpoint)) {
+    unfinished_ = {};
     centre_ = endpoint;
     CellIndex cell;
     counters.outside += surface.cellUnder(endpoint, cell) ? 0 : 1;
@@ -478,22 +550,32 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
   discardEdited(surface);
   if (!was_placed || !(length2(moved) <= farthest * farthest)) {
     centre_ = endpoint;
+    unfinished_ = {};
     lift(surface);
   } else {
     // The contacts of a ball at rest were found by the last tick.
     if (list_centres_[static_cast<std::size_t>(here_)] != centre_)
       findContacts(surface, centre_, lists_[here_]);
     first_search_ = searches_;
+    first_work_ = work_;
     if (lists_[here_].below || lists_[here_].nearest_mm < 0.5 * radius_) lift(surface);
   }
-  const Arrival arrival = walk(surface, endpoint, counters);
+  Arrival arrival = walk(surface, endpoint, counters);
   if (lists_[here_].nearest_mm < radius_ - toleranceMm(centre_.z)) lift(surface);  // raised by an edit
+  // A hand that pulls out is free at once: up and over at the height of the endpoint, where nothing reaches up to that way.
+  if (most_work_ > 0 && arrival != Arrival::kFree &&
+      clearOfAll(surface, {centre_.x, centre_.y, endpoint.z}, endpoint)) {
+    centre_ = endpoint;
+    unfinished_ = {};
+    arrival = Arrival::kFree;
+  }
   touching_ = arrival != Arrival::kFree;
   if (!touching_) return contact;
   if (arrival == Arrival::kUnheldOnItsWay) {
     SphereContactList& there = lists_[1 - here_];
-    findContacts(surface, endpoint, there);
-    if (!there.below && there.nearest_mm >= radius_) return contact;
+    const bool found = dearAndInTheWay(surface, endpoint, radius_);
+    if (!found) findContacts(surface, endpoint, there);
+    if (!found && !there.below && there.nearest_mm >= radius_) return contact;
   }
 
   contact.touching = true;

@@ -65,6 +65,11 @@ inline constexpr int kSphereSteps = 128;
 /// it is ten times as long as the plain one at most. The tick also ends where the next step would be
 /// shorter than ten rests by the ratio of the last two. The bound of searches ends a step as well, but
 /// for the first of a tick; a search among steep cells (BallMinima::kAll) counts as two.
+/// Its bound of work (contact revision 5). A search takes as long as there are steep cells within reach, and deep among needles
+/// there are many: a place there that is in the material below some sample is not searched, and the step ends on top of what
+/// is in its way, or becomes shorter. When the searches of a tick have looked at so many steep cells, no further try begins, in its
+/// first step neither, which the next tick goes on with; and where nothing reaches up to a ball at the endpoint's height
+/// on its way there, it is free at once.
 /// BallSteps::kInSpace is the walk of before contact revision 4: no step is longer than a cell in any direction, a ball that is
 /// placed is lifted by halvings.
 ///
@@ -98,10 +103,12 @@ class SphereTracker {
   /// `radius_mm` > 0; over kMostSphereCells cells it is clamped to that (sphereProblem reports it before).
   /// `most_steps`, 1 .. kSphereSteps, of a tick. `most_searches`, 1 .. kMostBallSearches, after which no step begins;
   /// 0: no such bound, and a ball on its way counts as touching, as before contact revision 3 (scene.h). In plan fewer than some
-  /// 25 do not shorten a tick whose first step needs them.
+  /// 25 do not shorten a tick whose first step needs them. `most_work`, 0 .. kMostBallWork: steep cells that the searches of a
+  /// tick in plan may look at; 0: no such bound, as before contact revision 5.
   SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps,
                 SphereSearch search = SphereSearch::kBounded, int most_searches = kBallSearches,
-                BallMinima minima = BallMinima::kAll, BallSteps steps = BallSteps::kInPlan) noexcept;
+                BallMinima minima = BallMinima::kAll, BallSteps steps = BallSteps::kInPlan,
+                int most_work = kBallWork) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().
@@ -111,6 +118,7 @@ class SphereTracker {
   void reset() noexcept {
     placed_ = false;
     touching_ = false;
+    unfinished_ = {};
   }
 
   /// Centre after the last tick [mm]; equal to the endpoint while nothing is touched.
@@ -119,6 +127,8 @@ class SphereTracker {
   [[nodiscard]] const SphereContact& pressed() const noexcept { return pressed_; }
   /// Searches for contacts in the last tick: what its time is proportional to. In plan one among steep cells counts as two.
   [[nodiscard]] int searches() const noexcept { return searches_; }
+  /// Steep cells that these searches looked at, while there is a bound of them: what its time is proportional to beside needles.
+  [[nodiscard]] int work() const noexcept { return work_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
 
  private:
@@ -127,6 +137,9 @@ class SphereTracker {
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
   void hold(const Surface& surface, const glm::dvec3& centre) noexcept;
+  [[nodiscard]] int steepCells(const glm::dvec3& centre) noexcept;
+  [[nodiscard]] bool dearAndInTheWay(const Surface& surface, const glm::dvec3& centre,
+                                     double distance) noexcept;
   void findContacts(const Surface& surface, const glm::dvec3& centre, SphereContactList& out) noexcept;
   void discardEdited(const Surface& surface) noexcept;
   [[nodiscard]] double riseOutOf(const SphereContactList& there, const glm::dvec3& centre) const noexcept;
@@ -144,9 +157,18 @@ class SphereTracker {
 
   static constexpr int kMostCuts = 16;
 
+  // A first step that the bound of work ended before it moved: what it met, and where its tries go on.
+  struct Unfinished {
+    int cuts = 0;
+    int round = 0;
+    int drop = 0;
+    double limit = 1.0;  // of the step's length
+  };
+
   bool plan_;  // whether steps are limited in plan alone
   int most_steps_;
   int most_searches_;
+  int most_work_;  // 0: no bound
   SphereSearch search_;
   double radius_, step_, slack_, tolerance_;
   glm::dvec3 centre_{0.0};
@@ -163,7 +185,12 @@ class SphereTracker {
   std::array<HalfSpace, SphereContactList::kMost + kMostCuts> half_spaces_;
   std::array<SphereContact, kMostCuts> cuts_;
   int oldest_cut_ = 0;
+  Unfinished unfinished_;
   int searches_ = 0;
+  int work_ = 0;
+  int first_work_ = 0;  // as first_search_
+  int counted_ = 0;     // steep cells within reach of counted_at_, in this tick
+  glm::dvec3 counted_at_{NAN};
   int first_search_ =
       0;  // searches before those that the bound counts: none but where the last tick's list was discarded
 };

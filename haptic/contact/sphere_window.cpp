@@ -66,20 +66,88 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   sphereContactKernels().prepare(laneWindow(), rows_, boundable_ ? 0.0 : HUGE_VAL, bounds_);
   markRims();
   // Twice the range of heights is the largest twist.
-  has_steep_cells_ = steep(2.0 * (highest - lowest)) && anySteep({0, columns_ - 2, 0, rows_ - 2});
+  has_steep_cells_ = steep(2.0 * (highest - lowest)) && markSteep();
 }
 
-bool SphereWindow::anySteep(const Box& box) const noexcept {
-  for (std::int32_t j = box.j0; j <= box.j1; ++j)
-    for (std::int32_t i = box.i0; i <= box.i1; ++i) {
-      const Corners z = corners(i, j);
-      if (steep((z.z11 - z.z01) - (z.z10 - z.z00))) return true;
-    }
-  return false;
+bool SphereWindow::markSteep() noexcept {
+  const auto steepAt = [&](std::int32_t i, std::int32_t j) {
+    const Corners z = corners(i, j);
+    return steep((z.z11 - z.z01) - (z.z10 - z.z00));
+  };
+  // Of most windows with high walls, no cell.
+  const auto none = [&] {
+    for (std::int32_t j = 0; j + 1 < rows_; ++j)
+      for (std::int32_t i = 0; i + 1 < columns_; ++i)
+        if (steepAt(i, j)) return false;
+    return true;
+  };
+  if (none()) return false;
+  for (std::int32_t j = 0; j < rows_; ++j) {
+    const double* z = z_.data() + j * columns_;
+    double highest = -HUGE_VAL;
+    for (std::int32_t i = 0; i < columns_; ++i) highest = z[i] > highest ? z[i] : highest;
+    row_top_[static_cast<std::size_t>(j)] = highest;
+  }
+  for (std::int32_t j = 0; j + 1 < rows_; ++j) {
+    std::uint64_t row = 0;
+    for (std::int32_t i = 0; i + 1 < columns_; ++i) row |= std::uint64_t{steepAt(i, j) ? 1U : 0U} << i;
+    steep_[static_cast<std::size_t>(j)] = row;
+  }
+  return true;
 }
 
 bool SphereWindow::steepNear(const glm::dvec3& at, double reach_mm) const noexcept {
-  return has_steep_cells_ && anySteep(boxAround(at, reach_mm));
+  if (!has_steep_cells_) return false;
+  const Box box = boxAround(at, reach_mm);
+  const std::uint64_t columns = columnsOf(box);
+  for (std::int32_t j = box.j0; j <= box.j1; ++j)
+    if ((steep_[static_cast<std::size_t>(j)] & columns) != 0) return true;
+  return false;
+}
+
+int SphereWindow::steepCells(const glm::dvec3& at, double reach_mm) const noexcept {
+  if (!has_steep_cells_) return 0;
+  const Box box = boxAround(at, reach_mm);
+  const std::uint64_t columns = columnsOf(box);
+  const double reach2 = reach_mm * reach_mm;
+  int cells = 0;
+  for (std::int32_t j = box.j0; j <= box.j1; ++j) {
+    std::uint64_t row = steep_[static_cast<std::size_t>(j)] & columns;
+    const double dy = beyondRange(at.y, (row_ + j) * sy_, (row_ + j + 1) * sy_);
+    const double left = reach2 - dy * dy;
+    const auto at_j = static_cast<std::size_t>(j);
+    const double row_gap = std::max(at.z - std::max(row_top_[at_j], row_top_[at_j + 1]), 0.0);
+    if (!(row_gap * row_gap < left)) continue;
+    for (; row != 0; row &= row - 1) {
+      const std::int32_t i = std::countr_zero(row);
+      const double gap = std::max(at.z - bounds_.top[static_cast<std::size_t>(j * columns_ + i)], 0.0);
+      const double dx = beyondRange(at.x, (column_ + i) * sx_, (column_ + i + 1) * sx_);
+      if (!(gap * gap + dx * dx < left)) continue;
+      const Corners z = corners(i, j);
+      cells += tooNarrow((z.z11 - z.z01) - (z.z10 - z.z00)) ? 0 : 1;
+    }
+  }
+  return cells;
+}
+
+bool SphereWindow::columnWithin(const glm::dvec3& at, double distance_mm) const noexcept {
+  if (!has_steep_cells_ || !(distance_mm > 0.0)) return false;
+  const Box box = boxAround(at, distance_mm);
+  for (std::int32_t j = box.j0; j <= box.j1 + 1; ++j) {
+    const double dy = at.y - (row_ + j) * sy_;
+    const double left = distance_mm * distance_mm - dy * dy;
+    const double row_gap = std::max(at.z - row_top_[static_cast<std::size_t>(j)], 0.0);
+    if (!(row_gap * row_gap < left)) continue;
+    const double* z = z_.data() + j * columns_;
+    for (std::int32_t i = box.i0; i <= box.i1 + 1; ++i) {
+      const double dx = at.x - (column_ + i) * sx_;
+      const double gap = at.z > z[i] ? at.z - z[i] : 0.0;
+      if (!(dx * dx + gap * gap < left) || std::isnan(z[i])) continue;
+      // A sample of no cell has no material below it.
+      if (whole_ || valid(i, j) || valid(i - 1, j) || valid(i, j - 1) || valid(i - 1, j - 1)) return true;
+    }
+  }
+  return false;
 }
 
 // Cells that the lanes cannot look at.

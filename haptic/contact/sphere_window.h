@@ -99,6 +99,11 @@ class SphereWindow {
   /// Whether cells within `reach_mm` are so steep that their minima are searched for one by one; none with
   /// BallMinima::kPieces.
   [[nodiscard]] bool steepNear(const glm::dvec3& at, double reach_mm) const noexcept;
+  /// How many of those cells a ball may reach by their highest corners: what a search there takes, at some 1 us each.
+  [[nodiscard]] int steepCells(const glm::dvec3& at, double reach_mm) const noexcept;
+  /// Whether the material straight below some sample comes nearer than `distance_mm`: then no search finds a ball of that radius
+  /// free. Answered where the window has steep cells.
+  [[nodiscard]] bool columnWithin(const glm::dvec3& at, double distance_mm) const noexcept;
   /// The lowest height of a centre at (x, y) of `at` from which a ball reaches no sample; -HUGE_VAL: none near.
   [[nodiscard]] double overSamples(const glm::dvec3& at, double radius_mm) const noexcept;
   /// Highest sample of the cells within `radius_mm`; -HUGE_VAL: none.
@@ -130,8 +135,17 @@ class SphereWindow {
   [[nodiscard]] bool steep(double twist) const noexcept {
     return minima_ == BallMinima::kAll && std::abs(twist) > kTwistPieces * std::min(sx_, sy_);
   }
+  /// Whether a steep cell's valley is narrower than the places along a cell differ by; then its inside is not searched (sphere_collector).
+  [[nodiscard]] bool tooNarrow(double twist) const noexcept {
+    constexpr double kNarrowest = 4e-16;
+    return std::min(sx_, sy_) < kNarrowest * std::abs(twist);
+  }
   void markRims() noexcept;
-  [[nodiscard]] bool anySteep(const Box& box) const noexcept;
+  [[nodiscard]] bool markSteep() noexcept;
+  // Columns of a box, a bit each.
+  [[nodiscard]] static std::uint64_t columnsOf(const Box& box) noexcept {
+    return ((std::uint64_t{2} << (box.i1 - box.i0)) - 1) << box.i0;
+  }
   void gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
   class Collector;
   class Valley;
@@ -149,6 +163,9 @@ class SphereWindow {
   bool whole_ = false;  // no NaN in it
   // Otherwise its cells without a hole, a bit per column: row j at j + 1, and none beyond the window.
   std::array<std::uint64_t, kMostSide + 2> cells_{};
+  // While has_steep_cells_: those, a bit per column; the highest sample of each row.
+  std::array<std::uint64_t, kMostSide> steep_{};
+  std::array<double, kMostSide> row_top_{};
   bool boundable_ = false;
   bool has_steep_cells_ = false;
   LaneBounds bounds_;

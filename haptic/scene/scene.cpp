@@ -187,6 +187,7 @@ engine::Result<Scene> parseScene(const std::string& text, const std::string& nam
     return engine::inputError(fmt::format("contact revision {} is unknown", contact_revision), name,
                               "open it with the version of the program that wrote it");
   Scene scene = defaultScene();
+  if (contact_revision < 5) scene.ball_work = 0;
   if (contact_revision < 4) {
     constexpr int kThen = 64;
     scene.ball_searches = contact_revision < 3 ? 0 : kThen;

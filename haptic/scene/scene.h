@@ -59,6 +59,9 @@ struct Scene {
   /// A ball: searches for contacts after which a tick takes no further step, so that the tick's time is bounded; from 1
   /// to 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
   int ball_searches = kBallSearches;
+  /// A ball: steep cells that its searches in a tick may look at in plan, after which it takes no further step, so that the time
+  /// among needles is bounded; from 1 to 1,000,000, or 0 for no bound, as before contact revision 5 (SphereTracker).
+  int ball_work = kBallWork;
   /// A ball: which minima it searches for inside cells.
   BallMinima ball_minima = BallMinima::kAll;
   /// A ball: in which direction a step has a largest length.
@@ -121,7 +124,8 @@ struct Scene {
 /// What the words of a scene's [contact] mean, stored beside scenes whose ticks are replayed later (journal, session).
 /// 1, and where none is stored: the level "paper" is the search that is called "descent" since 2. Below 3: a ball's searches
 /// are not bounded. Below 4: a ball falls a cell per step, its minima are those of equal pieces, 64 searches are the default.
-inline constexpr int kContactRevision = 4;
+/// Below 5: what its searches look at among steep cells is not bounded.
+inline constexpr int kContactRevision = 5;
 /// The same from a text that calls itself `name` in errors. `contact_revision`, 1 .. kContactRevision: of the program
 /// that wrote the text; errors: a newer one.
 [[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name,

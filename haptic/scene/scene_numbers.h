@@ -144,6 +144,10 @@ inline constexpr std::array kSceneNumbers = {
         "contact", "ball_searches", "ball searches", "", 0, kMostBallSearches,
         "Searches after which a ball takes no further step in a tick; 0: no bound.", LowEnd::kIncluded,
         NumberKind::kWhole),
+    scene_rows::number<&Scene::ball_work>("contact", "ball_work", "ball work", "cells", 0, kMostBallWork,
+                                          "Steep cells that a ball's searches look at in a tick before it "
+                                          "ends, where steps are limited in plan; 0: no bound.",
+                                          LowEnd::kIncluded, NumberKind::kWhole),
     scene_rows::number<&Scene::stiffness_n_per_mm>(
         "force", "stiffness_n_per_mm", "stiffness", "N/mm", 0, 1000,
         "Force for each millimetre that the tip is pressed in.", LowEnd::kExcluded),

@@ -11,7 +11,8 @@ Tick::Tick(const Scene& scene, engine::LiveField& field, const engine::Version& 
       sphere_(scene.tip == TipShape::kSphere
                   ? std::make_unique<SphereTracker>(scene.tip_radius_mm, field.reader().grid(),
                                                     scene.search_rounds - 1, SphereSearch::kBounded,
-                                                    scene.ball_searches, scene.ball_minima, scene.ball_steps)
+                                                    scene.ball_searches, scene.ball_minima, scene.ball_steps,
+                                                    scene.ball_work)
                   : nullptr),
       effects_(composeEffects(scene, original, field.snapshot())),
       force_limit_n_(scene.force_limit_n) {}

@@ -50,7 +50,7 @@ constexpr Budget kBudgets[] = {
     {"descent", haptic::Tool::kFeel, haptic::ContactLevel::kDescent, 0.0, 200, 1366.0},
     {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 2906.0},
     {"certified, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 0.0, 40, 8075.0},
-    {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 26903.0},
+    {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 26219.0},
 };
 
 // Ticks spread over a hand's way: each counted one follows on its predecessor, as the rest do.
@@ -93,13 +93,14 @@ TEST_P(TickBudget, IsKept) {
 }
 
 // The longest tick of a ball, of 10,000 on the grounds of `fettle bench haptic`: 2 cells in radius, 8 cells on noise whose holes are
-// samples of 3.4e38, as of a file that does not declare its no-data value, and 16 cells, the largest, on needles. The longest in
-// instructions of the tick that searches most and of those that take longest by the clock: several are about as long, so that
-// other work on the machine does not decide. Not with the first ten ticks, which load windows into the cache.
+// samples of 3.4e38, as of a file that does not declare its no-data value, and 16 cells, the largest, on needles and spikes. The
+// longest in instructions of the tick that searches most and of those that take longest by the clock: several are about as long, so
+// that other work on the machine does not decide. Large balls: of 3,000 ticks, that of the clock alone, since a tick is counted
+// step by step; on the rest of the spiky grounds it is not counted. Not with the first ten ticks, which load windows into the cache.
 struct Longest {
   const char* ground;
   float (*height)(std::int32_t column, std::int32_t row) noexcept;  // nullptr: the rough part
-  double instructions;
+  double instructions;                                              // 0: printed by the clock alone
   double radius_cells = 2.0;
 };
 
@@ -118,7 +119,36 @@ constexpr Longest kLongest[] = {
      86'191.0},
     {"needles, largest ball",
      [](std::int32_t c, std::int32_t r) noexcept { return c % 7 == 3 && r % 5 == 2 ? 1e6F : 0.0F; },
-     737'772.0, 16.0},
+     572'024.0, 16.0},
+    {"needles 3 x 3, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept { return c % 3 == 1 && r % 3 == 1 ? 1e6F : 0.0F; }, 0.0,
+     16.0},
+    {"needles 3 x 3, 4 cells",
+     [](std::int32_t c, std::int32_t r) noexcept { return c % 3 == 1 && r % 3 == 1 ? 1e6F : 0.0F; }, 0.0,
+     4.0},
+    {"needles 2 x 2, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept { return c % 2 == 1 && r % 2 == 1 ? 1e6F : 0.0F; },
+     428'489.0, 16.0},
+    {"needles of 10 mm, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept { return c % 4 == 1 && r % 4 == 1 ? 10.0F : 0.0F; }, 0.0,
+     16.0},
+    {"spikes 3 %, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept {
+       return whiteNoise(5, c, r) > 1.88F ? 5.0F : static_cast<float>(0.02 * whiteNoise(6, c, r));
+     },
+     682'054.0, 16.0},
+    {"needles 10 %, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept {
+       return whiteNoise(5, c, r) > 1.28F ? 1e6F : static_cast<float>(0.02 * whiteNoise(6, c, r));
+     },
+     0.0, 16.0},
+    {"white, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept { return static_cast<float>(1e3 * whiteNoise(5, c, r)); },
+     0.0, 16.0},
+    {"checkerboard", [](std::int32_t c, std::int32_t r) noexcept { return (c + r) % 2 != 0 ? 1e6F : 0.0F; },
+     0.0},
+    {"checkerboard, largest ball",
+     [](std::int32_t c, std::int32_t r) noexcept { return (c + r) % 2 != 0 ? 1e6F : 0.0F; }, 0.0, 16.0},
     {"undeclared holes",
      [](std::int32_t c, std::int32_t r) noexcept {
        const auto drawn = [&](std::uint64_t seed) { return static_cast<float>(whiteNoise(seed, c, r)); };
@@ -148,13 +178,16 @@ TEST_P(LongestTick, OfABallKeepsItsBudget) {
   motion.ticks = 10'000;
   motion.speed_mm_s = 20.0;
   std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
+  const bool large = ground.radius_cells > 2.0 || std::string(ground.ground) == "checkerboard";
+  if (large) strokes.resize(3'000);
   for (haptic::StrokeSample& s : strokes) s.tip_mm.z += radius_mm;
   const haptic::DenormalScope as_in_the_loop;
   std::vector<double> least_ns(strokes.size(), std::numeric_limits<double>::infinity());
   std::vector<int> searches(strokes.size());
+  std::vector<int> work(strokes.size());
   // Of so many passes one is not held up by other work, in each tick: three were too few on a busy machine.
-  constexpr int kPasses = 20;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  const int passes = large ? 8 : 20;
+  for (int pass = 0; pass < passes; ++pass) {
     haptic::Surface surface(field.reader());
     haptic::SphereTracker ball(radius_mm, field.grid());
     haptic::TickCounters counters;
@@ -163,17 +196,27 @@ TEST_P(LongestTick, OfABallKeepsItsBudget) {
       static_cast<void>(ball.update(surface, strokes[i].tip_mm, counters));
       least_ns[i] = std::min(least_ns[i], watch.ns());
       searches[i] = ball.searches();
+      work[i] = ball.work();
     }
   }
-  constexpr std::size_t kCandidates = 3;
+  if (ground.instructions == 0.0) {
+    const auto longest = std::max_element(least_ns.begin() + 10, least_ns.end());
+    std::printf("%s: tick %td, %.1f us, at most %d steep cells\n", ground.ground, longest - least_ns.begin(),
+                1e-3 * *longest, *std::max_element(work.begin(), work.end()));
+    EXPECT_LE(*std::max_element(work.begin(), work.end()), haptic::kBallWork + 40);
+    return;
+  }
+  const std::size_t candidates = large ? 1 : 3;
   std::vector<std::size_t> order(strokes.size() - 10);
   std::iota(order.begin(), order.end(), std::size_t{10});
-  std::swap(order.front(), *std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-              return searches[a] < searches[b];
-            }));
-  std::partial_sort(order.begin() + 1, order.begin() + kCandidates, order.end(),
-                    [&](std::size_t a, std::size_t b) { return least_ns[a] > least_ns[b]; });
-  order.resize(kCandidates);
+  const std::ptrdiff_t by_searches = large ? 0 : 1;
+  if (!large)
+    std::swap(order.front(), *std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+                return searches[a] < searches[b];
+              }));
+  std::partial_sort(order.begin() + by_searches, order.begin() + static_cast<std::ptrdiff_t>(candidates),
+                    order.end(), [&](std::size_t a, std::size_t b) { return least_ns[a] > least_ns[b]; });
+  order.resize(candidates);
   std::sort(order.begin(), order.end());
   // One after the other, by one ball: what is counted is lost with the copy that it is counted in, and is played after it.
   haptic::Surface surface(field.reader());
@@ -252,7 +295,7 @@ TEST(LeastOfATick, OfABallIsBesideTheLeastThatItsContactsNeed) {
   EXPECT_GT(least.contacts(), 50);
   // A place's point, distance and half-space take some 100.
   EXPECT_GT(each, 100.0 * least.cells());
-  EXPECT_LT(each, 26903.0);
+  EXPECT_LT(each, kBudgets[4].instructions);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, TickBudget, testing::ValuesIn(kBudgets), [](const auto& tried) {

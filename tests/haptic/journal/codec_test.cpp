@@ -89,6 +89,7 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   if (scene.tip == haptic::TipShape::kSphere || scene.level != haptic::ContactLevel::kPaper)
     scene.search_rounds = 2 + static_cast<int>(random() % 2047);
   scene.ball_searches = static_cast<int>(random() % 4097);
+  scene.ball_work = static_cast<int>(random() % 1000);
   scene.ball_minima = static_cast<haptic::BallMinima>(random() % 2);
   scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
@@ -328,11 +329,26 @@ TEST(Journal, ABallTakesTheStepsAndMinimaThatItHadWhenItWasWritten) {
   EXPECT_EQ(now.ball_minima, haptic::BallMinima::kAll);
 }
 
+TEST(Journal, ABallHasNoBoundOfItsWorkWhereThereWasNoneWhenItWasWritten) {
+  const auto workOf = [](const char* text) {
+    const auto entry = haptic::journalEntry(text);
+    EXPECT_TRUE(entry) << text;
+    return entry ? std::get<haptic::journal::Begin>(*entry).scene.ball_work : -1;
+  };
+  EXPECT_EQ(workOf(R"({"do":"begin","state":0,"scene":"tip = \"sphere\""})"), 0);
+  EXPECT_EQ(workOf(R"({"do":"begin","state":0,"contact":4,"scene":"tip = \"sphere\""})"), 0);
+  EXPECT_EQ(workOf(R"({"do":"begin","state":0,"contact":5,"scene":"tip = \"sphere\""})"), haptic::kBallWork);
+  // Written again by this version, it still has none.
+  haptic::Scene scene;
+  scene.ball_work = 0;
+  EXPECT_EQ(haptic::parseScene(haptic::sceneText(scene), "again")->ball_work, 0);
+}
+
 TEST(Journal, WhatIsNoEntryIsRefusedByName) {
   for (const char* text :
        {"", "{", "[]", "{}", R"({"do":"dance"})", R"({"do":"ticks"})", R"({"do":"ticks","count":"x"})",
         R"({"do":"filter","id":1,"filter":"blur","window":3,"passes":1,"marks":"keep"})",
-        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":5})",
+        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":6})",
         R"({"do":"begin","state":0,"scene":"","contact":0})", R"({"do":7})", "3"}) {
     const auto entry = haptic::journalEntry(text);
     ASSERT_FALSE(entry) << text;

@@ -18,22 +18,25 @@ struct OldSession {
   // What a reader must not take for what it was: in the scenes of the journal `word` becomes `other`, and the field another one.
   const char* word;
   const char* other;
+  const char* what = "";
 };
 
 // 1: of 2026-11-23, with a mouse at the window, before "paper" named another search: two strokes that smooth, the second with two
 // steps per tick. The others by record_session.cpp with the program of then, the last commits of 2 and 3, 0da33cf and 43339ff, and
-// with that which has this test: a stroke at level paper, and two with a ball among needles.
+// of 4 with that which has this test: a stroke at level paper, and two with a ball among needles. Those of "large" have two strokes of the largest
+// ball over needles, that of 4 by the program at 318f3d4.
 constexpr OldSession kOldSessions[] = {
     {1, 0x5f5ebd78124849eeU, 336, 2, "search_rounds = ", "search_rounds = 2048 #"},
     {2, 0xbe04dca9cc54acd3U, 880, 3, "\"contact\":2", "\"contact\":3"},
     {3, 0xd448e39cb30f478bU, 880, 3, "\"contact\":3", "\"contact\":4"},
     {4, 0xa659e8fb72c2ba7cU, 880, 3, "ball_steps = \\\"plan\\\"", "ball_steps = \\\"space\\\""},
+    {4, 0x2e84dddbd55167c3U, 170, 2, "\"contact\":4", "\"contact\":5", "_large"},
 };
 
 engine::Result<engine::Session> opened(const OldSession& old) {
   engine::JobControl job;
-  const std::string path =
-      std::string(FETTLE_OLD_SESSIONS) + "/contact_revision_" + std::to_string(old.revision) + ".fettle";
+  const std::string path = std::string(FETTLE_OLD_SESSIONS) + "/contact_revision_" +
+                           std::to_string(old.revision) + old.what + ".fettle";
   return engine::openSession(path, {}, engine::importField, job);
 }
 
@@ -76,7 +79,9 @@ TEST_P(OldSessions, AreAnotherFieldWhereTheirScenesAreReadAsTodays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfContactRevision, OldSessions, testing::ValuesIn(kOldSessions),
-                         [](const auto& tried) { return std::to_string(tried.param.revision); });
+                         [](const auto& tried) {
+                           return std::to_string(tried.param.revision) + tried.param.what;
+                         });
 
 }  // namespace
 }  // namespace fettle::haptic

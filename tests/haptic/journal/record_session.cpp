@@ -1,6 +1,8 @@
-// record_session FILE
+// record_session FILE [large]
 // Two loops of a session: a stroke that smooths at level paper, then two with a ball among needles, with their journal as a window
-// keeps it. Of each contact revision one is in sessions/. Prints the revision, ticks and steps, and the hash of the field.
+// keeps it. Of each contact revision one is in sessions/. With "large", two strokes with the largest ball over needles on every
+// second sample, whose searches are the dearest; sessions/ has it of revision 4, whose ticks were bounded by searches alone.
+// Prints the revision, ticks and steps, and the hash of the field.
 
 #include <cmath>
 #include <cstdio>
@@ -30,10 +32,22 @@ engine::Version needles() {
       kSpacingMm, kSpacingMm);
 }
 
+engine::Version needlesClose() {
+  std::mt19937_64 random(8);
+  return tests::fieldOf(
+      72, 64,
+      [&](int c, int r) {
+        const double needle =
+            c % 2 == 1 && r % 2 == 1 ? tests::uniform(random, 20.0, 120.0) * kSpacingMm : 0.0;
+        return needle + 0.02 * tests::uniform(random, -1.0, 1.0);
+      },
+      kSpacingMm, kSpacingMm);
+}
+
 class Recording {
  public:
-  Recording() {
-    session_.original = needles();
+  explicit Recording(engine::Version original) {
+    session_.original = std::move(original);
     session_.history = engine::History(session_.original);
   }
 
@@ -105,9 +119,18 @@ class Recording {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return 2;
-  Recording recording;
+  const bool large = count == 3 && std::string(arguments[2]) == "large";
+  if (count != 2 && !large) return 2;
+  Recording recording(large ? needlesClose() : needles());
   haptic::Scene scene = haptic::defaultScene();
+  if (large) {
+    scene.tip = haptic::TipShape::kSphere;
+    scene.tip_radius_mm = 16.0 * kSpacingMm;
+    recording.begin(scene);
+    recording.stroke({2.0, 2.2}, {5.1, 3.4}, 5.0, 60);
+    recording.stroke({4.9, 2.7}, {2.0, 2.9}, 5.0, 30);
+    return recording.save(arguments[1]);
+  }
   recording.begin(scene);
   recording.stroke({0.3, 0.5}, {4.9, 1.5}, -0.05, 200);
   scene.tip = haptic::TipShape::kSphere;

@@ -230,6 +230,8 @@ TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
                            "contact = { ball_searches = -1 }",
                            "contact = { ball_searches = 4097 }",
                            "contact = { ball_searches = 1.5 }",
+                           "contact = { ball_work = -1 }",
+                           "contact = { ball_work = 1000001 }",
                            "contact = { ball_minima = \"some\" }",
                            "contact = { ball_steps = \"level\" }",
                            "contact = { search_rounds = 5 }",
