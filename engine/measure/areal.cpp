@@ -214,7 +214,7 @@ Result<ArealParameters> measureAreal(const Version& field, const NominalForm& fo
     all.high = std::max(all.high, part.high);
     all.most = std::max(all.most, part.most);
   }
-  if (all.samples == 0) return nothingIn(region, "measure");
+  if (all.samples == 0) return nothingIn(region, "");
   const auto n = static_cast<double>(all.samples);
   ArealParameters result;
   result.samples = all.samples;

@@ -365,7 +365,7 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
   FormAxes axes{{0, grid.width}, {0, grid.height}};
   auto sums = sumsOf(field, options, axes, fit.form, {}, job);
   if (!sums) return tl::unexpected(sums.error());
-  if (sums->samples == 0) return nothingIn(options.region, "form");
+  if (sums->samples == 0) return nothingIn(options.region, "");
   SolvedForm solved = solveForm(sums->products(), options.degree, axes, grid);
   // On a small part of the field the terms hardly differ but about that part's middle.
   const FormAxes own = sums->axes();

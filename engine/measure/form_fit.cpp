@@ -90,7 +90,7 @@ Result<FittedForm> fitShapeForm(const Version& field, ShapeKind kind, const Form
                                 JobControl& job) {
   const auto region = wholeRegion(field, choice.region, job);
   if (!region) return tl::unexpected(region.error());
-  if (region->samples == 0) return nothingIn(choice.region, "form");
+  if (region->samples == 0) return nothingIn(choice.region, "");
   const auto stride = static_cast<std::int32_t>(
       std::ceil(std::sqrt(static_cast<double>(region->samples) / kMostFitted) - 1e-9));
   FitSamples samples(field, *region, std::max(1, stride));

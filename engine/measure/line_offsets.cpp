@@ -250,7 +250,7 @@ class LineSearch {
     overStrips([&](std::int32_t first, std::int32_t count) { countAndFit(first, count, !chain); });
     if (job_.cancelled()) return cancelled();
     found_.empty = static_cast<std::int32_t>(std::ranges::count(counts_, 0));
-    if (found_.empty == found_.lines) return nothingIn(options_.region, "lines");
+    if (found_.empty == found_.lines) return nothingIn(options_.region, "");
     if (chain) {
       findSources();
       overStrips([&](std::int32_t first, std::int32_t count) { fitSteps(first, count); });
