@@ -71,7 +71,7 @@ TEST_F(WindowTest, strokes_become_edge_lines_that_are_cut_chosen_removed_and_kep
   (void)user.key("ctrl+z");
   (void)lines(2);
   (void)user.key("y");
-  (void)user.key("ctrl+y");
+  (void)user.key("ctrl+shift+y");
   (void)lines(1);
 
   // Dragged aside, the line is located again: the edge is where it was.
