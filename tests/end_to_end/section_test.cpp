@@ -348,7 +348,7 @@ TEST(SectionCommand, SaysWhyThereIsNoHeight) {
     expectRefused(fettle(words), why);
   };
   refused(scan, {"--line", "50,50:60,60"}, "to 7.9,3.9 mm");
-  refused(scan, {"--line", "1,1:6,1", "--region", "marked"}, "no sample of the region");
+  refused(scan, {"--line", "1,1:6,1", "--region", "marked"}, "with a height is marked");
   refused(holes, {"--line", "0,1:2,1"}, "holes alone");
   refused(row, {"--line", "0,0:4,0", "--width", "3"}, "smaller width");
   refused(scan, {"--line", "1,1:6,1", "--compare", row}, "row.asc");
