@@ -179,7 +179,7 @@ TEST(Recipes, OfSessionsThatCommandsWroteHaveAllTheirSteps) {
   const auto again = fettleJson({"apply", file("r.toml"), file("s.tif"), file("g.fettle")});
   EXPECT_EQ(again["hash"], last["hash"]);
   EXPECT_EQ(fettleJson({"recipe", file("g.fettle")})["recipe"], recipe["recipe"]);
-  // Who looks for it in a journal, which commands keep none of, is told.
+  // A command keeps no journal: whoever asks for one is referred to the recipe.
   const Outcome replayed = fettle({"replay", file("f.fettle"), file("p.tif")});
   expectRefused(replayed, "has no journal, which only the window keeps");
   EXPECT_NE(replayed.err.find("fettle recipe prints the steps of commands"), std::string::npos)
