@@ -433,7 +433,9 @@ void logState(EventLog& log, const Parts& parts, const Input& input, const RunFi
 Report runReport(const Parts& parts, const RunFigures& run) {
   const DrawFigures& draw = parts.picture.drawFigures();
   const haptic::TimingFigures frame = draw.times.figures();
-  Report r{{"device", parts.window.device()}, {"frames", run.frames}};
+  Report r{{"device", parts.window.device()},
+           {"shown_through", parts.window.shownThrough()},
+           {"frames", run.frames}};
   r["frame_p50_ms"] = ms(frame.p50_ns);
   r["frame_p99_ms"] = ms(frame.p99_ns);
   r["tiles_uploaded"] = draw.tiles_uploaded;

@@ -50,6 +50,22 @@ bool layerInstalled(const vk::raii::Context& loader) {
   });
 }
 
+// Whether the device is a processor whose images can lie over the host's memory.
+bool drawsOverHostMemory(const vk::raii::PhysicalDevice& device) {
+  if (device.getProperties().deviceType != vk::PhysicalDeviceType::eCpu) return false;
+  const auto extensions = device.enumerateDeviceExtensionProperties();
+  return std::any_of(extensions.begin(), extensions.end(), [](const vk::ExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME) == 0;
+  });
+}
+
+vk::DeviceSize hostImageAlignmentOf(const vk::raii::PhysicalDevice& device) {
+  return device
+      .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceExternalMemoryHostPropertiesEXT>()
+      .get<vk::PhysicalDeviceExternalMemoryHostPropertiesEXT>()
+      .minImportedHostPointerAlignment;
+}
+
 }  // namespace
 
 std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family,
@@ -160,10 +176,12 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.preference > b.preference; });
-  std::vector<const char*> needed;
-  if (request != nullptr) needed.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   // A device that fails to start is still listed: then the next best draws, more slowly.
   for (Candidate& candidate : candidates) {
+    std::vector<const char*> needed;
+    if (request != nullptr) needed.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    const bool over_host = request != nullptr && drawsOverHostMemory(candidate.device);
+    if (over_host) needed.push_back(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
     try {
       context->startDevice(candidate.device, candidate.family, needed, maker);
     } catch (const vk::SystemError& error) {
@@ -171,6 +189,7 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
       continue;
     }
     context->physical_ = std::move(candidate.device);
+    if (over_host) context->host_image_alignment_ = hostImageAlignmentOf(context->physical_);
     break;
   }
   if (!*context->device_)

@@ -78,6 +78,9 @@ class Context {
   /// view (seen with 22.3.6): what crosses the plot's edge is missing in one eye and superfluous in the
   /// other.
   [[nodiscard]] bool multiviewWorks() const noexcept { return multiview_ && !llvmpipe_; }
+  /// Alignment of the host's memory that images can be laid over [bytes]; 0: they cannot. Of processors that draw into a
+  /// window alone: others would read such memory slowly.
+  [[nodiscard]] vk::DeviceSize hostImageAlignment() const noexcept { return host_image_alignment_; }
   /// The window's; null without a surface request.
   [[nodiscard]] vk::SurfaceKHR surface() const noexcept { return *surface_; }
 
@@ -105,6 +108,7 @@ class Context {
   vk::raii::SurfaceKHR surface_ = nullptr;
   std::uint32_t family_ = 0;
   bool multiview_ = false, llvmpipe_ = false;
+  vk::DeviceSize host_image_alignment_ = 0;
   vk::raii::PhysicalDevice physical_ = nullptr;
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;

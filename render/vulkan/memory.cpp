@@ -45,11 +45,41 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
   memory_ = vk::raii::DeviceMemory(
       context.device(), {needs.size, context.memoryType(needs.memoryTypeBits, Property::eDeviceLocal)});
   image_.bindMemory(*memory_, 0);
+  makeView(context, kind == Kind::kArray ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+           viewed_as.value_or(format));
+}
+
+GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, vk::ImageUsageFlags usage,
+                   const std::function<std::byte*(std::size_t bytes)>& memory)
+    : extent_(extent), aspect_(vk::ImageAspectFlagBits::eColor) {
+  constexpr auto kHost = vk::ExternalMemoryHandleTypeFlagBits::eHostAllocationEXT;
+  const vk::ExternalMemoryImageCreateInfo external(kHost);
+  vk::ImageCreateInfo info;
+  info.setPNext(&external)
+      .setImageType(vk::ImageType::e2D)
+      .setFormat(format)
+      .setExtent({extent.width, extent.height, 1})
+      .setMipLevels(1)
+      .setArrayLayers(1)
+      .setTiling(vk::ImageTiling::eLinear)
+      .setUsage(usage);
+  image_ = vk::raii::Image(context.device(), info);
+  row_bytes_ = image_.getSubresourceLayout({aspect_, 0, 0}).rowPitch;
+  const vk::MemoryRequirements needs = image_.getMemoryRequirements();
+  const vk::DeviceSize step = context.hostImageAlignment();
+  bytes_ = (needs.size + step - 1) / step * step;
+  std::byte* const at = memory(bytes_);
+  const vk::MemoryHostPointerPropertiesEXT can = context.device().getMemoryHostPointerPropertiesEXT(kHost, at);
+  const vk::ImportMemoryHostPointerInfoEXT import(kHost, at);
+  vk::MemoryAllocateInfo allocation(bytes_, context.memoryType(needs.memoryTypeBits & can.memoryTypeBits, {}));
+  memory_ = vk::raii::DeviceMemory(context.device(), allocation.setPNext(&import));
+  image_.bindMemory(*memory_, 0);
+  makeView(context, vk::ImageViewType::e2D, format);
+}
+
+void GpuImage::makeView(const Context& context, vk::ImageViewType type, vk::Format format) {
   vk::ImageViewCreateInfo view;
-  view.setImage(*image_)
-      .setViewType(kind == Kind::kArray ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D)
-      .setFormat(viewed_as.value_or(format))
-      .setSubresourceRange(range());
+  view.setImage(*image_).setViewType(type).setFormat(format).setSubresourceRange(range());
   view_ = vk::raii::ImageView(context.device(), view);
 }
 

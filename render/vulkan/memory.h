@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 
 #include "render/vulkan/context.h"
@@ -52,19 +53,28 @@ class GpuImage {
   enum class Kind { kPlane, kArray };
   GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers, Kind kind,
            vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect, std::optional<vk::Format> viewed_as = {});
+  /// A colour image, row after row in memory of the host. `memory` gives so many bytes, aligned as
+  /// Context::hostImageAlignment() says (not 0); they outlive the image. Throws.
+  GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, vk::ImageUsageFlags usage,
+           const std::function<std::byte*(std::size_t bytes)>& memory);
   [[nodiscard]] vk::Image image() const noexcept { return *image_; }
   [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
   /// Device memory it takes, alignment included.
   [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
+  /// From a row to the next one, of an image in memory of the host.
+  [[nodiscard]] std::size_t rowBytes() const noexcept { return row_bytes_; }
   [[nodiscard]] vk::ImageSubresourceRange range() const noexcept { return {aspect_, 0, 1, 0, layers_}; }
 
  private:
+  void makeView(const Context& context, vk::ImageViewType type, vk::Format format);
+
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Image image_ = nullptr;
   vk::raii::ImageView view_ = nullptr;
   vk::Extent2D extent_;
   vk::DeviceSize bytes_ = 0;
+  std::size_t row_bytes_ = 0;
   std::uint32_t layers_ = 1;
   vk::ImageAspectFlags aspect_;
 };

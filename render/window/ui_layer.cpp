@@ -119,6 +119,7 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   io.MouseDoubleClickTime = 0.5F;  // as desktops have it; ImGui's 0.3 s are three frames of a busy machine
   makeStyle(scale);
   ImGui_ImplGlfw_InitForVulkan(window, true);
+  frame_ = std::make_unique<UiFrame>(window);
 }
 
 UiLayer::~UiLayer() {
@@ -207,15 +208,14 @@ void UiLayer::setTheme(Theme theme) {
     colours[row.of] = ImGui::ColorConvertU32ToFloat4(panelColour(row.colour, theme));
 }
 
-void UiLayer::fit(vk::Extent2D extent) {
+void UiLayer::fit(vk::Extent2D extent, const ImageMaker& make) {
   if (image_.extent() == extent) return;
   using Usage = vk::ImageUsageFlagBits;
   context_->device().waitIdle();
   framebuffer_.clear();
   damage_.forget();
-  image_ = GpuImage(*context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
-                    Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc,
-                    vk::ImageAspectFlagBits::eColor);
+  image_ = GpuImage();  // its memory may be used again
+  image_ = make(kFormat, Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc);
   const vk::ImageView view = image_.view();
   vk::FramebufferCreateInfo info;
   info.setRenderPass(*pass_)
@@ -373,7 +373,7 @@ void UiLayer::followPointer(bool mouse_acts) {
   io.MouseDown[0] = io.MouseDown[0] || pointer_->down.value_or(false);
 }
 
-void UiLayer::beginFrame() {
+void UiLayer::beginFrame(const WindowShape& shape) {
   // In dialogs and menus the arrow keys move between fields; elsewhere they turn the view, and must not
   // navigate in the panels.
   ImGuiIO& io = ImGui::GetIO();
@@ -383,7 +383,7 @@ void UiLayer::beginFrame() {
   else
     io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  frame_->begin(shape);
   followPointer(holdClick());
   const std::vector<int> changed = holdShortPresses();
   ImGui::NewFrame();
@@ -455,11 +455,11 @@ std::vector<Rectangle> UiLayer::changedPlaces(const ImDrawData& panels, const Be
   return all;
 }
 
-void UiLayer::draw(const vk::raii::CommandBuffer& commands, const Below& below) {
+std::vector<Rectangle> UiLayer::draw(const vk::raii::CommandBuffer& commands, const Below& below) {
   ImDrawData& panels = *ImGui::GetDrawData();
   const bool first = !damage_.known();
   const std::vector<Rectangle> places = changedPlaces(panels, below);
-  if (places.empty()) return;
+  if (places.empty()) return places;
   std::vector<vk::ImageCopy> copies;
   for (const Rectangle& place : places) {
     const Rectangle part = cut(place, below_);
@@ -501,6 +501,7 @@ void UiLayer::draw(const vk::raii::CommandBuffer& commands, const Below& below) 
   change(commands, image_, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eAllTransfer,
          Access::eTransferRead);
+  return places;
 }
 
 void UiLayer::drawPanels(const vk::raii::CommandBuffer& commands, ImDrawData& panels,

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "render/plan/picture.h"
 #include "render/vulkan/memory.h"
 #include "render/window/panel_damage.h"
+#include "render/window/ui_frame.h"
 
 struct GLFWwindow;
 
@@ -44,7 +47,9 @@ class UiLayer {
   void setScale(double scale);
   /// The colours of what is drawn from the next frame on.
   void setTheme(Theme theme);
-  void fit(vk::Extent2D extent);
+  /// Fits to frames of this size, in an image that `make` makes.
+  using ImageMaker = std::function<GpuImage(vk::Format format, vk::ImageUsageFlags usage)>;
+  void fit(vk::Extent2D extent, const ImageMaker& make);
   /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
   /// gets keys that were released by then, for one frame.
   void notePress(int key, int modifiers);
@@ -65,7 +70,7 @@ class UiLayer {
   [[nodiscard]] bool behind() const noexcept {
     return !pressed_.empty() || !waiting_.empty() || !clicks_.empty() || !pointed_.empty();
   }
-  void beginFrame();
+  void beginFrame(const WindowShape& shape);
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
   /// ends.
   [[nodiscard]] bool entered() const noexcept { return entered_; }
@@ -92,8 +97,8 @@ class UiLayer {
     bool changed = true;                ///< since the last frame
   };
   /// Draws what changed since the last frame - of the picture, and where panels look different - and leaves image() in
-  /// eTransferSrcOptimal.
-  void draw(const vk::raii::CommandBuffer& commands, const Below& below);
+  /// eTransferSrcOptimal. Returns the places that it drew, disjoint.
+  [[nodiscard]] std::vector<Rectangle> draw(const vk::raii::CommandBuffer& commands, const Below& below);
   /// In the next frame all is drawn again.
   void forget() noexcept { damage_.forget(); }
   [[nodiscard]] const GpuImage& image() const noexcept { return image_; }
@@ -124,6 +129,7 @@ class UiLayer {
   bool entered_ = false;
   int leaving_ = 0;  // frames until a field that a key leaves has the keyboard no more
   GLFWwindow* window_;
+  std::unique_ptr<UiFrame> frame_;
   std::vector<Press> pressed_;                  // since the last frame began, or waiting for the next one
   std::vector<Click> clicks_;                   // the same
   bool dialog_ = false;                         // one was open when the last frame began

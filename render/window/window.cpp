@@ -15,10 +15,12 @@
 #include "render/window/frame_copy.h"
 #include "render/window/full_screen.h"
 #include "render/window/lost_display.h"
+#include "render/window/shared_frames.h"
 #include "render/window/tablet.h"
 #include "render/window/ui_layer.h"
 #include "render/window/ui_text.h"
 #include "render/window/window_keys.h"
+#include "render/window/window_shape.h"
 #include "render/window/window_swapchain.h"
 
 #define GLFW_INCLUDE_NONE
@@ -86,7 +88,7 @@ struct Window::Impl {
   std::vector<std::string> messages;  // of the previous contexts
   std::unique_ptr<UiLayer> ui;        // outlives contexts: it holds the panels
   std::unique_ptr<Context> context;
-  std::unique_ptr<Swapchain> swapchain;
+  std::unique_ptr<Presenter> presenter;
   GpuImage picture;
   LiveTarget target;
   bool drawn = false;            // something was drawn to `picture`
@@ -97,25 +99,21 @@ struct Window::Impl {
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
   std::vector<InputEvent> input;
-  std::optional<std::array<double, 2>>
-      cursor;  // of the last event: GLFW asks where it is now, a slow frame later
+  WindowShape shape;
   std::vector<std::string> drops;
   std::function<void()> while_waiting;
 
   std::array<double, 2> cursorOfEvent() {
-    if (!cursor) {
-      cursor.emplace();
-      glfwGetCursorPos(glfw.window, &(*cursor)[0], &(*cursor)[1]);
+    if (!shape.cursor) {
+      shape.cursor.emplace();
+      glfwGetCursorPos(glfw.window, &(*shape.cursor)[0], &(*shape.cursor)[1]);
     }
-    return *cursor;
+    return *shape.cursor;
   }
   // Of the frame, for each of GLFW's units.
   [[nodiscard]] glm::dvec2 framePixels() const {
-    int window_width = 1, window_height = 1, width = 1, height = 1;
-    glfwGetWindowSize(glfw.window, &window_width, &window_height);
-    glfwGetFramebufferSize(glfw.window, &width, &height);
-    return {static_cast<double>(std::max(width, 1)) / std::max(window_width, 1),
-            static_cast<double>(std::max(height, 1)) / std::max(window_height, 1)};
+    return {static_cast<double>(std::max(shape.frame_width, 1)) / std::max(shape.width, 1),
+            static_cast<double>(std::max(shape.frame_height, 1)) / std::max(shape.height, 1)};
   }
   void note(InputEvent event) {
     const auto [x, y] = cursorOfEvent();
@@ -139,9 +137,8 @@ struct Window::Impl {
   static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
   void listen();
   [[nodiscard]] vk::Extent2D frameSize() const {
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(glfw.window, &width, &height);
-    return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+    return {static_cast<std::uint32_t>(std::max(shape.frame_width, 0)),
+            static_cast<std::uint32_t>(std::max(shape.frame_height, 0))};
   }
   [[nodiscard]] Modifiers modifiersNow() const {
     const auto held = [&](int a, int b) {
@@ -149,6 +146,11 @@ struct Window::Impl {
     };
     return {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
             held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT), held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
+  }
+  void fitPanels() {
+    ui->fit(presenter->extent(), [this](vk::Format format, vk::ImageUsageFlags usage) {
+      return presenter->makeImage(format, usage);
+    });
   }
   engine::Status enterDevice();
   void leaveDevice() noexcept;
@@ -160,7 +162,9 @@ engine::Status Window::Impl::enterDevice() {
   context = *std::move(made);
   device_name = context->name();
   try {
-    swapchain = std::make_unique<Swapchain>(*context, UiLayer::kFormat);
+    if (glfwGetX11Display() != nullptr)
+      presenter = SharedFrames::open(*context, static_cast<xcb_window_t>(glfwGetX11Window(glfw.window)));
+    if (!presenter) presenter = std::make_unique<Swapchain>(*context, UiLayer::kFormat);
     ui->enter(*context);
   } catch (const std::exception& error) {
     const engine::Error why = lost(device_name, error.what());
@@ -182,7 +186,7 @@ void Window::Impl::leaveDevice() noexcept {
   ui->leave();
   picture = {};
   target = {};
-  swapchain.reset();
+  presenter.reset();
   const std::vector<std::string> said = context->messages().all();
   messages.insert(messages.end(), said.begin(), said.end());
   context.reset();
@@ -218,7 +222,7 @@ void Window::Impl::listen() {
     of(w).note(event);
   });
   glfwSetCursorPosCallback(glfw.window, [](GLFWwindow* w, double x, double y) {
-    of(w).cursor = {x, y};
+    of(w).shape.cursor = {x, y};
     InputEvent event;
     event.kind = InputKind::kMove;
     event.modifiers = of(w).modifiersNow();
@@ -233,9 +237,23 @@ void Window::Impl::listen() {
     of(w).note(event);
   });
   glfwSetCursorEnterCallback(glfw.window, [](GLFWwindow* w, int entered) {
+    of(w).shape.entered = entered != 0;
     InputEvent event;
     event.kind = entered != 0 ? InputKind::kMove : InputKind::kLeave;
     of(w).note(event);
+  });
+  glfwSetWindowSizeCallback(glfw.window, [](GLFWwindow* w, int width, int height) {
+    of(w).shape.width = width;
+    of(w).shape.height = height;
+  });
+  glfwSetFramebufferSizeCallback(glfw.window, [](GLFWwindow* w, int width, int height) {
+    of(w).shape.frame_width = width;
+    of(w).shape.frame_height = height;
+  });
+  glfwSetWindowIconifyCallback(
+      glfw.window, [](GLFWwindow* w, int iconified) { of(w).shape.iconified = iconified != 0; });
+  glfwSetWindowRefreshCallback(glfw.window, [](GLFWwindow* w) {
+    if (of(w).presenter) of(w).presenter->forget();
   });
   glfwSetDropCallback(glfw.window, [](GLFWwindow* w, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(w).drops.emplace_back(paths[i]);
@@ -272,6 +290,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
                            kDisplayRemedy);
   glfwSetWindowSizeLimits(impl->glfw.window, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
   impl->listen();
+  impl->shape.ask(impl->glfw.window);
   impl->tablet = tabletOver(impl->glfw.window);
 
   std::uint32_t count = 0;
@@ -369,7 +388,7 @@ void Window::refuseClose() {
 }
 bool Window::minimised() const {
   const vk::Extent2D size = impl_->frameSize();
-  return glfwGetWindowAttrib(impl_->glfw.window, GLFW_ICONIFIED) != 0 || size.width == 0 || size.height == 0;
+  return impl_->shape.iconified || size.width == 0 || size.height == 0;
 }
 int Window::width() const {
   return static_cast<int>(impl_->frameSize().width);
@@ -411,6 +430,9 @@ Context& Window::context() {
 const std::string& Window::device() const {
   return impl_->device_name;
 }
+std::string Window::shownThrough() const {
+  return impl_->presenter ? impl_->presenter->name() : "";
+}
 std::vector<std::string> Window::validationMessages() const {
   std::vector<std::string> all = impl_->messages;
   if (impl_->context) {
@@ -439,7 +461,7 @@ void Window::leavePanels() {
   impl_->ui->leavePanels();
 }
 void Window::beginFrame() {
-  impl_->ui->beginFrame();
+  impl_->ui->beginFrame(impl_->shape);
 }
 
 void Window::setPictureArea(const Rectangle& area) {
@@ -487,15 +509,16 @@ engine::Result<PresentReport> Window::present() {
     if (displayIsLost()) return tl::unexpected(lost(w.device_name, ""));
     const auto combine = [&w](const vk::raii::CommandBuffer& commands) {
       const vk::Extent2D size = w.picture.extent();
-      w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
-                            {std::max(w.area.x, 0), std::max(w.area.y, 0), static_cast<int>(size.width),
-                             static_cast<int>(size.height)},
-                            std::exchange(w.picture_changed, false)});
+      return w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
+                                   {std::max(w.area.x, 0), std::max(w.area.y, 0),
+                                    static_cast<int>(size.width), static_cast<int>(size.height)},
+                                   std::exchange(w.picture_changed, false)});
     };
     if (minimised()) {
       if (!canBeSeen()) return report;
-      w.ui->fit(w.frameSize());
-      w.context->run(combine);
+      if (!w.presenter->fit(w.frameSize())) return report;
+      w.fitPanels();
+      w.context->run([&](const vk::raii::CommandBuffer& commands) { (void)combine(commands); });
       return report;
     }
     const auto while_waiting = [&w] {
@@ -503,16 +526,18 @@ engine::Result<PresentReport> Window::present() {
       // A lost display returns no image, and not every driver reports that.
       if (displayIsLost()) throw vk::SurfaceLostKHRError("display");
     };
+    const auto before_showing = [&w] {
+      if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
+    };
     // A window that changes its size while it is shown needs another try.
     for (int tries = 0; tries < 3; ++tries) {
-      if (!w.swapchain->fit(w.frameSize())) return report;
-      w.ui->fit(w.swapchain->extent());
+      if (!w.presenter->fit(w.frameSize())) return report;
+      w.fitPanels();
       const engine::Stopwatch watch;
-      const bool shown = w.swapchain->show(w.ui->image().image(), combine, while_waiting, [&w] {
-        if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
-      });
-      report.waited_ms += w.swapchain->waitedMs();
-      report.draw_ms = watch.ms() - w.swapchain->waitedMs();
+      const bool shown =
+          w.presenter->show({w.ui->image().image(), combine, while_waiting, before_showing});
+      report.waited_ms += w.presenter->waitedMs();
+      report.draw_ms = watch.ms() - w.presenter->waitedMs();
       report.shown_ns = engine::steadyNs();
       if (shown) break;
     }

@@ -208,6 +208,8 @@ class Window {
   /// The context of everything drawn for this window.
   [[nodiscard]] Context& context();
   [[nodiscard]] const std::string& device() const;
+  /// How frames reach the display ("shared memory", "Vulkan"); empty without a device.
+  [[nodiscard]] std::string shownThrough() const;
   [[nodiscard]] std::vector<std::string> validationMessages() const;
 
  private:

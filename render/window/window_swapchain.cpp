@@ -91,9 +91,12 @@ void Swapchain::copyOrConvert(vk::Image source, std::uint32_t index) {
                       ImageLayout::eTransferDstOptimal, blit, vk::Filter::eNearest);
 }
 
-bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
-                     const std::function<void()>& while_waiting,
-                     const std::function<void()>& before_showing) {
+GpuImage Swapchain::makeImage(vk::Format format, vk::ImageUsageFlags usage) {
+  return {context_, format, extent_, 1, GpuImage::Kind::kPlane, usage, vk::ImageAspectFlagBits::eColor};
+}
+
+bool Swapchain::show(const FrameToShow& frame) {
+  const std::function<void()>& while_waiting = frame.while_waiting;
   std::uint32_t index = 0;
   bool right_size = true;
   const engine::Stopwatch watch;
@@ -113,10 +116,10 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
     return false;
   }
   commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  record(commands_);
+  (void)frame.record(commands_);
   change(commands_, images_[index], ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
          Stage::eAllTransfer, {}, Stage::eAllTransfer, Access::eTransferWrite);
-  copyOrConvert(source, index);
+  copyOrConvert(frame.image, index);
   change(commands_, images_[index], ImageLayout::eTransferDstOptimal, ImageLayout::ePresentSrcKHR,
          Stage::eAllTransfer, Access::eTransferWrite, Stage::eNone, {});
   commands_.end();
@@ -132,7 +135,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
     while_waiting();
   context_.device().resetFences(*done_);
 
-  if (before_showing) before_showing();
+  if (frame.before_showing) frame.before_showing();
   vk::PresentInfoKHR present;
   present.setWaitSemaphores(*drawn_[index]).setSwapchains(*swapchain_).setImageIndices(index);
   try {

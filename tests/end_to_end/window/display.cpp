@@ -29,19 +29,25 @@ int differing(const Screen& a, const Screen& b, const Part& part, int levels) {
   return count;
 }
 
-Display::Display(int width, int height, const std::filesystem::path& folder)
+Display::Display(int width, int height, const std::filesystem::path& folder,
+                 const std::vector<std::string>& more)
     : picture_(folder / "Xvfb_screen0") {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return;
   const std::string size = std::to_string(width) + "x" + std::to_string(height) + "x24";
-  const std::string number = "9";  // the descriptor on which the server reports its display's number
+  // On descriptor 9 the server reports its display's number.
+  std::vector<std::string> words{"Xvfb", "-displayfd", "9", "-screen", "0", size, "-fbdir",
+                                 folder, "-nolisten", "tcp", "-noreset"};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {
     dup2(ends[1], 9);
     const int quiet = open("/dev/null", O_WRONLY);
     dup2(quiet, STDERR_FILENO);
-    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", size.c_str(), "-fbdir",
-           folder.c_str(), "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
+    execvp(arguments.front(), arguments.data());
     _exit(127);
   }
   ::close(ends[1]);

@@ -31,7 +31,8 @@ struct Part {
 /// object; its picture is read from the file that the server draws into.
 class Display {
  public:
-  Display(int width, int height, const std::filesystem::path& folder);
+  /// `more`: further arguments of the server.
+  Display(int width, int height, const std::filesystem::path& folder, const std::vector<std::string>& more = {});
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;

@@ -16,6 +16,8 @@ constexpr auto kHeldUp = 60ms;  // a frame, at least
 
 class LoadTest : public WindowTest {
  protected:
+  LoadTest() : WindowTest(Frames::kThroughVulkan) {}
+
   // Turns the view by hand, each frame being held up; what the frames said of their sharpness.
   std::set<std::string> turnSlowly(User& user) {
     ViewProgram& program = user.program();

@@ -13,6 +13,8 @@ bool isWritten(const State& s, const std::string& text) {
 
 class LockTest : public WindowTest {
  protected:
+  LockTest() : WindowTest(Frames::kThroughVulkan) {}
+
   std::unique_ptr<ViewProgram> startOpened() {
     auto program = start({scan}, gate_.environment());
     (void)opened(*program);

@@ -14,6 +14,8 @@ using State = User::State;
 
 class LossTest : public WindowTest {
  protected:
+  LossTest() : WindowTest(Frames::kThroughVulkan) {}
+
   // The program with the layer that takes devices away, with a smoothed and a marked band.
   std::unique_ptr<ViewProgram> startWithWork() {
     auto program = start({scan}, {{"VK_ADD_LAYER_PATH", FETTLE_LAYER_FOLDER},

@@ -102,6 +102,8 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
 
 class MonkeyTest : public WindowTest {
  protected:
+  MonkeyTest() : WindowTest(Frames::kThroughVulkan) {}
+
   void SetUp() override {
     WindowTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;

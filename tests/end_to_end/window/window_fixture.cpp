@@ -42,8 +42,11 @@ Differences compare(const engine::Version& a, const engine::Version& b) {
   return d;
 }
 
-WindowTest::WindowTest(int width, int height)
-    : display(width, height, folder.path()), other(display.name()), width_(width), height_(height) {}
+WindowTest::WindowTest(int width, int height, Frames frames)
+    : display(width, height, folder.path(),
+              frames == Frames::kShared ? std::vector<std::string>{}
+                                        : std::vector<std::string>{"-extension", "MIT-SHM"}),
+      other(display.name()), width_(width), height_(height) {}
 
 void WindowTest::SetUp() {
   if (!display.works()) GTEST_SKIP() << "no Xvfb";

@@ -30,8 +30,11 @@ struct Differences {
 /// A virtual display, a simulated scan, and the real program on both; the validation layers watch it all.
 class WindowTest : public ::testing::Test {
  protected:
+  /// How frames reach the display: Vulkan's layers see those alone that Vulkan shows.
+  enum class Frames { kShared, kThroughVulkan };
   WindowTest() : WindowTest(1100, 800) {}
-  WindowTest(int width, int height);
+  explicit WindowTest(Frames frames) : WindowTest(1100, 800, frames) {}
+  WindowTest(int width, int height, Frames frames = Frames::kShared);
   void SetUp() override;
   /// Whether a picture that has been drawn changes once more when nothing else does: by four rays per pixel.
   enum class AtRest { kPlain, kSmooth };

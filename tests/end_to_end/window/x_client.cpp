@@ -192,6 +192,19 @@ std::string XClient::drop(std::uint32_t window, const std::vector<std::string>& 
   return dropped ? "the window never finished" : "the window never answered";
 }
 
+void XClient::coverAndUncover() {
+  const xcb_screen_t* const screen = xcb_setup_roots_iterator(xcb_get_setup(impl_->x)).data;
+  const xcb_window_t cover = xcb_generate_id(impl_->x);
+  const std::array<std::uint32_t, 2> values{screen->white_pixel, 1};
+  xcb_create_window(impl_->x, XCB_COPY_FROM_PARENT, cover, impl_->root, 0, 0, screen->width_in_pixels,
+                    screen->height_in_pixels, 0, XCB_WINDOW_CLASS_INPUT_OUTPUT, XCB_COPY_FROM_PARENT,
+                    XCB_CW_BACK_PIXEL | XCB_CW_OVERRIDE_REDIRECT, values.data());
+  xcb_map_window(impl_->x, cover);
+  xcb_destroy_window(impl_->x, cover);
+  // Answered: the server has done it.
+  (void)impl_->exists(cover);
+}
+
 void XClient::minimise(std::uint32_t window) {
   impl_->setState(window, 3);  // IconicState
   xcb_unmap_window(impl_->x, window);

@@ -29,6 +29,9 @@ class XClient {
   /// way.
   [[nodiscard]] std::string drop(std::uint32_t window, const std::vector<std::string>& paths);
 
+  /// Lays a window of its own over all of the screen and takes it away again: what lay under it is lost.
+  void coverAndUncover();
+
   /// What a window manager does when it is asked to minimise: hides the window and says that it did
   /// (WM_STATE, Inter-Client Communication Conventions Manual 4.1.4).
   void minimise(std::uint32_t window);

@@ -28,7 +28,7 @@ inline constexpr double kScreenY_m = 1.35, kTableZ_m = -0.6;
 class XrRoomTest : public WindowTest {
  protected:
   using State = User::State;
-  XrRoomTest() : stage(kRoom) {}
+  explicit XrRoomTest(Frames frames = Frames::kShared) : WindowTest(frames), stage(kRoom) {}
 
   std::unique_ptr<ViewProgram> startIn(std::vector<std::string> more = {},
                                        std::map<std::string, std::string> environment = {}) const {

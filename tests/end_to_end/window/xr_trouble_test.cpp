@@ -13,6 +13,8 @@ namespace {
 
 class XrTrouble : public XrRoomTest {
  protected:
+  XrTrouble() : XrRoomTest(Frames::kThroughVulkan) {}
+
   static constexpr const char* kStands = "the headset makes no frames";
 
   // The program with the layer that takes the window's device away, and what it is to do.
