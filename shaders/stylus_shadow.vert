@@ -8,6 +8,7 @@ layout(set = 0, binding = kBindStylus, std430) readonly buffer StylusBlock { Sty
 layout(push_constant) uniform Push { vec4 plot_px; } push;
 
 layout(location = 0) noperspective out vec4 at_no_depth;  // as in shade.vert
+layout(location = 1) flat out vec3 across;  // the plane of the pen's axis and the light: a unit vector
 
 void main() {
   const vec3 reach = stylus.shadow.y * panel.light.xyz;
@@ -30,5 +31,9 @@ void main() {
   high = clamp(high, -1.0, 1.0);
   const vec2 t = 0.5 * mix(low, high, vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1)) + 0.5;
   gl_Position = vec4(2.0 * t - 1.0, 0.0, 1.0);
+  const vec3 normal = cross(stylus.tail.xyz - stylus.point.xyz, panel.light.xyz);
+  const float length_of_normal = length(normal);
+  // A pen that points at the light has no such plane: no point is far from it.
+  across = length_of_normal > 1e-3 * stylus.shadow.y ? normal / length_of_normal : vec3(0.0);
   at_no_depth = viewUniforms().field_from_pixel * vec4(push.plot_px.zw + t * push.plot_px.xy, 0.0, 1.0);
 }
