@@ -88,6 +88,14 @@ void releaseFreeMemory() {
   malloc_trim(0);
 }
 
+void keepFreeMemory() noexcept {
+  // Setting one of these ends what the library adapts by itself, so that all three are set. What it adapts at most:
+  constexpr int kLargestInHeap = 32 << 20;
+  static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargestInHeap));
+  static_cast<void>(mallopt(M_TRIM_THRESHOLD, 256 << 20));
+  static_cast<void>(mallopt(M_TOP_PAD, 16 << 20));
+}
+
 bool resetPeak() {
   std::ofstream file("/proc/self/clear_refs");
   file << "5";

@@ -21,6 +21,11 @@ struct ResidentMemory {
 /// Gives memory that the heap holds for later back to the system, so that ResidentMemory shows what is in use. Any thread.
 void releaseFreeMemory();
 
+/// From now on the heap keeps memory that is given back to it, up to 256 MiB, and takes more in steps of 16 MiB: for a program
+/// that draws beside others of its threads that fill new pages. Each such page holds up who asks the system for memory, and a frame
+/// asks as often as it crosses the heap's end.
+void keepFreeMemory() noexcept;
+
 /// Restarts ResidentMemory::peak; false where the system cannot.
 bool resetPeak();
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/thread_priority.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 
@@ -58,7 +59,10 @@ Result<std::unique_ptr<KeptWork>> KeptWork::open(KeepOptions options, const Work
     kept->file_ = *std::move(file);
   }
   kept->most_bytes_ = kept->file_.bytes();
-  kept->writer_ = std::thread([work = kept.get()] { work->writeRegularly(); });
+  kept->writer_ = std::thread([work = kept.get()] {
+    takeNormalPriority();
+    work->writeRegularly();
+  });
   return kept;
 }
 

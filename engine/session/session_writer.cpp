@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "engine/base/thread_priority.h"
 #include "engine/field/seen_field.h"
 #include "engine/session/session_file.h"
 #include "engine/session/session_reader.h"
@@ -28,7 +29,10 @@ class SessionWriter::Impl {
     status_.committed_state = file_->head().state;
     planned_state_ = file_->head().state;
     planned_last_ = file_->head().last_state;
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this] {
+      takeNormalPriority();
+      run();
+    });
   }
 
   ~Impl() { finish(); }

@@ -4,6 +4,8 @@
 
 #include <sys/mman.h>
 
+#include "engine/base/thread_priority.h"
+
 #ifndef MADV_POPULATE_WRITE
 #define MADV_POPULATE_WRITE 23  // Linux 5.14
 #endif
@@ -42,6 +44,8 @@ PoolKeeper::PoolKeeper(std::shared_ptr<engine::FieldMemory> memory, const Levels
     : memory_(std::move(memory)), levels_(levels) {
   topUp();
   thread_ = std::thread([this] {
+    // Filters take tiles from the same pools: clearing pages for them must not come before what draws.
+    engine::takeNormalPriority();
     while (!stop_.load(std::memory_order_relaxed)) {
       std::this_thread::sleep_for(std::chrono::nanoseconds(levels_.poll_interval_ns));
       topUp();

@@ -8,6 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "engine/base/thread_priority.h"
 #include "engine/field/tile_store.h"
 
 namespace fettle::haptic {
@@ -56,6 +57,7 @@ TilePrefetcher::~TilePrefetcher() {
 
 void TilePrefetcher::start() {
   thread_ = std::thread([this] {
+    engine::takeNormalPriority();
     // Relaxed: a stop may be seen one round late.
     while (!stop_.load(std::memory_order_relaxed)) {
       prefetch();

@@ -13,6 +13,7 @@
 #include "app/window/device_buttons.h"
 #include "app/window/draw_field.h"
 #include "app/work/behind_the_window.h"
+#include "engine/base/memory.h"
 #include "engine/base/stopwatch.h"
 
 namespace fettle::app {
@@ -81,6 +82,7 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   window.layout_file = settingsPath("/layout.ini");
   const Settings settings = Settings::load(settingsPath("/window.json"));
   if (window.scale <= 0.0) window.scale = settings.ui_scale;
+  engine::keepFreeMemory();
   putWorkersBehindTheWindow();
   comeBeforeOtherWork();
   auto opened = render::Window::create(window);
