@@ -7,8 +7,8 @@ namespace fettle::app {
 /// Whether frames of one kind are drawn with less, decided by the time that the last ones took. The mean of them counts, the newest
 /// ones most, and a single long one - a pipeline that was compiled - changes nothing.
 ///
-///   all --- mean above kSlow_ms, kFew frames at least, the last two above it --> less
-///    ^--- mean below kQuick_ms, calm() frames in a row ---'
+///   all --- mean above slow_ms, kFew frames at least, the last two above it --> less
+///    ^--- mean below quick_ms, calm() frames in a row ---'
 ///
 /// Where frames with all are slow again soon after that, calm() doubles: so the picture does not keep changing between the two
 /// under a load that is the same.
@@ -19,15 +19,20 @@ class FrameBudget {
   /// Two frames lie between an edit and its pixel at worst, of 33 ms together; with less there must be time for what all
   /// would take in addition.
   static constexpr double kSlow_ms = 25.0, kQuick_ms = 12.0;
+  /// Of frames that change as a whole: between a key and its effect lie two at worst, of 100 ms together.
+  static constexpr double kSlowWhole_ms = 45.0, kQuickWhole_ms = 22.0;
   static constexpr int kFew = 3, kCalm = 20, kMostCalm = 320, kSoon = 60;
+
+  explicit constexpr FrameBudget(double slow_ms = kSlow_ms, double quick_ms = kQuick_ms) noexcept
+      : slow_ms_(slow_ms), quick_ms_(quick_ms) {}
 
   /// A frame of this kind took so long, from its beginning until it was passed to the window system, without waiting for the display.
   void note(double ms) noexcept {
     constexpr double kWeight = 0.25;
-    const double counted = std::min(ms, 2.0 * kSlow_ms);
+    const double counted = std::min(ms, 2.0 * slow_ms_);
     mean_ms_ = frames_ == 0 ? counted : mean_ms_ + kWeight * (counted - mean_ms_);
     ++frames_;
-    slow_ = ms > kSlow_ms ? slow_ + 1 : 0;
+    slow_ = ms > slow_ms_ ? slow_ + 1 : 0;
     if (less_)
       noteLess();
     else
@@ -42,12 +47,12 @@ class FrameBudget {
  private:
   void noteAll() noexcept {
     if (frames_ >= kSoon) calm_ = kCalm;
-    if (frames_ < kFew || slow_ < 2 || mean_ms_ <= kSlow_ms) return;
+    if (frames_ < kFew || slow_ < 2 || mean_ms_ <= slow_ms_) return;
     if (returned_ && frames_ < kSoon) calm_ = std::min(2 * calm_, kMostCalm);
     change(true);
   }
   void noteLess() noexcept {
-    quick_ = mean_ms_ < kQuick_ms ? quick_ + 1 : 0;
+    quick_ = mean_ms_ < quick_ms_ ? quick_ + 1 : 0;
     if (quick_ < calm_) return;
     returned_ = true;
     change(false);
@@ -57,6 +62,7 @@ class FrameBudget {
     frames_ = quick_ = slow_ = 0;
   }
 
+  double slow_ms_, quick_ms_;
   bool less_ = false, returned_ = false;
   double mean_ms_ = 0.0;
   int frames_ = 0;  // since the last change

@@ -29,6 +29,12 @@ bool looksAlike(const render::FrameInput& a, const render::FrameInput& b) {
          a.light_elevation_deg == b.light_elevation_deg && a.stereo.mode == b.stereo.mode;
 }
 
+// Whether both are the same but for what is previewed beside the field.
+bool previewsDiffer(const render::Shown& a, const render::Shown& b) {
+  return a.versions.size() > 1 && b.versions.size() > 1 &&
+         !std::equal(a.versions.begin() + 1, a.versions.end(), b.versions.begin() + 1, b.versions.end());
+}
+
 bool same(const render::Shown& a, const render::Shown& b) {
   return a.versions == b.versions && a.original == b.original && a.marks == b.marks &&
          a.accepted == b.accepted && a.difference == b.difference;
@@ -49,7 +55,11 @@ void WindowPicture::clear() {
   refinement_ = {};
   at_rest_ = {};
   figures_ = {};
-  moving_ = strokes_ = {};  // what took long was another field or another device
+  // What took long was another field or another device.
+  moving_ = strokes_ = FrameBudget();
+  whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms);
+  sharp_later_ = {};
+  results_came_ = false;
   measured_ = Measured::kNothing;
   needs_redraw_ = true;
 }
@@ -68,6 +78,7 @@ engine::Status WindowPicture::show(render::Shown shown) {
   const bool other_form = !shown_.versions.empty() && !shown.versions.empty() &&
                           shown_.versions.front().formOver() != shown.versions.front().formOver();
   if (other_form) live_->refreshRanges();
+  results_came_ = results_came_ || previewsDiffer(shown, shown_);
   shown_ = std::move(shown);
   needs_redraw_ = true;
   return {};
@@ -89,6 +100,7 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kMoving) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
+  if (measured_ == Measured::kWhole) whole_.note(ms);
   measured_ = Measured::kNothing;
 }
 
@@ -98,7 +110,8 @@ bool WindowPicture::takeDue(Draws draws) {
   const bool refines = draws == Draws::kRefined;
   if (refines && measuresFirst(now)) return false;
   const bool changes =
-      needs_redraw_ || figures_.upload.pending_tiles > 0 || (refines && refinement_.due(now));
+      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
+      (refines && (refinement_.due(now) || sharp_later_.due(now)));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;
@@ -115,11 +128,23 @@ bool WindowPicture::measuresFirst(Refinement::Clock::time_point now) {
   return live_->measureFor(kMeasuring_ms) > 0;
 }
 
+// Whether the next frame has half the resolution since whole frames take long; `changes_whole`: it is one.
+bool WindowPicture::drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept {
+  if (!adapts_ || !whole_.less()) return false;
+  // The frame after one of half the resolution is whole, too.
+  return changes_whole || (sharp_later_.pending() && !sharp_later_.due(now));
+}
+
 bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& status) {
   // Drawn with the usual vertices at first: a key acts at once, and the picture becomes finer after it.
-  if (look_ && !looksAlike(*look_, input)) refinement_.restart(Refinement::Clock::now());
+  const auto now = Refinement::Clock::now();
+  const bool looks_other = look_ && !looksAlike(*look_, input);
+  if (looks_other) refinement_.restart(now);
   look_ = input;
   look_->overlays = {};
+  const bool sharp_wanted = draws == Draws::kRefined && input.sharpness == render::Sharpness::kFull;
+  const bool changes_whole = sharp_wanted && (std::exchange(results_came_, false) || looks_other);
+  if (sharp_wanted && drawsLess(changes_whole, now)) input.sharpness = render::Sharpness::kHalf;
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
@@ -144,10 +169,16 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
-  if (input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter)
+  if (changes_whole) {
+    measured_ = Measured::kWhole;
+    if (input.sharpness == render::Sharpness::kHalf) sharp_later_.drawnWithLess(drawn_);
+  } else if (!sharp_wanted && (input.sharpness == render::Sharpness::kHalf ||
+                               input.sharpness == render::Sharpness::kQuarter)) {
     measured_ = Measured::kMoving;
-  else if (!rests && figures_.continued && figures_.redrawn < 1.0)
+  } else if (!rests && figures_.continued && figures_.redrawn < 1.0) {
     measured_ = Measured::kStroke;
+  }
+  if (input.sharpness != render::Sharpness::kHalf) sharp_later_.drawnSharply();
   at_rest_.drawn({.changed = figures_.redrawn > 0.0,
                   .at_rest = rests,
                   .left = figures_.rest_left,

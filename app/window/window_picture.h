@@ -13,6 +13,7 @@
 #include "app/window/picture_at_rest.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
+#include "app/window/sharp_later.h"
 #include "app/work/visible_part.h"
 #include "engine/field/sample_rect.h"
 #include "haptic/loop/timing.h"
@@ -54,7 +55,7 @@ class WindowPicture {
   [[nodiscard]] bool active() const noexcept {
     return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0;
   }
-  [[nodiscard]] bool refining() const noexcept { return refinement_.pending(); }
+  [[nodiscard]] bool refining() const noexcept { return refinement_.pending() || sharp_later_.pending(); }
   /// Whether frames are left until the picture has four rays per pixel.
   [[nodiscard]] bool smoothing() const noexcept { return smooth_at_rest_ && at_rest_.pending(); }
   /// Whether it gets them at rest.
@@ -124,6 +125,7 @@ class WindowPicture {
   [[nodiscard]] bool hasSplitLine(const Display& display) const;
 
  private:
+  [[nodiscard]] bool drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept;
   [[nodiscard]] bool measuresFirst(Refinement::Clock::time_point now);
   [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
@@ -139,9 +141,11 @@ class WindowPicture {
   bool needs_redraw_ = true;
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
   bool adapts_ = true;
-  FrameBudget moving_, strokes_;
+  FrameBudget moving_, strokes_, whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms};
+  SharpLater sharp_later_;
+  bool results_came_ = false;  // of a preview, for the next frame
   // What the frame that is being shown is measured for.
-  enum class Measured : std::uint8_t { kNothing, kMoving, kStroke } measured_ = Measured::kNothing;
+  enum class Measured : std::uint8_t { kNothing, kMoving, kStroke, kWhole } measured_ = Measured::kNothing;
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
   Refinement::Clock::time_point drawn_;  // the last frame
   DrawFigures draw_figures_;

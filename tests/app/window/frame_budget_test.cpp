@@ -1,4 +1,5 @@
 #include "app/window/frame_budget.h"
+#include "app/window/sharp_later.h"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,30 @@ TEST(FrameBudget, DrawsLessAfterAFewSlowFrames) {
   for (int i = 0; i < 50; ++i) after_quick_ones.note(12.0);
   // 12 + 28 (1 - 0.75^n) > 25 at n = 3.
   EXPECT_EQ(framesUntilChange(after_quick_ones, 40.0), 3);
+}
+
+TEST(FrameBudget, HasItsOwnLimitsForWholeFrames) {
+  FrameBudget whole{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms};
+  EXPECT_EQ(framesUntilChange(whole, 44.0), 0);
+  EXPECT_GT(framesUntilChange(whole, 80.0), 0);
+  EXPECT_TRUE(whole.less());
+  EXPECT_EQ(framesUntilChange(whole, 23.0, 200), 0);
+  EXPECT_GE(framesUntilChange(whole, 21.0), FrameBudget::kCalm);
+}
+
+TEST(SharpLater, IsDueOnceNothingHasChangedForAWhile) {
+  using namespace std::chrono_literals;
+  SharpLater later;
+  const SharpLater::Clock::time_point begin{};
+  EXPECT_FALSE(later.pending());
+  EXPECT_FALSE(later.due(begin + 10s));
+  later.drawnWithLess(begin);
+  later.drawnWithLess(begin + 100ms);
+  EXPECT_TRUE(later.pending());
+  EXPECT_FALSE(later.due(begin + 100ms + SharpLater::kQuiet - 1ms));
+  EXPECT_TRUE(later.due(begin + 100ms + SharpLater::kQuiet));
+  later.drawnSharply();
+  EXPECT_FALSE(later.due(begin + 10s));
 }
 
 TEST(FrameBudget, ASingleLongFrameChangesNothing) {

@@ -39,6 +39,23 @@ class LoadTest : public WindowTest {
     return seen;
   }
 
+  // Shows contour lines and hides them by a key, each frame being held up; what the frames said of their sharpness.
+  std::set<std::string> pressSlowly(User& user) {
+    ViewProgram& program = user.program();
+    program.each([](const State&) {});
+    std::set<std::string> seen;
+    const auto look = [&](const State& s) { seen.insert(s["sharpness"]); };
+    EXPECT_TRUE(gate_.hold());
+    for (int i = 0; i < 12; ++i) {
+      display.hands({"key", "c"});
+      std::this_thread::sleep_for(kHeldUp);
+      EXPECT_TRUE(gate_.step());
+      program.each(look);
+    }
+    gate_.release();
+    return seen;
+  }
+
   // Moves the stylus over the part, each frame being held up; whether drawing left something out.
   bool moveSlowly(User& user) {
     ViewProgram& program = user.program();
@@ -87,6 +104,19 @@ TEST_F(LoadTest, the_view_is_drawn_with_fewer_pixels_while_frames_take_long_and_
   EXPECT_TRUE(seen.contains("quarter"));
   EXPECT_EQ(user.rest()["sharpness"], "full");
   (void)quit(user);
+}
+
+TEST_F(LoadTest, keys_show_with_fewer_pixels_while_frames_take_long_and_sharply_at_rest) {
+  const auto program = start({scan}, gate_.environment());
+  User user(display, *program, "keys under load");
+  (void)opened(*program);
+  user.at({300, 400});
+  EXPECT_EQ(user.rest("before")["sharpness"], "full");
+  const Screen before = user.look("before");
+  EXPECT_TRUE(pressSlowly(user).contains("half"));
+  EXPECT_EQ(user.rest("after the keys")["sharpness"], "full");
+  (void)user.same("as before", before);
+  quit(user);
 }
 
 TEST_F(LoadTest, drawing_that_does_not_adapt_stays_half_as_sharp) {
