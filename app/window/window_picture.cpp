@@ -109,9 +109,8 @@ bool WindowPicture::takeDue(Draws draws) {
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool refines = draws == Draws::kRefined;
   if (refines && measuresFirst(now)) return false;
-  const bool changes =
-      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
-      (refines && (refinement_.due(now) || sharp_later_.due(now)));
+  const bool changes = needs_redraw_ || figures_.upload.pending_tiles > 0 ||
+                       (refines && (refinement_.due(now) || sharp_later_.due(now)));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;

@@ -69,9 +69,11 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
   const vk::DeviceSize step = context.hostImageAlignment();
   bytes_ = (needs.size + step - 1) / step * step;
   std::byte* const at = memory(bytes_);
-  const vk::MemoryHostPointerPropertiesEXT can = context.device().getMemoryHostPointerPropertiesEXT(kHost, at);
+  const vk::MemoryHostPointerPropertiesEXT can =
+      context.device().getMemoryHostPointerPropertiesEXT(kHost, at);
   const vk::ImportMemoryHostPointerInfoEXT import(kHost, at);
-  vk::MemoryAllocateInfo allocation(bytes_, context.memoryType(needs.memoryTypeBits & can.memoryTypeBits, {}));
+  vk::MemoryAllocateInfo allocation(bytes_,
+                                    context.memoryType(needs.memoryTypeBits & can.memoryTypeBits, {}));
   memory_ = vk::raii::DeviceMemory(context.device(), allocation.setPNext(&import));
   image_.bindMemory(*memory_, 0);
   makeView(context, vk::ImageViewType::e2D, format);

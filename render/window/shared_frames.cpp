@@ -45,7 +45,8 @@ bool sharesMemory(xcb_connection_t* connection) {
   if (!has(connection, "MIT-SHM")) return false;
   const ReplyOf<xcb_shm_query_version_reply_t> version{
       xcb_shm_query_version_reply(connection, xcb_shm_query_version(connection), nullptr)};
-  return version && (version->major_version > 1 || (version->major_version == 1 && version->minor_version >= 2));
+  return version &&
+         (version->major_version > 1 || (version->major_version == 1 && version->minor_version >= 2));
 }
 
 const xcb_visualtype_t* visualOf(const xcb_setup_t* setup, xcb_visualid_t id, std::uint8_t depth) {
@@ -53,15 +54,16 @@ const xcb_visualtype_t* visualOf(const xcb_setup_t* setup, xcb_visualid_t id, st
     for (auto depths = xcb_screen_allowed_depths_iterator(screen.data); depths.rem > 0;
          xcb_depth_next(&depths))
       if (depths.data->depth == depth)
-        for (auto visual = xcb_depth_visuals_iterator(depths.data); visual.rem > 0; xcb_visualtype_next(&visual))
+        for (auto visual = xcb_depth_visuals_iterator(depths.data); visual.rem > 0;
+             xcb_visualtype_next(&visual))
           if (visual.data->visual_id == id) return visual.data;
   return nullptr;
 }
 
 // Whether the window's pixels are those of a frame: 32 bits each, of which the lowest 8 are blue.
 bool takesFrames(xcb_connection_t* connection, xcb_window_t window) {
-  const ReplyOf<xcb_get_window_attributes_reply_t> attributes{xcb_get_window_attributes_reply(
-      connection, xcb_get_window_attributes(connection, window), nullptr)};
+  const ReplyOf<xcb_get_window_attributes_reply_t> attributes{
+      xcb_get_window_attributes_reply(connection, xcb_get_window_attributes(connection, window), nullptr)};
   if (!attributes) return false;
   const xcb_setup_t* const setup = xcb_get_setup(connection);
   if (setup->image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) return false;
@@ -88,8 +90,8 @@ SharedSegment::SharedSegment(xcb_connection_t* connection, std::size_t bytes)
   }
   id_ = xcb_generate_id(connection);
   // The connection closes the file.
-  const ReplyOf<xcb_generic_error_t> refused{xcb_request_check(
-      connection, xcb_shm_attach_fd_checked(connection, id_, file, 1))};
+  const ReplyOf<xcb_generic_error_t> refused{
+      xcb_request_check(connection, xcb_shm_attach_fd_checked(connection, id_, file, 1))};
   if (refused || xcb_connection_has_error(connection) != 0)
     munmap(seen, bytes);
   else
@@ -194,9 +196,8 @@ void SharedFrames::draw(const FrameToShow& frame, std::vector<Rectangle>& places
   const vk::CommandBufferSubmitInfo buffer(*commands_);
   vk::SubmitInfo2 submit;
   context_.queue().submit2(submit.setCommandBufferInfos(buffer), *done_);
-  while (context_.device().waitForFences(*done_, VK_TRUE,
-                                         frame.while_waiting ? kLookAgain_ns : kForever_ns) ==
-         vk::Result::eTimeout)
+  while (context_.device().waitForFences(
+             *done_, VK_TRUE, frame.while_waiting ? kLookAgain_ns : kForever_ns) == vk::Result::eTimeout)
     frame.while_waiting();
   context_.device().resetFences(*done_);
 }

@@ -11,8 +11,8 @@ namespace fettle::render {
 namespace {
 
 constexpr std::pair<ImGuiMouseCursor, int> kCursors[] = {
-    {ImGuiMouseCursor_Arrow, GLFW_ARROW_CURSOR},       {ImGuiMouseCursor_TextInput, GLFW_IBEAM_CURSOR},
-    {ImGuiMouseCursor_ResizeNS, GLFW_VRESIZE_CURSOR},  {ImGuiMouseCursor_ResizeEW, GLFW_HRESIZE_CURSOR},
+    {ImGuiMouseCursor_Arrow, GLFW_ARROW_CURSOR},      {ImGuiMouseCursor_TextInput, GLFW_IBEAM_CURSOR},
+    {ImGuiMouseCursor_ResizeNS, GLFW_VRESIZE_CURSOR}, {ImGuiMouseCursor_ResizeEW, GLFW_HRESIZE_CURSOR},
     {ImGuiMouseCursor_Hand, GLFW_HAND_CURSOR},
 };
 constexpr float kFirstStep_s = 1.0F / 60.0F;

@@ -250,8 +250,8 @@ void Window::Impl::listen() {
     of(w).shape.frame_width = width;
     of(w).shape.frame_height = height;
   });
-  glfwSetWindowIconifyCallback(
-      glfw.window, [](GLFWwindow* w, int iconified) { of(w).shape.iconified = iconified != 0; });
+  glfwSetWindowIconifyCallback(glfw.window,
+                               [](GLFWwindow* w, int iconified) { of(w).shape.iconified = iconified != 0; });
   glfwSetWindowRefreshCallback(glfw.window, [](GLFWwindow* w) {
     if (of(w).presenter) of(w).presenter->forget();
   });
@@ -534,8 +534,7 @@ engine::Result<PresentReport> Window::present() {
       if (!w.presenter->fit(w.frameSize())) return report;
       w.fitPanels();
       const engine::Stopwatch watch;
-      const bool shown =
-          w.presenter->show({w.ui->image().image(), combine, while_waiting, before_showing});
+      const bool shown = w.presenter->show({w.ui->image().image(), combine, while_waiting, before_showing});
       report.waited_ms += w.presenter->waitedMs();
       report.draw_ms = watch.ms() - w.presenter->waitedMs();
       report.shown_ns = engine::steadyNs();

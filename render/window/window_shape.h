@@ -16,7 +16,7 @@ struct WindowShape {
   int width = 1, height = 1;              ///< GLFW's units
   int frame_width = 0, frame_height = 0;  ///< of the frame [pixels]
   bool iconified = false;
-  bool entered = false;                          ///< the cursor is in it
+  bool entered = false;                         ///< the cursor is in it
   std::optional<std::array<double, 2>> cursor;  ///< GLFW's units; unset: nothing was said of it yet
 
   /// All but the cursor, from the server.

@@ -36,8 +36,8 @@ Display::Display(int width, int height, const std::filesystem::path& folder,
   if (pipe2(ends, O_CLOEXEC) != 0) return;
   const std::string size = std::to_string(width) + "x" + std::to_string(height) + "x24";
   // On descriptor 9 the server reports its display's number.
-  std::vector<std::string> words{"Xvfb", "-displayfd", "9", "-screen", "0", size, "-fbdir",
-                                 folder, "-nolisten", "tcp", "-noreset"};
+  std::vector<std::string> words{"Xvfb",   "-displayfd", "9",         "-screen", "0",       size,
+                                 "-fbdir", folder,       "-nolisten", "tcp",     "-noreset"};
   words.insert(words.end(), more.begin(), more.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

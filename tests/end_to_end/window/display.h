@@ -32,7 +32,8 @@ struct Part {
 class Display {
  public:
   /// `more`: further arguments of the server.
-  Display(int width, int height, const std::filesystem::path& folder, const std::vector<std::string>& more = {});
+  Display(int width, int height, const std::filesystem::path& folder,
+          const std::vector<std::string>& more = {});
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;

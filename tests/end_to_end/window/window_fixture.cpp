@@ -46,7 +46,9 @@ WindowTest::WindowTest(int width, int height, Frames frames)
     : display(width, height, folder.path(),
               frames == Frames::kShared ? std::vector<std::string>{}
                                         : std::vector<std::string>{"-extension", "MIT-SHM"}),
-      other(display.name()), width_(width), height_(height) {}
+      other(display.name()),
+      width_(width),
+      height_(height) {}
 
 void WindowTest::SetUp() {
   if (!display.works()) GTEST_SKIP() << "no Xvfb";

@@ -2,7 +2,8 @@
 // turns, edits while a brush works, keys while nothing happens, while the view turns, while a filter is computed. Each
 // scan with everything shown and with as little as possible, alone and beside two processes that spin at normal
 // priority, with drawing that adapts to the time it takes and with the fixed one (fettle view --steady), all in one
-// run. The 1 kHz loop runs in all of it. scripts/bench-window builds and starts it.
+// run. The 1 kHz loop runs in all of it. Before that a row of what a program that draws nothing takes to follow a hand, alone and beside
+// the two. scripts/bench-window builds and starts it.
 //
 // Times are the program's own where a frame was passed to the window system, and this one's where an input was made: how
 // long this program waits for a processor itself does not count.
@@ -28,6 +29,7 @@
 #include <unistd.h>
 
 #include "tests/end_to_end/window/display.h"
+#include "tests/end_to_end/window/least_frame.h"
 #include "tests/end_to_end/window/view_program.h"
 #include "tests/end_to_end/window/x_hand.h"
 #include "tests/support/temp_folder.h"
@@ -44,7 +46,7 @@ constexpr auto kStep = 8ms;        // between two movements of the hand
 constexpr auto kTurning = 4000ms;  // of the view
 constexpr auto kStroke = 2500ms;   // each of
 constexpr int kStrokes = 3;
-constexpr int kKeys = 15;  // in each of the situations
+constexpr int kKeys = 40;  // in each of the situations
 constexpr auto kBetweenKeys = 130ms;
 
 enum class Shown { kLittle, kAll };
@@ -275,6 +277,20 @@ void print(const std::string& scan, Shown shown, Beside beside, Drawing drawing,
   std::fflush(stdout);
 }
 
+// Of the display alone: no window can follow a hand more closely.
+void printLeast(const Display& display) {
+  constexpr int kFrames = 300;
+  for (const Beside beside : {Beside::kNothing, Beside::kSpinning}) {
+    const Spinning spinning(beside);
+    const std::vector<double> times = leastFrames(display.name(), kWidth, kHeight, kFrames);
+    fmt::print(
+        "a program that draws nothing, beside {}: {:.1f}, {:.1f}, {:.1f} ms (p50, p99, most) from the hand "
+        "to the display\n",
+        beside == Beside::kSpinning ? "two that spin" : "nothing", percentile(times, 0.5),
+        percentile(times, 0.99), percentile(times, 1.0));
+  }
+}
+
 int run(const std::vector<std::string>& scans) {
   const TempFolder folder;
   const Display display(kWidth, kHeight, folder.path());
@@ -283,6 +299,7 @@ int run(const std::vector<std::string>& scans) {
     return 1;
   }
   setenv("DISPLAY", display.name().c_str(), 1);
+  printLeast(display);
   fmt::print("{:<16} {:<7} {:<9} {:<7} {:>15} {:>13} {:>6} {:>14} {:>14} {:>14} {:>6} {:>7}\n", "", "", "",
              "", "frame", "edit to pixel", "", "key", "key, turning", "key, filtering", "keys", "loop");
   fmt::print("{:<16} {:<7} {:<9} {:<7} {:>15} {:>7} {:>5} {:>6} {:>14} {:>14} {:>14} {:>6} {:>7}\n", "scan",
