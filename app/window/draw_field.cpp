@@ -153,6 +153,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
     return;
   }
   picture.adapt(!options.steady);
+  picture.allowHalf(parts.settings.display.half_in_motion && !options.sharp_motion);
   if (parts.spared_shadow.due(picture.spares(), now)) picture.requestRedraw();
   const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
   picture.smoothAtRest(parts.settings.display.smooth_at_rest && options.smooth_at_rest);

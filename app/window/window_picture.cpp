@@ -129,7 +129,7 @@ bool WindowPicture::measuresFirst(Refinement::Clock::time_point now) {
 
 // Whether the next frame has half the resolution since whole frames take long; `changes_whole`: it is one.
 bool WindowPicture::drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept {
-  if (!adapts_ || !whole_.less()) return false;
+  if (!adapts_ || !may_be_half_ || !whole_.less()) return false;
   // The frame after one of half the resolution is whole, too.
   return changes_whole || (sharp_later_.pending() && !sharp_later_.due(now));
 }

@@ -70,6 +70,8 @@ class WindowPicture {
   [[nodiscard]] render::Sharpness sharpness(const render::View& view, bool held);
   /// Whether drawing adapts to the time it takes (FrameBudget).
   void adapt(bool wanted) noexcept { adapts_ = wanted; }
+  /// Whether whole frames may have half the resolution while they take long.
+  void allowHalf(bool wanted) noexcept { may_be_half_ = wanted; }
   /// Whether what costs most of a frame in which only a brush works is to be left out.
   [[nodiscard]] bool spares() const noexcept { return adapts_ && strokes_.less(); }
   /// The frame that was begun with this picture took so long until it was passed to the window system.
@@ -140,7 +142,7 @@ class WindowPicture {
   bool only_rest_asked_ = false;  // for the frame that is due
   bool needs_redraw_ = true;
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
-  bool adapts_ = true;
+  bool adapts_ = true, may_be_half_ = true;
   FrameBudget moving_, strokes_, whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms};
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
