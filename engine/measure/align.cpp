@@ -16,6 +16,7 @@
 
 #include "engine/base/stopwatch.h"
 #include "engine/measure/align_level.h"
+#include "engine/measure/align_repeat.h"
 #include "engine/measure/align_search.h"
 #include "engine/measure/align_spread.h"
 #include "engine/measure/height_map.h"
@@ -322,6 +323,57 @@ std::vector<double> resolutionsOf(const Grid& first, const Grid& second) {
   return sides;
 }
 
+// Shifts of either field by which it may be like itself [mm], each along its own axes.
+struct Repeats {
+  std::vector<glm::dvec2> first, second;
+};
+Result<Repeats> repeatsOf(const Maps& maps, JobControl& job) {
+  auto first = likelyRepeats(maps.first, job), second = likelyRepeats(maps.second, job);
+  if (!first) return tl::unexpected(first.error());
+  if (!second) return tl::unexpected(second.error());
+  return Repeats{*std::move(first), *std::move(second)};
+}
+
+std::size_t commonIn(const std::vector<Under>& under) noexcept {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(under, [](const Under& u) { return !std::isnan(u.residual); }));
+}
+
+// The shortest further shift by which the second field fits the first as well, of those by which either may be like itself; `error`: standard
+// errors of the shift that was found, within which another one is the same.
+std::optional<glm::dvec2> repeatBeside(const AlignLevel& level, const Refined& best, const Frame& frame,
+                                       const Repeats& repeats, const glm::dvec3& error, double sigma,
+                                       double least, JobControl& job) {
+  constexpr int kRounds = 15;
+  constexpr double kSigmasApart = 2.0, kErrorsApart = 5.0, kOfShift = 0.5;
+  const glm::dmat3& turned = best.motion.rotation;
+  std::vector<glm::dvec2> shifts = repeats.first;
+  for (const glm::dvec2& own : repeats.second)
+    shifts.emplace_back(turned[0][0] * own.x + turned[1][0] * own.y,
+                        turned[0][1] * own.x + turned[1][1] * own.y);
+  std::ranges::stable_sort(shifts, {}, [](const glm::dvec2& shift) { return glm::length(shift); });
+  const std::vector<Under> under = level.under(best.motion);
+  std::vector<glm::dvec2> tried;
+  for (const glm::dvec2& shift : shifts) {
+    if (job.cancelled()) break;
+    const auto alike = [&](const glm::dvec2& other) {
+      return std::min(glm::length(shift - other), glm::length(shift + other)) < kSigmasApart * sigma;
+    };
+    if (std::ranges::any_of(tried, alike)) continue;
+    tried.push_back(shift);
+    // There and back it is the same period: that which leaves more in common.
+    const RigidMotion there = best.motion.then(glm::dvec3(shift, 0.0), glm::dvec3(0.0)),
+                      back = best.motion.then(glm::dvec3(-shift, 0.0), glm::dvec3(0.0));
+    const bool more_there = commonIn(level.under(there)) >= commonIn(level.under(back));
+    const Refined other = refine(level, more_there ? there : back, frame, kRounds, least, job);
+    const glm::dvec2 apart(other.motion.shift - best.motion.shift);
+    const double same = std::max(kSigmasApart * sigma, kErrorsApart * glm::length(error));
+    if (glm::length(apart) < std::max(same, kOfShift * glm::length(shift))) continue;
+    if (fitsAsWell(level, under, level.under(other.motion), best.spread)) return apart;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 FinestAlignment finestAlignment(const Grid& first, const Grid& second) {
@@ -375,6 +427,8 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   std::optional<AlignLevel> level;
   std::size_t whole = 0;
   double sigma = 0.0;
+  Repeats repeats;
+  const double least = std::max(rounding_mm, 1e-12 * arm);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const Stopwatch watch;
     const auto maps = mapsAt(first, second, options, sides[k], base_first, base_second, job);
@@ -393,7 +447,11 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
                             ? "give a scan that is some 20 samples wide and high, or fill its holes"
                             : "let a larger part of A count, or all of it");
     const bool last = k + 1 == sides.size();
-    const double least = std::max(rounding_mm, 1e-12 * arm);
+    if (last && options.search && options.moves.shift) {
+      auto found = repeatsOf(*maps, job);
+      if (!found) return tl::unexpected(found.error());
+      repeats = *std::move(found);
+    }
     std::vector<RigidMotion> starts;
     if (k == 0) {
       starts.push_back(stated);
@@ -514,6 +572,8 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   result.left_out =
       static_cast<double>(left_out) / static_cast<double>(std::max<std::size_t>(1, best.common));
   result.sigma_mm = sigma;
+  result.repeat = repeatBeside(*level, best, frame, repeats, result.shift_error, sigma, least, job);
+  if (job.cancelled()) return cancelled();
   return result;
 }
 

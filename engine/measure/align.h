@@ -3,7 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -58,6 +61,8 @@ struct Alignment {
   double left_out = 0.0;     ///< share of these that do not count: they lie apart
   std::int64_t samples = 0;  ///< that count
   double sigma_mm = 0.0;     ///< of the Gaussian window through which both were compared
+  /// The surface repeats itself: moved further by so much [mm] along x and y the second field fits as well.
+  std::optional<glm::dvec2> repeat;
 };
 
 /// Finds it. Both fields are reduced by means of blocks without spikes (whole samples, so to fewer than 2^22 heights each, nearly alike spacing), single
@@ -77,6 +82,10 @@ struct Alignment {
 /// differs. The slopes' part is the product of both fields' slopes, whose noise is independent, so that noise does not
 /// look like shape. A motion that it does not decide - a shift along a cylinder, any on a plane, a turn on a sphere - is
 /// an error that names it, not a number.
+///
+/// A surface that repeats itself fits at every period. Where shift and search are free, shifts by which either field is like itself
+/// (likelyRepeats) are refined as well, and the shortest of those that leave no more than what was found (fitsAsWell) is Alignment::repeat. Noise
+/// through the window that is larger than the pattern hides it, and of a field with itself, whose noise is the same, no other motion fits as well.
 ///
 /// Bit-identical for any number of threads. Memory: some 200 bytes for each of the reduced heights. Errors: kInput for fields
 /// without samples, too little overlap, a motion that the surface does not decide; kCancelled. Throws std::bad_alloc.

@@ -28,8 +28,7 @@ struct Raster {
 constexpr double kLeastShare = 0.2;  // of the smaller map that both have in common
 constexpr double kRadian = std::numbers::pi / 180.0;
 
-// A map without its plane, or without its long waves, clipped at three normalised median sizes: spikes and walls do not
-// decide.
+// A map without its plane, or without its long waves, without spikes.
 HeightMap flattened(const HeightMap& map, bool long_waves_too) {
   HeightMap out = map;
   if (long_waves_too) {
@@ -53,16 +52,7 @@ HeightMap flattened(const HeightMap& map, bool long_waves_too) {
         out.z[map.index(c, r)] -=
             plane[0] + plane[1] * (c - 0.5 * (map.width - 1)) + plane[2] * (r - 0.5 * (map.height - 1));
   }
-  std::vector<double> sizes;
-  for (const double z : out.z)
-    if (!std::isnan(z)) sizes.push_back(std::abs(z));
-  if (sizes.empty()) return out;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  constexpr double kClip = 3.0 * 1.4826;
-  // Most of a plate is flat: then what stands out is all there is.
-  if (const double limit = kClip * *middle; limit > 0.0)
-    for (double& z : out.z) z = std::clamp(z, -limit, limit);
+  clipSpikes(out);
   return out;
 }
 
@@ -194,6 +184,19 @@ class Correlator {
 };
 
 }  // namespace
+
+void clipSpikes(HeightMap& map) {
+  constexpr double kClip = 3.0 * 1.4826;
+  std::vector<double> sizes;
+  for (const double z : map.z)
+    if (!std::isnan(z)) sizes.push_back(std::abs(z));
+  if (sizes.empty()) return;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  // Most of a plate is flat: then what stands out is all there is.
+  if (const double limit = kClip * *middle; limit > 0.0)
+    for (double& z : map.z) z = std::clamp(z, -limit, limit);
+}
 
 std::vector<RigidMotion> likelyMotions(const HeightMap& first, const HeightMap& second,
                                        double most_rotation_deg, const glm::dvec3& centre, JobControl& job) {

@@ -8,6 +8,9 @@
 
 namespace fettle::engine {
 
+/// Clips a map, whose heights are about 0, at three normalised median sizes, so that spikes and walls do not decide. Throws std::bad_alloc.
+void clipSpikes(HeightMap& map);
+
 /// Starts for an alignment: the places at which the maps' correlation is greatest, over all shifts that leave `least_share`
 /// of the smaller map in common and rotations about z up to `most_rotation_deg`, the likeliest first; without rotations
 /// that is one angle, without shifts none. Turns and shifts about `centre`, heights left as they are. Stops early when the

@@ -51,7 +51,8 @@ Result<JoinedScans> joinScans(const std::vector<Version>& scans, const JoinOptio
   if (!grid) return tl::unexpected(grid.error());
   auto field = blendedScans(scans, *poses, *grid, options.blend, job);
   if (!field) return tl::unexpected(field.error());
-  return JoinedScans{std::move(found->pairs), *std::move(poses), *std::move(overlaps), *std::move(field)};
+  return JoinedScans{std::move(found->pairs), *std::move(poses), *std::move(overlaps),
+                     std::move(found->repeated), *std::move(field)};
 }
 
 }  // namespace fettle::engine

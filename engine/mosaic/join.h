@@ -11,6 +11,7 @@
 #include "engine/field/version.h"
 #include "engine/measure/align.h"
 #include "engine/mosaic/blended.h"
+#include "engine/mosaic/overlap_motions.h"
 #include "engine/mosaic/pose_adjustment.h"
 
 namespace fettle::engine {
@@ -27,6 +28,7 @@ struct JoinedScans {
   std::vector<PairMotion> pairs;
   AdjustedPoses poses;
   std::vector<OverlapDeviation> overlaps;
+  std::vector<RepeatedPair> repeated;
   Version field;
 };
 

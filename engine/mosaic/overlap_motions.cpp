@@ -129,6 +129,13 @@ Result<OverlapMotions> overlapMotions(const std::vector<Version>& scans,
       out.pairs.push_back(
           {i, j, ofWholes(found->motion, lowerLeft(a, rect_a), lowerLeft(b, rect_b)), found->covariance});
       out.alignments.push_back(*found);
+      if (!found->repeat) continue;
+      // Where scans lie to `play` only a shorter period leaves the place open.
+      const glm::dvec2 off = glm::dvec2(found->motion.shift) - (place_b - place_a), &shift = *found->repeat;
+      const auto allowed = [&](const glm::dvec2& from_place) {
+        return std::abs(from_place.x) <= play && std::abs(from_place.y) <= play;
+      };
+      if (!places || allowed(off + shift) || allowed(off - shift)) out.repeated.push_back({i, j, shift});
     }
   return out;
 }

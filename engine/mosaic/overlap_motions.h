@@ -22,10 +22,17 @@ struct FailedPair {
   Error reason;
 };
 
+/// A pair whose surface repeats itself (Alignment::repeat).
+struct RepeatedPair {
+  std::size_t first = 0, second = 0;
+  glm::dvec2 shift{0.0};  ///< by which the second, moved further, fits as well [mm]
+};
+
 struct OverlapMotions {
   std::vector<PairMotion> pairs;
   std::vector<Alignment> alignments;  ///< of each pair, in its pieces' own coordinates
   std::vector<FailedPair> failed;
+  std::vector<RepeatedPair> repeated;
 };
 
 /// Aligns every two scans that overlap. `places`: where the lower left sample of each lies, roughly [mm]; then the parts of

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -75,6 +76,7 @@ Result<Alignment> alignNominal(const Version& part, const NominalMesh& nominal, 
   auto found = alignFields(part, *seen, options, job);
   if (!found) return found;
   RigidMotion motion = beforeShift(found->motion, middle);
+  const std::optional<glm::dvec2> repeat = found->repeat;
   AlignOptions again = options;
   again.search = false;
   for (int round = 0; round < kRounds; ++round) {
@@ -93,6 +95,7 @@ Result<Alignment> alignNominal(const Version& part, const NominalMesh& nominal, 
   // About the middle of the part, as alignFields states it.
   result.motion = motion;
   result.angles = motion.angles();
+  result.repeat = repeat;  // the search's; the others only refine
   return result;
 } catch (const std::bad_alloc&) {
   return failure("memory is exhausted", "aligning", "align a smaller part");
