@@ -154,6 +154,7 @@ AngularSpectrum spectrumOf(Padded& plane, const Autocorrelation& correlation, Jo
   transformPlane(plane.values, plane.width, plane.height, Transform::kForward, job);
   AngularSpectrum spectrum;
   spectrum.power.assign(AngularSpectrum::kBins, 0.0);
+  spectrum.white.assign(AngularSpectrum::kBins, 0.0);
   if (job.cancelled()) return spectrum;
   // The power at a frequency in lines of the transform, bilinear between them: the taper makes each peak some lines wide.
   const auto line = [&](std::int32_t c, std::int32_t r) {
@@ -178,25 +179,31 @@ AngularSpectrum spectrumOf(Padded& plane, const Autocorrelation& correlation, Jo
   for (int bin = 0; bin < AngularSpectrum::kBins; ++bin) {
     const double angle = pi * bin / AngularSpectrum::kBins, cosine = std::cos(angle), sine = std::sin(angle);
     const double low = 1.0 / std::hypot(cosine / low_x, sine / low_y);
-    double total = 0.0;
+    double total = 0.0, of_white = 0.0;
     const auto steps = static_cast<std::int64_t>((high - low) / step);
     for (std::int64_t i = 0; i <= steps && low <= high; ++i) {
       const double f = low + static_cast<double>(i) * step;
       total += f * power(f * cosine * lines_x, f * sine * lines_y);
+      of_white += f;  // its autocorrelation is 1 without a lag, else 0
     }
     spectrum.power[static_cast<std::size_t>(bin)] = total;
+    spectrum.white[static_cast<std::size_t>(bin)] = of_white;
     sum += total;
   }
   if (sum > 0.0)
-    for (double& part : spectrum.power) part /= sum;
+    for (std::vector<double>* const parts : {&spectrum.power, &spectrum.white})
+      for (double& part : *parts) part /= sum;
   return spectrum;
 }
 
-// The direction of its largest peak [degrees]: the mean of what is above half of the peak's height, so that noise of
-// single directions has little part in it.
-double strongestDirection(const AngularSpectrum& spectrum) noexcept {
+// The direction of its largest peak [degrees], without white noise that has `noise` of the mean square: the mean of what is above half of the
+// peak's height, so that noise of single directions has little part in it.
+double strongestDirection(const AngularSpectrum& spectrum, double noise) noexcept {
   constexpr int kBins = AngularSpectrum::kBins;
-  const auto at = [&](int bin) { return spectrum.power[static_cast<std::size_t>((bin + kBins) % kBins)]; };
+  const auto at = [&](int bin) {
+    const auto i = static_cast<std::size_t>((bin + kBins) % kBins);
+    return std::max(0.0, spectrum.power[i] - noise * spectrum.white[i]);
+  };
   int best = 0;
   for (int bin = 1; bin < kBins; ++bin)
     if (at(bin) > at(best)) best = bin;
@@ -214,6 +221,12 @@ double strongestDirection(const AngularSpectrum& spectrum) noexcept {
 double halfTurn(double degrees) noexcept {
   const double within = std::fmod(degrees, 180.0), turned = within < 0.0 ? within + 180.0 : within;
   return turned < 180.0 ? turned : 0.0;  // of a rounding below 0 the sum is 180
+}
+
+// Of the lay, across which the strongest waves go.
+double layOf(const AngularSpectrum& spectrum, double noise) noexcept {
+  const double direction = strongestDirection(spectrum, noise);
+  return std::isnan(direction) ? kNone : halfTurn(direction - 90.0);
 }
 
 struct Extreme {
@@ -244,7 +257,9 @@ Extreme extremeDecay(const Autocorrelation& correlation, double sign) noexcept {
 }
 
 SpatialParameters without(const std::string& why) {
-  return {kNone, kNone, kNone, kNone, kNone, kNone, why, why, why, why};
+  SpatialParameters none{kNone, kNone, kNone, kNone, kNone, kNone, why, why, why, why};
+  none.lay_less.fill(kNone);
+  return none;
 }
 
 // At a lag that is no whole number.
@@ -296,9 +311,10 @@ SpatialParameters parametersOf(const Autocorrelation& correlation, const Angular
       result.str_lowered[k] =
           roughAspect(correlation, kDecayLevel * (1.0 - SpatialParameters::kLowered[k])) / rough;
   }
-  const double direction = strongestDirection(spectrum);
-  result.lay = std::isnan(direction) ? kNone : halfTurn(direction - 90.0);
-  if (std::isnan(direction)) result.no_lay = "the surface has no wave shorter than two thirds of it";
+  result.lay = layOf(spectrum, 0.0);
+  if (std::isnan(result.lay)) result.no_lay = "the surface has no wave shorter than two thirds of it";
+  for (std::size_t k = 0; k < result.lay_less.size(); ++k)
+    result.lay_less[k] = layOf(spectrum, static_cast<double>(k) / SpatialParameters::kLayParts);
   return result;
 }
 
@@ -343,6 +359,15 @@ double Autocorrelation::decay(double angle, double level) const noexcept {
     if (next_x == there) next_x = ++lines_x / std::abs(dx);
     if (next_y == there) next_y = ++lines_y / std::abs(dy);
   }
+}
+
+double SpatialParameters::layWithout(double share) const noexcept {
+  const double place = std::clamp(share, 0.0, 1.0) * kLayParts;
+  const auto k = std::min(static_cast<std::size_t>(place), lay_less.size() - 1),
+             next = std::min(k + 1, lay_less.size() - 1);
+  // 0 and 180 are one.
+  const double step = lay_less[next] - lay_less[k], turn = step - 180.0 * std::round(step / 180.0);
+  return halfTurn(lay_less[k] + (place - static_cast<double>(k)) * turn);
 }
 
 double correlationBytes(const Surface& surface) noexcept {

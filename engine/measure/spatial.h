@@ -40,6 +40,8 @@ struct AngularSpectrum {
   /// Over the frequencies of a direction of the wave vector, the integral of power times frequency; bin i at i / 2 degrees
   /// from x to y; their sum is 1.
   std::vector<double> power;
+  /// The same of heights of the same mean square that no two samples share, as white noise: next to equal in all directions.
+  std::vector<double> white;
 };
 
 /// Spatial parameters: ISO 25178-2:2021, 4.3, and the texture direction.
@@ -62,6 +64,12 @@ struct SpatialParameters {
   /// is that at a lower level. A jump between two of them is another direction, or another wave, that decays last.
   static constexpr std::array<double, 8> kLowered{0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
   std::array<double, kLowered.size()> str_lowered{};
+  /// Std were k / kLayParts of the mean square noise that neighbours do not share: of the angular spectrum less what that has in each direction. NaN
+  /// where nothing is left. A jump from one to the next is another peak, or another one beside it that counts with it, as long as noise lifts both.
+  static constexpr int kLayParts = 32;
+  std::array<double, kLayParts> lay_less{};
+  /// That of any share below 1, between these.
+  [[nodiscard]] double layWithout(double share) const noexcept;
 };
 
 struct SpatialAnalysis {

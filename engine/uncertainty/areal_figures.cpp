@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/uncertainty/direction_noise.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -213,15 +215,21 @@ Result<std::vector<NoiseEffect>> arealEffects(const Version& field, const NoiseM
                                               const NoiseTrialOptions& options, JobControl& job) {
   const std::vector<double> found = valuesOf(measured);
   const std::vector<NoiseGrowth> growths = growthsOf(measured);
+  std::vector<SeenDirection> seen;  // one noise after the other, each with its opposite
   auto effects = noiseEffects(
       field, noise, found, growths,
       [&](const Version& noisy, TrialNoise of) -> Result<std::vector<double>> {
         const auto again = measure(noisy, of);
         if (!again) return tl::unexpected(again.error());
+        if (of == TrialNoise::kOwn) seen.push_back(seenDirection(*again));
         return valuesOf(*again);
       },
       options, job);
   if (!effects) return effects;
+  std::vector<DirectionPair> pairs;
+  for (std::size_t k = 0; k + 1 < seen.size(); k += 2) pairs.push_back({seen[k], seen[k + 1]});
+  const SeenDirection direction = seenDirection(measured);
+  (*effects)[indexOfFigure("std")] = directionEffect(direction, direction, pairs, noise, 1.0);
   addDominanceDoubt(*effects, noise, measured);
   keepWithinRanges(*effects, measured);
   if (auto status = leaveOutOfLines(*effects, field, noise, measured, measure, options, job); !status)

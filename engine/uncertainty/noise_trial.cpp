@@ -36,7 +36,7 @@ constexpr GrowthRule kRules[] = {
     {true, 0.2, 1.0, kAny, true, 0.0, 0.6},     // kSquare
     {false, 0.2, 1.0, kAny, true, 0.0, 0.3},    // kCurved
     {false, 0.2, 1.0, kAny},                    // kPlain
-    {false, 0.2, 1.0, kAny},                    // kAxis
+    {false, 0.2, 1.4, kAny},                    // kAxis
     {true, 0.5, 1.4, kAny, false, 0.25, 2.5},   // kRank
     {false, 0.5, 1.4, kAny, false, 0.25, 2.5},  // kShare
     {true, 0.7, 1.25, kAny},                    // kExtreme
@@ -68,7 +68,8 @@ double grownBy(NoiseGrowth growth, double value, double near) noexcept {
 // Of trials on a part of the surface whose own figure is `of_part`, which has `share` of the samples: all of it is the whole.
 NoiseEffect effectFrom(double found, double of_part, std::span<const TrialPair> pairs, NoiseGrowth growth,
                        double share, const TrialKnowledge& known) {
-  if (std::isnan(found) || std::isnan(of_part)) return {kNone, kNone};
+  if (std::isnan(found)) return {kNone, kNone};
+  if (std::isnan(of_part)) return {kNone, kNone, "the part for trials does not determine it"};
   const GrowthRule& rule = ruleOf(growth);
   if (rule.by_square && found < 0.0) return {kNone, kNone, "it is below 0"};  // its square says not which
   std::vector<double> halves, means;

@@ -12,6 +12,7 @@
 #include "engine/field/piece.h"
 #include "engine/measure/form.h"
 #include "engine/uncertainty/areal_figures.h"
+#include "engine/uncertainty/direction_noise.h"
 #include "engine/uncertainty/extreme_trials.h"
 
 namespace fettle::engine {
@@ -81,14 +82,12 @@ struct MeanSquare {
   [[nodiscard]] double root() const { return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0; }
 };
 
-// The parameters of squares beside each other, about the form that is out of them already.
-Result<std::vector<double>> figuresOf(const std::vector<Version>& squares, int across,
-                                      const ArealOptions& options, JobControl& job) {
+// Parameters of squares beside each other, about the form that is out of them already.
+Result<ArealParameters> measuredOf(const std::vector<Version>& squares, int across,
+                                   const ArealOptions& options, JobControl& job) {
   const Version part = besideEachOther(squares, across);
   const NominalForm level = PolynomialForm{0, part.grid().width, part.grid().height, 0.0, {0.0}};
-  const auto measured = measureAreal(part, level, options, job);
-  if (!measured) return tl::unexpected(measured.error());
-  return valuesOf(*measured);
+  return measureAreal(part, level, options, job);
 }
 
 std::int64_t heightsIn(const std::vector<Version>& squares) {
@@ -166,11 +165,15 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
   }
   const std::vector<double> found = valuesOf(measured);
   const std::vector<NoiseGrowth> growths = growthsOf(measured);
-  PartEffects result{std::vector<NoiseEffect>(found.size(), {kNoEffect, kNoEffect}), heightsIn(clean)};
+  PartEffects result{std::vector<NoiseEffect>(
+                         found.size(), {kNoEffect, kNoEffect, "the part for trials has too few samples"}),
+                     heightsIn(clean)};
   if (result.samples < kFewestSamples) return result;
-  const auto own = figuresOf(clean, across, of_part, job);
+  const auto own = measuredOf(clean, across, of_part, job);
   if (!own) return tl::unexpected(own.error());
+  const std::vector<double> own_figures = valuesOf(*own);
   std::vector<std::vector<TrialPair>> pairs(found.size());
+  std::vector<DirectionPair> directions;
   MeanSquare noise_left;
   NoiseModel here = noise;
   here.map.clear();  // that of the field
@@ -198,12 +201,14 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
         sides[side].push_back(*std::move(changed));
       }
     }
-    const auto more = figuresOf(sides[0], across, optionsOf(of_part, of), job),
-               less = figuresOf(sides[1], across, optionsOf(of_part, of), job);
+    const auto more = measuredOf(sides[0], across, optionsOf(of_part, of), job),
+               less = measuredOf(sides[1], across, optionsOf(of_part, of), job);
     if (!more) return tl::unexpected(more.error());
     if (!less) return tl::unexpected(less.error());
+    if (of == TrialNoise::kOwn) directions.push_back({seenDirection(*more), seenDirection(*less)});
+    const std::vector<double> of_more = valuesOf(*more), of_less = valuesOf(*less);
     std::vector<TrialPair> both;
-    for (std::size_t i = 0; i < found.size(); ++i) both.push_back({(*more)[i], (*less)[i]});
+    for (std::size_t i = 0; i < found.size(); ++i) both.push_back({of_more[i], of_less[i]});
     return both;
   };
   for (int k = 0; k < how.pairs; ++k) {
@@ -218,7 +223,7 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
   for (std::size_t i = 0; i < found.size(); ++i)
     // Of few places among all noise scatters no less where there are more of these.
     result.effects[i] =
-        partEffectOf(found[i], (*own)[i], pairs[i], growths[i],
+        partEffectOf(found[i], own_figures[i], pairs[i], growths[i],
                      growths[i] == NoiseGrowth::kExtreme ? 1.0 : share, {noise.doubt, (*louder)[i]});
 
   // Of the whole surface, and of the reach that the part has.
@@ -245,6 +250,9 @@ Result<PartEffects> arealEffectsOfPart(const Version& field, const NoiseModel& n
     const auto extreme = [&](const std::vector<TrialPair>& trials) {
       result.effects[i] = noiseEffectOf(found[i], trials, NoiseGrowth::kExtreme);
     };
+    if (key == "std")
+      result.effects[i] =
+          directionEffect(seenDirection(measured), seenDirection(*own), directions, noise, share);
     if (key == "sp") extreme(highest);
     if (key == "sv") extreme(lowest);
     if (key == "sz") extreme(between);
