@@ -291,7 +291,9 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
             {{"parameter", row.key},
              {"without", number(inScanUnits(noise.effects[i].without, row.quantity, grid))},
              {"error", number(inScanUnits(noise.effects[i].error, row.quantity, grid))},
-             {"reason", noise.effects[i].why}});
+             // What is not stated with noise is not stated without, for the same reason.
+             {"reason",
+              report[row.key].is_null() ? reasonOf(report, row.key) : std::string(noise.effects[i].why)}});
   }
   // What was asked for comes after all parameters (engine::valuesOf), volumes with the keys of `smc` before theirs.
   std::size_t next = figures.size();

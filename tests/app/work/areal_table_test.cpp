@@ -3,12 +3,15 @@
 #include "app/work/areal_table.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "engine/field/grid.h"
 #include "engine/measure/areal.h"
+#include "engine/uncertainty/areal_figures.h"
 
 namespace fettle::app {
 namespace {
@@ -33,6 +36,30 @@ TEST(ArealTable, ARoundedDirectionIsBelow180Degrees) {
     EXPECT_NE(arealRows("s.tif", report).find("s.tif,spatial,Std,0,degrees,,179.96,0.3"), std::string::npos)
         << arealRows("s.tif", report);
   }
+}
+
+// What is not stated with noise is not stated without either, for the reason that it has.
+TEST(ArealTable, WithoutNoiseAFigureThatIsNotStatedHasItsOwnReason) {
+  engine::Grid grid;
+  grid.width = grid.height = 10;
+  engine::ArealParameters measured;
+  measured.samples = 100;
+  measured.spatial.str = std::numeric_limits<double>::quiet_NaN();
+  measured.not_stated.push_back({"str", "it stays above 0.2"});
+  Report report;
+  addAreal(report, measured, {}, grid);
+  ArealNoise noise;
+  noise.trials = 4;
+  noise.effects.resize(engine::arealFigures().size());
+  for (engine::NoiseEffect& effect : noise.effects)
+    effect = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+              "its error"};
+  noise.effects[static_cast<std::size_t>(&engine::arealFigure("str") - engine::arealFigures().data())]
+      .why = {};
+  addNoise(report, noise, grid);
+  for (const Report& figure : report["noise"]["figures"])
+    EXPECT_EQ(figure["reason"], figure["parameter"] == "str" ? "it stays above 0.2" : "its error")
+        << figure.dump();
 }
 
 }  // namespace
