@@ -69,7 +69,8 @@ namespace fettle::engine {
 ///   kOutliers  itself, unless it stands apart: all but at most (n - 1) / 2 of the window's samples, itself among these, lie more
 ///              than R = range_sigma below it, or all but so many above it; those are more than half of the window's samples,
 ///              two of them lie opposite each other across it, and the nearest is farther by R than the nearest n differ
-///              among each other. Then their median; of an even number the mean of the middle two. Spikes and pits of up to
+///              among each other. Where holes or the border leave no two samples opposite each other it stands apart, by R more
+///              than any of them does, from the least-squares plane through those, at least three that are not on one line. Then their median; of an even number the mean of the middle two. Spikes and pits of up to
 ///              (n - 1) / 2 samples go; a rib or groove of one sample's width keeps all of its samples, its ends too, since
 ///              the window around any of them holds (n + 1) / 2 of it at least.
 /// Heights are taken with the version's sign, so filtering commutes with inverting; kOpening and kClosing take those of the scan, so that

@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -117,6 +119,59 @@ TEST(Outliers, FewSamplesAmongHolesStay) {
   EXPECT_EQ(withoutOutliers(end, 3).at(0, 0), 3.0F);
   const PlainField one = formed(1, 1, [](int, int) { return 3.0F; });
   EXPECT_EQ(withoutOutliers(one, 5).at(0, 0), 3.0F);
+}
+
+// Where holes or the border leave no two samples opposite each other, three that are not on one line are enough.
+TEST(Outliers, SpikesInCornersAndBesideRaggedHolesGo) {
+  PlainField field = formed(kOutlierSide, kOutlierSide, quietNoise);
+  const PlainField before = field;
+  constexpr int kLast = kOutlierSide - 1;
+  std::vector<std::pair<int, int>> spikes{{0, 0},         {kLast, 0}, {0, kLast},
+                                          {kLast, kLast}, {0, 30},    {30, kLast}};
+  // A sample that reaches into a hole: on one side its neighbours are missing, and one above or below.
+  for (int c = 10; c < 90; c += 12) {
+    for (int r = 39; r <= 41; ++r) field.at(c - 1, r) = std::nanf("");
+    field.at(c, 39) = std::nanf("");
+    field.at(c + 1, 39) = std::nanf("");
+    spikes.emplace_back(c, 40);
+  }
+  for (const auto& [c, r] : spikes) field.at(c, r) += (c + r) % 4 == 0 ? 2.0F : -2.0F;
+  for (const int window : {3, 5}) {
+    const PlainField after = withoutOutliers(field, window);
+    for (const auto& [c, r] : spikes)
+      EXPECT_NEAR(after.at(c, r), before.at(c, r), kOutlierRange) << window << ": " << c << ", " << r;
+    int changed = 0;
+    for (std::size_t i = 0; i < field.z.size(); ++i) changed += sameBits(after.z[i], field.z[i]) ? 0 : 1;
+    EXPECT_EQ(changed, static_cast<int>(spikes.size())) << window;
+  }
+}
+
+// With a window of 3 the samples of one line cannot tell a spike from the end of a slope; with 5 the next line can.
+TEST(Outliers, SpikesBesideOneLineOfSamplesNeedALargerWindow) {
+  PlainField field = formed(kOutlierSide, kOutlierSide, quietNoise);
+  for (int r = 0; r < kOutlierSide; ++r)
+    for (int c = 48; c < kOutlierSide; ++c) field.at(c, r) = std::nanf("");
+  field.at(48, 40) = 3.0F;
+  EXPECT_TRUE(sameBits(withoutOutliers(field, 3), field));
+  EXPECT_NEAR(withoutOutliers(field, 5).at(48, 40), 0.0, kOutlierRange);
+}
+
+// A steep plane goes on to the last sample of a ragged rim, also where that is beyond all others by far.
+TEST(Outliers, KeepsASteepPlaneUpToARaggedHole) {
+  for (const double steepness : {0.5, 2.0, 30.0})
+    for (int degrees = 0; degrees < 360; degrees += 30) {
+      const double x = std::cos(degrees * std::numbers::pi / 180),
+                   y = std::sin(degrees * std::numbers::pi / 180);
+      PlainField field = formed(kOutlierSide, kOutlierSide, [&](int c, int r) {
+        return static_cast<float>(steepness * kOutlierRange * (x * c + y * r)) + quietNoise(c, r);
+      });
+      const CounterRandom random(3, 0);
+      for (int r = 0; r < kOutlierSide; ++r)
+        for (int c = 0; c < kOutlierSide; ++c)
+          if (random.uniform(c, r) < 0.4) field.at(c, r) = std::nanf("");
+      for (const int window : {3, 5})
+        EXPECT_TRUE(sameBits(withoutOutliers(field, window), field)) << steepness << " " << degrees;
+    }
 }
 
 // Of normal noise a range of five standard deviations takes nothing; of three little.

@@ -206,6 +206,51 @@ std::vector<double> totalVariationTwin(const PlainField& field, const FilterSpec
   return div;
 }
 
+namespace {
+
+// Whether a sample is off the least-squares plane through the samples of its window that `apart` names, by more than the
+// range and the farthest of them; by Cramer's rule.
+bool farFromPlane(const PlainField& field, int column, int row, int radius, float range, auto&& apart) {
+  struct Place {
+    long double x, y, z;
+  };
+  std::vector<Place> places;
+  for (int r = std::max(row - radius, 0); r <= std::min(row + radius, field.height - 1); ++r)
+    for (int c = std::max(column - radius, 0); c <= std::min(column + radius, field.width - 1); ++c)
+      if (apart(field.at(c, r)))
+        places.push_back({static_cast<long double>(c - column), static_cast<long double>(r - row),
+                          static_cast<long double>(field.at(c, r)) - field.at(column, row)});
+  const auto sum = [&](auto&& of) {
+    long double all = 0.0L;
+    for (const Place& p : places) all += of(p);
+    return all;
+  };
+  const long double n = static_cast<long double>(places.size());
+  const long double x = sum([](const Place&p) { return p.x; }), y = sum([](const Place&p) { return p.y; });
+  const long double xx = sum([](const Place&p) { return p.x * p.x; }),
+                    xy = sum([](const Place&p) { return p.x * p.y; }),
+                    yy = sum([](const Place&p) { return p.y * p.y; });
+  const long double z = sum([](const Place&p) { return p.z; }),
+                    xz = sum([](const Place&p) { return p.x * p.z; }),
+                    yz = sum([](const Place&p) { return p.y * p.z; });
+  const auto determinant = [](long double a, long double b, long double c, long double d, long double e,
+                              long double f, long double g, long double h, long double i) {
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
+  };
+  const long double all = determinant(n, x, y, x, xx, xy, y, xy, yy);
+  if (!(all > 0.0L)) return false;  // on one line
+  const long double here = determinant(z, x, y, xz, xx, xy, yz, xy, yy) / all,
+                    along_x = determinant(n, z, y, x, xz, xy, y, yz, yy) / all,
+                    along_y = determinant(n, x, z, x, xx, xz, y, xy, yz) / all;
+  long double most = 0.0L;
+  for (const Place& p : places)
+    most = std::max(most, std::fabs(p.z - (here + along_x * p.x + along_y * p.y)));
+  const long double side = places.front().z < 0.0L ? -1.0L : 1.0L;
+  return side * here > range + most;
+}
+
+}  // namespace
+
 std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec, float got,
                         const std::vector<double>& twin) {
   if (!filterOf(spec.kind).window.exists()) return "";
@@ -288,15 +333,19 @@ std::string checkWindow(const PlainField& field, int column, int row, const Filt
     const auto most = static_cast<std::size_t>(radius), all = samples.size();
     const auto under = static_cast<std::size_t>(below - samples.begin()),
                over = static_cast<std::size_t>(samples.end() - above);
+    // Two opposite each other across it that it stands apart from; where there are no two, the plane of all such.
     const auto opposite = [&](auto&& apart) {
+      bool two = false;
       for (int y = -radius; y <= radius; ++y)
         for (int x = -radius; x <= radius; ++x) {
-          const auto inside = [&](int c, int r) { return c >= c0 && c <= c1 && r >= r0 && r <= r1; };
-          if (inside(column + x, row + y) && inside(column - x, row - y) &&
-              apart(field.at(column + x, row + y)) && apart(field.at(column - x, row - y)))
-            return true;
+          const auto there = [&](int c, int r) {
+            return c >= c0 && c <= c1 && r >= r0 && r <= r1 && !std::isnan(field.at(c, r));
+          };
+          if ((x == 0 && y == 0) || !there(column + x, row + y) || !there(column - x, row - y)) continue;
+          two = true;
+          if (apart(field.at(column + x, row + y)) && apart(field.at(column - x, row - y))) return true;
         }
-      return false;
+      return !two && farFromPlane(field, column, row, radius, range, apart);
     };
     // By how much the nearest n of those apart, of which `near` is the nearest and `far` the last, differ.
     const auto clear = [&](float near, float far) {
