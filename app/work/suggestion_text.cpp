@@ -38,6 +38,16 @@ const FilterCandidate* cheapestWithin(const FilterSuggestion& found, double tole
   return cheapest;
 }
 
+// Filters leave much of what whole lines are off; to level them takes it out.
+std::string linesText(const FilterSuggestion& found, const render::ShownUnit& unit) {
+  constexpr double kMuch = 0.3;  // of the noise: a tenth of its square
+  const bool rows = found.rows >= found.columns;
+  const double off = rows ? found.rows : found.columns;
+  if (!(off > kMuch * found.sigma)) return {};
+  return rows ? trFormat("Rows are off by {}: level lines first. ", errorText(off, unit))
+              : trFormat("Columns are off by {}: level lines first. ", errorText(off, unit));
+}
+
 // What a filter is listed for; less of `of` is better.
 struct Merit {
   const char* why;
@@ -81,7 +91,8 @@ std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& a
   }
   const std::string tolerance = errorText(asked.tolerance, unit);
   std::string why = trFormat("The noise of the whole scan, offsets of rows and columns included, is {}. ",
-                             errorText(found.sigma, unit));
+                             errorText(found.sigma, unit)) +
+                    linesText(found, unit);
   if (isUnchanged(pick) && found.met())
     return why + trFormat("The unchanged scan stays within {}: no filter is needed.", tolerance);
   if (found.met()) {
@@ -89,12 +100,14 @@ std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& a
         "{} leaves {}, in about {}; of all tested filters that stay within {}, none needs less computing.",
         method(pick), leftText(pick, unit), filterTimeText(pick.seconds), tolerance);
   } else {
-    why += trFormat("No tested filter stays within {}{}. ", tolerance,
-                    asked.budget_s ? trFormat(" in {:g} s", *asked.budget_s) : "");
-    why += isUnchanged(pick) ? trFormat("Nothing helps: none leaves less than the unchanged scan, {}.",
-                                        leftText(pick, unit))
-                             : trFormat("Nearest is {} with {}, in about {}.", method(pick),
-                                        leftText(pick, unit), filterTimeText(pick.seconds));
+    const double over = pick.error() / asked.tolerance;
+    why += isUnchanged(pick)
+               ? trFormat("Nothing helps: none leaves less than the unchanged scan, {}: {:.2g} times {}.",
+                          leftText(pick, unit), over, tolerance)
+               : trFormat("{} helps most{}: it leaves {} of {}, in about {}. That is {:.2g} times {}.",
+                          method(pick), asked.budget_s ? trFormat(" in {:g} s", *asked.budget_s) : "",
+                          leftText(pick, unit), leftText(found.candidates.front(), unit),
+                          filterTimeText(pick.seconds), over, tolerance);
     const FilterCandidate* slow = cheapestWithin(found, asked.tolerance);
     if (slow != nullptr)
       why +=
@@ -105,7 +118,9 @@ std::string reasonText(const FilterSuggestion& found, const SuggestionRequest& a
           "scanned again.",
           method(*flattest), leftText(*flattest, unit));
     else
-      why += tr(" A scan with less noise is needed, or the mean of several.");
+      // Independent noise of n scans has a root of n less in their mean.
+      why += trFormat(" For {} take the mean of about {:.0f} scans, or one with less noise.", tolerance,
+                      std::ceil(over * over));
   }
   if (marked != nullptr && !pick.around_edges)
     why += trFormat(" Marking edges first leaves {} ({}): marked samples keep their noise.",

@@ -129,6 +129,8 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
                       "choose a filter yourself");
   FilterSuggestion found;
   found.sigma = noise->sigma;
+  found.rows = std::sqrt(std::max(noise->whole_rows, 0.0));
+  found.columns = std::sqrt(std::max(noise->whole_columns, 0.0));
   found.candidates = candidatesFor(finest->sigma, request.threads);
   job.begin("trying filters", found.candidates.size() + 2);
   JobControl quiet = JobControl::partOf(job);

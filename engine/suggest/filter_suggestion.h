@@ -64,6 +64,7 @@ struct FilterCandidate {
 
 struct FilterSuggestion {
   double sigma = 0.0;                       ///< the scan's noise (measureNoise) [height_unit]
+  double rows = 0.0, columns = 0.0;         ///< of that, what whole rows and columns are off [height_unit]
   std::int64_t samples = 0;                 ///< used for the trials, holes left out
   double outlier_share = 0.0;               ///< of them
   double edge_share = 0.0;                  ///< of those judged, near edges

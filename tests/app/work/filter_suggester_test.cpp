@@ -161,6 +161,8 @@ TEST(SuggestionText, the_suggested_filter_is_first_and_each_other_is_best_at_som
   EXPECT_EQ(listed[3].candidate, 1U);
   EXPECT_EQ(listed[3].why, "the least computing of those that help");
   const std::string why = reasonText(found, asked, {{"um"}, engine::methodOf});
+  EXPECT_EQ(why.find("The noise of the whole scan, offsets of rows and columns included, is 10 um. "), 0U)
+      << why;
   EXPECT_NE(why.find("box 7 leaves 5 um on flats and 7 um near edges, in about 0.04 s"), std::string::npos)
       << why;
   // In another unit.
@@ -179,9 +181,28 @@ TEST(SuggestionText, what_takes_too_long_is_not_listed) {
             "nearest to 7 um, the least error, the least error on flats, the least error near edges, the "
             "least computing of those that help");
   const std::string why = reasonText(found, asked, {{"um"}, engine::methodOf});
-  EXPECT_NE(why.find("No tested filter stays within 7 um in 0.1 s. Nearest is box 5"), std::string::npos)
+  EXPECT_NE(
+      why.find("box 5 helps most in 0.1 s: it leaves 6 um on flats and 9 um near edges of 10 um on flats "
+               "and 10 um near edges, in about 0.01 s. That is 1.3 times 7 um."),
+      std::string::npos)
       << why;
   EXPECT_NE(why.find("box 7 does, in about 0.2 s: allow that time."), std::string::npos) << why;
+}
+
+// Filters leave what whole lines are off: who reads only of filters looks for a better one.
+TEST(SuggestionText, rows_and_columns_that_are_off_are_to_be_levelled_first) {
+  engine::FilterSuggestion found = suggestionOf({{10, 10, 0}, {6, 9, 1}});
+  found.pick = 1;
+  engine::SuggestionRequest asked;
+  asked.tolerance = 7.0;
+  const auto why = [&] { return reasonText(found, asked, {{"um"}, engine::methodOf}); };
+  EXPECT_EQ(why().find("level lines"), std::string::npos);
+  found.rows = 4.0;
+  EXPECT_NE(why().find("Rows are off by 4 um: level lines first."), std::string::npos) << why();
+  found.columns = 5.0;
+  EXPECT_NE(why().find("Columns are off by 5 um: level lines first."), std::string::npos) << why();
+  found.rows = found.columns = 1.0;
+  EXPECT_EQ(why().find("level lines"), std::string::npos) << "a hundredth of the variance";
 }
 
 TEST(SuggestionText, where_nothing_helps_nothing_is_listed_and_that_is_said) {
@@ -190,7 +211,8 @@ TEST(SuggestionText, where_nothing_helps_nothing_is_listed_and_that_is_said) {
   asked.tolerance = 1.0;
   EXPECT_TRUE(listedFilters(found, asked, {"um"}).empty());
   EXPECT_NE(reasonText(found, asked, {{"um"}, engine::methodOf})
-                .find("Nothing helps: none leaves less than the unchanged scan, 5 um on flats"),
+                .find("Nothing helps: none leaves less than the unchanged scan, 5 um on flats and 5 um near "
+                      "edges: 5 times 1 um. For 1 um take the mean of about 25 scans"),
             std::string::npos);
   asked.tolerance = 6.0;
   found.candidates[0].within = true;
