@@ -31,6 +31,12 @@ bool hasNumber(std::string_view text, std::size_t at) {
   return at > 0 && isDigit(text[at - 1]);
 }
 
+// As a unit: the same behind the stroke of a fraction, 1/mm2 or um3/um2.
+bool isUnit(std::string_view text, std::size_t at, std::size_t end) {
+  const bool below = at > 1 && text[at - 1] == '/' && isDigit(text[at - 2]);
+  return endsThere(text, end) && (beginsThere(text, at) || hasNumber(text, at) || below);
+}
+
 struct Word {
   std::string_view ascii, shown;
   bool (*stands)(std::string_view text, std::size_t at, std::size_t end);
@@ -45,6 +51,13 @@ constexpr std::array kWords{
     Word{"um", "\u00b5m",
          [](std::string_view text, std::size_t at, std::size_t end) {
            return endsThere(text, end) && (beginsThere(text, at) || hasNumber(text, at));
+         }},
+    Word{"um2", "\u00b5m\u00b2", isUnit}, Word{"um3", "\u00b5m\u00b3", isUnit},
+    Word{"nm2", "nm\u00b2", isUnit}, Word{"nm3", "nm\u00b3", isUnit}, Word{"mm2", "mm\u00b2", isUnit},
+    Word{"mm3", "mm\u00b3", isUnit}, Word{"m2", "m\u00b2", isUnit}, Word{"m3", "m\u00b3", isUnit},
+    Word{" degrees", "\u00b0",
+         [](std::string_view text, std::size_t at, std::size_t end) {
+           return endsThere(text, end) && at > 0 && isDigit(text[at - 1]);
          }},
     // A word of the language, too.
     Word{"us", "\u00b5s", [](std::string_view text, std::size_t at, std::size_t end) {

@@ -88,7 +88,7 @@ std::string tiltText(const engine::Tilt& tilt) {
     return std::isnan(error) ? fmt::format("{:.4g}", degrees)
                              : fmt::format("{:.4g} +- {:.2g}", degrees, error);
   };
-  return trFormat("tilted {} degrees along x, {} along y\n", one(tilt.x_deg, tilt.x_error_deg),
+  return trFormat("tilted {} degrees along x, {} degrees along y\n", one(tilt.x_deg, tilt.x_error_deg),
                   one(tilt.y_deg, tilt.y_error_deg));
 }
 
@@ -115,7 +115,6 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
   tickBox("without steps and spikes", form.options.robust,
           "Samples far from the form do not pull it: for parts with steps, holes and spikes.");
   ImGui::EndDisabled();
-  if (form.options.through) pointFields(context, form, points);
   if (!points.next()) form.followOptions(context.client);
   const bool previewed = form.previewed().has_value();
   ImGui::BeginDisabled(form.busy());
@@ -135,6 +134,8 @@ void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points
   actionButton("Make it heights", Action::kFormHeights, context.act);
   ImGui::EndDisabled();
   ImGui::EndDisabled();
+  // Below the buttons: they come and go with the form that is chosen.
+  if (form.options.through) pointFields(context, form, points);
   beginPlace("##form outcome", kOutcomeOfForm);
   if (form.busy()) {
     if (cancelledBar(form.progress(), "fitting", "Cancel##form")) form.cancel();

@@ -195,7 +195,8 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
         points.emplace_back(static_cast<double>(i) * states[s].decay_step_mm * length.per_unit,
                             curve.values[i]);
       addCurve(plot, s, states.size(), c,
-               trFormat("{}, {:.0f} degrees from x", tr(std::string_view(curve.name)), curve.degrees),
+               trFormat("{}, {} from x", tr(std::string_view(curve.name)),
+                        fmt::format("{:.0f}\u00b0", curve.degrees)),
                std::move(points));
     }
   return plot;
@@ -205,7 +206,7 @@ CurvePlot decays(const std::vector<SurfaceCurves>& states, const render::ShownUn
 CurvePlot spectra(const std::vector<SurfaceCurves>& states, const std::string& unit, double per_mm) {
   CurvePlot plot{.scale = CurvePlot::Scale::kLogarithmic,
                  .x_name = tr("frequency [1/mm]"),
-                 .y_name = trFormat("power density [{}^2 mm]", unit)};
+                 .y_name = trFormat("power density [{} mm]", unit + "\u00b2")};
   for (std::size_t s = 0; s < states.size(); ++s)
     for (const auto& [spectrum, c] : {std::pair(&states[s].along_x, 0), {&states[s].along_y, 1}}) {
       std::vector<glm::dvec2> points;

@@ -209,12 +209,12 @@ bool tickBox(const char* name, bool& on, std::string_view says) {
 
 bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words) {
   const char* const now = *(words.begin() + std::clamp(chosen, 0, static_cast<int>(words.size()) - 1));
-  if (!ImGui::BeginCombo(id, tr(now))) return false;
+  if (!ImGui::BeginCombo(id, screenText(tr(now)).c_str())) return false;
   bool changed = false;
   int i = 0;
   for (const char* word : words) {
     const bool is = i == chosen;
-    if (ImGui::Selectable(labelOf(word), is) && !is) {
+    if (ImGui::Selectable(screenText(labelOf(word)).c_str(), is) && !is) {
       chosen = i;
       changed = true;
     }
