@@ -19,10 +19,18 @@ std::string shownStretch(const Report& stretch, const ReadAs& unit) {
   return fmt::format("{:.6g} to {}", stretch[0].get<double>() / unit.size, shownLength(stretch[1], unit));
 }
 
-// " +- 3 um" of a key of a section; empty where there is none, as in a session of before it was stated.
-std::string plusError(const Report& of, const char* key, const ReadAs& unit) {
-  if (!of.contains(key) || of[key].is_null()) return "";
-  return fmt::format(" +- {:.2g} {}", of[key].get<double>() / unit.size, unit.name);
+// A length to the digits of its error; without one all that are known.
+std::string shownWith(const Report& of, const char* key, const char* error_key, const ReadAs& unit,
+                      std::string (*plain)(const Report&, const ReadAs&)) {
+  if (of[key].is_null() || !of.contains(error_key) || of[error_key].is_null()) return plain(of[key], unit);
+  const double error = of[error_key].get<double>() / unit.size;
+  return fmt::format("{} +- {:.2g} {}", shownTo(of[key].get<double>() / unit.size, error), error, unit.name);
+}
+
+// Of what is left of a fit no more digits say anything.
+std::string shownRms(const Report& of, const ReadAs& unit) {
+  const Report& mm = of["rms_mm"];
+  return mm.is_null() ? "-" : fmt::format("{:.4g} {}", mm.get<double>() / unit.size, unit.name);
 }
 
 // Why a profile does not determine a parameter.
@@ -59,34 +67,32 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
   }
   if (of.contains("line")) {
     const Report& line = of["line"];
-    row("line",
-        fmt::format("inclination {}, height in the middle {}, rms {}",
-                    shownEstimate(line, "inclination", "deg", kDegrees),
-                    shownEstimate(line, "height", "mm", height), shownLength(line["rms_mm"], height)));
+    row("line", fmt::format("inclination {}, height in the middle {}, rms {}",
+                            shownEstimate(line, "inclination", "deg", kDegrees),
+                            shownEstimate(line, "height", "mm", height), shownRms(line, height)));
   }
   if (of.contains("step")) {
     const Report& step = of["step"];
-    row("step", fmt::format("{}, edge at {}{}, by {} and {}, rms {}",
-                            shownEstimate(step, "step", "mm", height), shownLength(step["edge_mm"], along),
-                            plusError(step, "edge_error_mm", along), shownStretch(step["before"], along),
-                            shownStretch(step["after"], along), shownLength(step["rms_mm"], height)));
+    row("step", fmt::format("{}, edge at {}, by {} and {}, rms {}", shownEstimate(step, "step", "mm", height),
+                            shownWith(step, "edge_mm", "edge_error_mm", along, shownLength),
+                            shownStretch(step["before"], along), shownStretch(step["after"], along),
+                            shownRms(step, height)));
   }
   if (of.contains("groove")) {
     const Report& groove = of["groove"];
     row("groove",
-        fmt::format("depth {}, width {}{} from {} to {}, rms {}",
-                    shownEstimate(groove, "depth", "mm", height), shownLength(groove["width_mm"], along),
-                    plusError(groove, "width_error_mm", along), shownLength(groove["edges"][0], along),
-                    shownLength(groove["edges"][1], along), shownLength(groove["rms_mm"], height)));
+        fmt::format("depth {}, width {} from {} to {}, rms {}", shownEstimate(groove, "depth", "mm", height),
+                    shownWith(groove, "width_mm", "width_error_mm", along, shownLength),
+                    shownLength(groove["edges"][0], along), shownLength(groove["edges"][1], along),
+                    shownRms(groove, height)));
   }
   if (of.contains("angle")) {
     const Report& angle = of["angle"];
-    row("angle", fmt::format("turn {}, included {} degrees, lines meet at {}{}, height {}{}",
-                             shownEstimate(angle, "turn", "deg", kDegrees),
-                             shownNumber(angle["included_deg"]), shownLength(angle["meet_along_mm"], along),
-                             plusError(angle, "meet_along_error_mm", along),
-                             shownHeight(angle["meet_height_mm"], height),
-                             plusError(angle, "meet_height_error_mm", height)));
+    row("angle",
+        fmt::format("turn {}, included {} degrees, lines meet at {}, height {}",
+                    shownEstimate(angle, "turn", "deg", kDegrees), shownNumber(angle["included_deg"]),
+                    shownWith(angle, "meet_along_mm", "meet_along_error_mm", along, shownLength),
+                    shownWith(angle, "meet_height_mm", "meet_height_error_mm", height, shownHeight)));
   }
   if (of.contains("arc")) {
     const Report& arc = of["arc"];
@@ -94,7 +100,7 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
                            shownEstimate(arc, "radius", "mm", along),
                            arc["hollow"].get<bool>() ? "hollow" : "raised",
                            shownLength(arc["centre_along_mm"], along),
-                           shownHeight(arc["centre_height_mm"], along), shownLength(arc["rms_mm"], height)));
+                           shownHeight(arc["centre_height_mm"], along), shownRms(arc, height)));
   }
   for (const engine::ProfileInfo& profile : engine::profileInfos()) {
     const std::string word(profile.word);
