@@ -9,12 +9,14 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "app/work/align_moves.h"
 #include "app/work/estimate_text.h"
 #include "app/work/read_units.h"
+#include "app/work/repeat_text.h"
 #include "app/work/streams.h"
 #include "engine/nominal/nominal_align.h"
 
@@ -58,6 +60,9 @@ engine::Result<engine::Alignment> namedAlignment(const engine::Imported& a, cons
                                              : both,
                               alignment.error().remedy);
   }
+  if (alignment && alignment->repeat)
+    warn(repeatText(*alignment->repeat, readLengthAs(glm::length(*alignment->repeat), 1.0, "mm")) +
+         ": align by a --region that occurs once");
   return alignment;
 }
 
@@ -144,6 +149,8 @@ Report alignReport(const AlignArguments& arguments, const engine::Alignment& ali
                  {"left_out", alignment.left_out},
                  {"samples", alignment.samples},
                  {"window_mm", alignment.sigma_mm}});
+  if (alignment.repeat)
+    report["repeat"] = {{"shift_x_mm", alignment.repeat->x}, {"shift_y_mm", alignment.repeat->y}};
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/commands/align_estimate.h"
 #include "app/commands/align_option.h"
@@ -24,6 +25,7 @@
 #include "app/work/mosaic_form.h"
 #include "app/work/outputs.h"
 #include "app/work/read_units.h"
+#include "app/work/repeat_text.h"
 #include "app/work/streams.h"
 #include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
@@ -247,6 +249,9 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
           "the pairs agree only to {:.2g} of their standard errors: some of the scans lie elsewhere; state "
           "their places with --layout",
           misfit));
+  for (const engine::RepeatedPair& pair : joined->repeated)
+    warn(fmt::format("{} over {}: {}", how.names[pair.second], how.names[pair.first],
+                     repeatText(pair.shift, readLengthAs(glm::length(pair.shift), 1.0, "mm"))));
   const auto formed = underCommonForm(*joined, scans, forms, how.names, job);
   if (!formed) return tl::unexpected(formed.error());
   if (!formed->left_out.empty()) warn(formed->left_out);
@@ -276,6 +281,11 @@ engine::Result<Report> mosaic(const MosaicRun& options, engine::JobControl& job)
                                   {"rms_mm", overlap.rms},
                                   {"spread_mm", overlap.spread},
                                   {"height_error_mm", overlap.height_error}});
+  for (const engine::RepeatedPair& pair : joined->repeated)
+    report["repeats"].push_back({{"a", options.files[pair.first]},
+                                 {"b", options.files[pair.second]},
+                                 {"shift_x_mm", pair.shift.x},
+                                 {"shift_y_mm", pair.shift.y}});
   report["out"] = out;
   report["hash"] = hashOf(joined->field);
   return report;

@@ -26,7 +26,11 @@ Keys alignmentKeys() {
           {"overlap", "number", "share of A's samples"},
           {"left_out", "number", "share of these that lie apart"},
           {"samples", "integer", "that count"},
-          {"window_mm", "number", "standard deviation of the Gaussian window"}};
+          {"window_mm", "number", "standard deviation of the Gaussian window"},
+          {"repeat?",
+           "object",
+           "the surface repeats itself: a further shift that fits as well",
+           {{"shift_x_mm", "number", ""}, {"shift_y_mm", "number", ""}}}};
 }
 
 // With a nominal mesh as B.
@@ -135,6 +139,13 @@ std::vector<ReportSchema> comparing() {
             {"rms_mm", "number", ""},
             {"spread_mm", "number", "1.4826 median distances from the median"},
             {"height_error_mm", "number", "standard error of the height of b over a in the middle"}}},
+          {"repeats?",
+           "[object]",
+           "pairs whose surface repeats itself: a further shift that fits as well",
+           {{"a", "string", "the file"},
+            {"b", "string", ""},
+            {"shift_x_mm", "number", ""},
+            {"shift_y_mm", "number", ""}}},
           {"out", "string", "the file"},
           hash()}},
         estimateAlone(),

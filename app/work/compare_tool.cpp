@@ -6,10 +6,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/work/estimate_text.h"
 #include "app/work/less_distances.h"
 #include "app/work/read_units.h"
+#include "app/work/repeat_text.h"
 #include "engine/compare/compare.h"
 #include "engine/field/difference.h"
 #include "engine/field/seen_field.h"
@@ -49,6 +51,8 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
     lines.push_back(figureLine("tilt y", found->angles.tilt_y, found->angle_error.tilt_y, 1.0, "degrees"));
     lines.push_back(
         fmt::format("{:.3g} % of the samples lie apart and do not count", 100.0 * found->left_out));
+    if (found->repeat)
+      lines.push_back(repeatText(*found->repeat, readOnScreenAs(glm::length(*found->repeat), 1.0, "mm")));
   }
   const ReadAs height = readOnScreenAs(compared.rms_mm, 1.0, "mm");
   lines.push_back(fmt::format("deviation: rms {:.4g}, mean {:.4g}, largest {:.4g} {}, {} samples",

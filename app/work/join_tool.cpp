@@ -5,9 +5,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/work/mosaic_form.h"
 #include "app/work/read_units.h"
+#include "app/work/repeat_text.h"
 #include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/mosaic/join.h"
@@ -44,6 +46,10 @@ std::string outcomeOf(const engine::JoinedScans& joined, std::size_t scans) {
   if (joined.poses.freedom > 0)
     text += fmt::format("; they agree to {:.3g} of their standard errors",
                         std::sqrt(joined.poses.misfit / joined.poses.freedom));
+  if (!joined.repeated.empty()) {
+    const glm::dvec2& shift = joined.repeated.front().shift;
+    text += "; " + repeatText(shift, readOnScreenAs(glm::length(shift), 1.0, "mm"));
+  }
   return text;
 }
 

@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +64,56 @@ TEST(AlignCommand, FindsAShiftAndWritesTheMovedScan) {
   EXPECT_TRUE(first.starts_with("shift_x,0.3"));
   const Outcome text = fettle({"align", a, b, "--unit", "mm", "--moves", "shift"});
   EXPECT_NE(text.out.find("shift x     330 "), std::string::npos) << text.out;
+}
+
+// Waves 1.5 mm long along both sides, each scan with noise of its own; one of them with a boss.
+void writePattern(const std::string& path, double x, unsigned seed, double boss) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, 0.003);
+  std::ofstream out(path);
+  out.precision(9);
+  out << "ncols 120\nnrows 120\nxllcenter 0\nyllcenter 0\ncellsize 0.1\nNODATA_value -9999\n";
+  for (int r = 119; r >= 0; --r) {
+    for (int c = 0; c < 120; ++c) {
+      const double u = 0.1 * c - x, v = 0.1 * r, square = (u - 3.0) * (u - 3.0) + (v - 8.0) * (v - 8.0);
+      out << 0.02 * (std::sin(4.18879 * u) + std::sin(4.18879 * v)) + boss * std::exp(-square / 0.4) +
+                 normal(random)
+          << ' ';
+    }
+    out << '\n';
+  }
+}
+
+TEST(AlignCommand, WarnsWhereTheSurfaceRepeatsItself) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.asc"), b = folder.file("b.asc"), boss_a = folder.file("c.asc"),
+                    boss_b = folder.file("d.asc");
+  writePattern(a, 0.23, 1, 0.0);
+  writePattern(b, 0.0, 2, 0.0);
+  writePattern(boss_a, 0.23, 3, 0.05);
+  writePattern(boss_b, 0.0, 4, 0.05);
+  const char* const kWarning = "fettle: warning: the surface repeats itself every ";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"align", a, b},
+        {"compare", a, b, "--align", "all"},
+        {"align", boss_a, boss_b, "--region", "rectangle 6,0,11.9,11.9"}}) {
+    std::vector<std::string> with_unit = words;
+    with_unit.insert(with_unit.end(), {"--unit", "mm"});
+    const Outcome text = fettle(with_unit);
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.err.find(kWarning), std::string::npos) << words[0] << ": " << text.err;
+    const auto report = fettleJson(with_unit);
+    const auto& of = words[0] == "compare" ? report["align"] : report;
+    ASSERT_TRUE(of.contains("repeat")) << of.dump();
+    EXPECT_NEAR(
+        std::hypot(of["repeat"]["shift_x_mm"].get<double>(), of["repeat"]["shift_y_mm"].get<double>()), 1.5,
+        0.02);
+  }
+  const Outcome once = fettle({"align", boss_a, boss_b, "--unit", "mm"});
+  EXPECT_EQ(once.err.find("repeats itself"), std::string::npos) << once.err;
+  const auto report = fettleJson({"align", boss_a, boss_b, "--unit", "mm"});
+  EXPECT_FALSE(report.contains("repeat"));
+  EXPECT_NEAR(report["shift_x_mm"], 0.23, 0.01);
 }
 
 TEST(AlignCommand, SaysWhatItCannotDo) {
