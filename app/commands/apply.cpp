@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@
 #include "engine/base/stopwatch.h"
 #include "engine/field/piece.h"
 #include "engine/field/seen_field.h"
+#include "engine/field/tile_store.h"
 #include "engine/fill/fill.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/filter/catalogue.h"
@@ -278,6 +280,19 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       FormArguments form = level->form;
       form.region = "all";  // marks of an earlier step are not there yet, and shapes lie in what it made
       steps.emplace_back(plannedLevel(field, field, level->lines, form, Lowered::kTwice));
+    } else if (const auto* layer = std::get_if<RecipeForm>(&step)) {
+      // To take a layer away, or to make it heights, is no work on samples.
+      if (layer->layer != kLayerPut) continue;
+      FormArguments form = layer->form;
+      form.region = "all";  // as of a level
+      PlannedOnPieces over = plannedLayer(field, form, Lowered::kTwice);
+      // What is seen, and what is seen of an original that differs, which small pieces do not show; a quarter more while it is made.
+      const double fields = original == field && steps.empty() ? 1.25 : 2.25;
+      over.memory_each = fields *
+                         static_cast<double>(engine::fieldBytes(static_cast<std::uint64_t>(grid.width),
+                                                                static_cast<std::uint64_t>(grid.height))) /
+                         static_cast<double>(grid.samples());
+      steps.emplace_back(std::move(over));
     } else if (const auto* filling = std::get_if<RecipeFill>(&step)) {
       const auto fill = fillOptionsOf(filling->what, grid);
       if (!fill) return tl::unexpected(fill.error());

@@ -65,16 +65,8 @@ engine::Result<Foreseen> foreseeLayer(const LayerChange& change, const BatchTask
                       .writing = change.writing};
   planned.writing.original = original;
   if (change.layer == kLayerPut) {
-    PlannedOnPieces fit = plannedLevel(samples, samples, {}, change.form, Lowered::kOnce);
-    // What is seen is lowered, what is stored is not.
-    fit.work = [&samples, lower = fit.work](const engine::SampleRect& r,
-                                            engine::JobControl& own) -> engine::Result<engine::Version> {
-      auto seen = lower(r, own);
-      if (!seen) return seen;
-      return engine::pieceOf(samples, r.column, r.row, r.columns, r.rows);
-    };
-    fit.fields = 2;
-    fit.uneven = true;  // a session packs smooth places better than rough ones
+    PlannedOnPieces fit = plannedLayer(samples, change.form, Lowered::kOnce);
+    fit.fields = 2;  // what is seen is not made here
     planned.steps.emplace_back(std::move(fit));
   }
   return foresee(planned, shownOutput(task.out), change.estimate, job);
@@ -111,6 +103,19 @@ engine::Status checkLayer(const std::string& layer, const FormArguments& form,
       return engine::inputError("only a session stores samples and the form over them", shownOutput(task.out),
                                 "write a session, NAME.fettle");
   return {};
+}
+
+PlannedOnPieces plannedLayer(const engine::Version& samples, const FormArguments& form, Lowered lowered) {
+  PlannedOnPieces fit = plannedLevel(samples, samples, {}, form, lowered);
+  // What is seen is lowered, what is stored is not.
+  fit.work = [&samples, lower = fit.work](const engine::SampleRect& r,
+                                          engine::JobControl& own) -> engine::Result<engine::Version> {
+    auto seen = lower(r, own);
+    if (!seen) return seen;
+    return engine::pieceOf(samples, r.column, r.row, r.columns, r.rows);
+  };
+  fit.uneven = true;  // a session packs smooth places better than rough ones
+  return fit;
 }
 
 engine::Result<Layered> withLayer(const std::string& layer, const FormArguments& form,

@@ -7,7 +7,9 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
+#include "app/commands/levelling.h"
 #include "app/commands/scan_options.h"
+#include "app/work/work_estimate.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
@@ -29,6 +31,11 @@ inline constexpr const char* kLayerBake = "bake";
 /// Refuses a form of which the layer says nothing, or which no layer can be, and an output that stores no layer.
 [[nodiscard]] engine::Status checkLayer(const std::string& layer, const FormArguments& form,
                                         const std::vector<BatchTask>& tasks);
+
+/// The work of putting a form over samples, for an estimate: what is seen of them is lowered, once or, with what its changes are limited from, twice.
+/// `samples` live as long as what is returned.
+[[nodiscard]] PlannedOnPieces plannedLayer(const engine::Version& samples, const FormArguments& form,
+                                           Lowered lowered);
 
 /// A field and the original that its changes are limited from, under another form, both as they are seen.
 struct Layered {

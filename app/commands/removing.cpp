@@ -74,14 +74,17 @@ engine::Result<engine::Removed> removedFrom(const engine::Version& field, const 
 }
 
 PlannedOnPieces plannedRemove(const engine::Version& field, const engine::RemoveOptions& options) {
+  // A session has what changed beside the original: much here and nothing there.
   return {.work = [&field, options](const engine::SampleRect& r,
                                     engine::JobControl& job) -> engine::Result<engine::Version> {
-    engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
-    auto removed = engine::removeSamples(piece, options, job);
-    if (removed) return std::move(removed->field);
-    if (removed.error().kind == engine::ErrorKind::kInput) return piece;  // every sample of it would go
-    return tl::unexpected(removed.error());
-  }};
+            engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+            auto removed = engine::removeSamples(piece, options, job);
+            if (removed) return std::move(removed->field);
+            if (removed.error().kind == engine::ErrorKind::kInput)
+              return piece;  // every sample of it would go
+            return tl::unexpected(removed.error());
+          },
+          .uneven = true};
 }
 
 }  // namespace fettle::app

@@ -186,17 +186,17 @@ PlannedOnPieces plannedTransform(const engine::Version& field, const engine::Ver
           },
       .fields = field.formOver() == nullptr ? 1 : 2,  // samples, and what is seen of them
       .share = kept / static_cast<double>(field.grid().samples())};
-  if (field.formOver() != nullptr) {
-    // What is made of heights, with the form again, and what is seen of that, beside what was made of the field before the original: small
-    // pieces do not show it.
-    const double together = with == WithOriginal::kYes ? 5.0 : 3.0;
-    const auto made = transformedGrid(before, options);
-    const double larger = made ? static_cast<double>(made->samples()) / kept : 1.0;
-    planned.memory_each = together * std::max(1.0, larger) *
-                          static_cast<double>(engine::fieldBytes(static_cast<std::uint64_t>(before.width),
-                                                                 static_cast<std::uint64_t>(before.height))) /
-                          static_cast<double>(before.samples());
-  }
+  // How many fields are made at once small pieces do not show, as most tiles of a turned one have samples and holes. Under a form: what is made of heights, with
+  // the form again, and what is seen of that, beside what was made of the field before the original. Else the result, and another one of an original
+  // that differs, with 5 % for tiles that stand over its ends.
+  const bool both = with == WithOriginal::kYes, formed = field.formOver() != nullptr;
+  const double together = formed ? (both ? 5.0 : 3.0) : 1.05 * (both && !(original == field) ? 2.0 : 1.0);
+  const auto made = transformedGrid(before, options);
+  const double larger = made ? static_cast<double>(made->samples()) / kept : 1.0;
+  planned.memory_each = together * (formed ? std::max(1.0, larger) : larger) *
+                        static_cast<double>(engine::fieldBytes(static_cast<std::uint64_t>(before.width),
+                                                               static_cast<std::uint64_t>(before.height))) /
+                        static_cast<double>(before.samples());
   if (with == WithOriginal::kYes)
     planned.of_original = [piece, &original](const engine::SampleRect& r, engine::JobControl& job) {
       return piece(original, r, job);

@@ -171,6 +171,68 @@ TEST(Estimate, OfATransformCountsTheFormOverTheScan) {
   }
 }
 
+double ratioOfMemory(std::vector<std::string> command, const std::string& out) {
+  command.emplace_back("--estimate");
+  const auto estimate = fettleJson(command);
+  command.pop_back();
+  const Outcome done = fettle(command);
+  EXPECT_EQ(done.status, 0) << done.err;
+  fs::remove(out);
+  return estimate.at("memory_bytes").get<double>() / static_cast<double>(done.peak_bytes);
+}
+
+// Of a scan without a form: the turned result is larger than the scan, and most of its tiles have samples.
+TEST(Estimate, OfATransformForeseesTheMemoryOfItsResult) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), out = folder.file("o.tif"), recipe = folder.file("r.toml");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x1500"}).status, 0);
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"transform\"\nangle = 20\n";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"transform", in, out, "--angle", "20"},
+        {"transform", in, out, "--turn", "90"},
+        {"transform", in, out, "--to-spacing", "0.03"},
+        {"apply", recipe, in, out}}) {
+    const double ratio = ratioOfMemory(command, out);
+    EXPECT_GT(ratio, 0.88) << command[0] << ' ' << command[1] << ' ' << command[3];
+    EXPECT_LT(ratio, 1.4) << command[0] << ' ' << command[1] << ' ' << command[3];
+  }
+}
+
+// A form that a recipe lays over the scan is what is seen of it, and of what changes are limited from.
+TEST(Estimate, OfARecipeCountsTheFormThatItLaysOverTheScan) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), recipe = folder.file("r.toml");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x1500"}).status, 0);
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"form\"\nform = \"poly5\"\nlayer = \"put\"\n";
+  for (const char* name : {"o.fettle", "o.tif"}) {
+    const std::string out = folder.file(name);
+    const auto estimate = fettleJson({"apply", recipe, in, out, "--estimate"});
+    // Fitted and lowered, a step takes longer than to write what is there.
+    EXPECT_GT(estimate.at("work_seconds"), 0.01) << estimate.dump();
+    const double ratio = ratioOfMemory({"apply", recipe, in, out}, out);
+    EXPECT_GT(ratio, 0.88) << name;
+    EXPECT_LT(ratio, 1.4) << name;
+  }
+}
+
+// A session keeps what changed beside the original: much where a step is, nothing in the middle.
+TEST(Estimate, OfASessionLooksForChangesAllOverTheScan) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), out = folder.file("o.fettle");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x1500"}).status, 0);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"remove", in, out, "--below", "0"}, {"remove", in, out, "--above", "2"}}) {
+    std::vector<std::string> asked = command;
+    asked.emplace_back("--estimate");
+    const auto estimate = fettleJson(asked);
+    ASSERT_EQ(fettle(command).status, 0);
+    const double ratio = estimate.at("disk_bytes").get<double>() / static_cast<double>(fs::file_size(out));
+    EXPECT_GT(ratio, 0.8) << command[3];
+    EXPECT_LT(ratio, 1.25) << command[3];
+    fs::remove(out);
+  }
+}
+
 // Nearly all triangles are at edges and holes, of which the middle of the simulated part has few.
 TEST(Estimate, OfAMeshWithAnErrorLooksAllOverTheScan) {
   const TempFolder folder;
