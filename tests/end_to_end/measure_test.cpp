@@ -96,6 +96,13 @@ TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
   EXPECT_NEAR(all["sal"], std::acos(0.2) / (2.0 * 3.14159265 / 1.2), 0.03);
   EXPECT_TRUE(all["str"].is_null());
   EXPECT_EQ(all["not_stated"][0]["parameter"], "str");
+  // Every figure without noise is stated, or has a reason: that of Str is that there is none with noise either.
+  for (const auto& figure : all["noise"]["figures"])
+    EXPECT_EQ(figure["without"].is_null(), figure["reason"] != "") << figure.dump();
+  for (const auto& figure : all["noise"]["figures"])
+    if (figure["parameter"] == "str") {
+      EXPECT_EQ(figure["reason"], all["not_stated"][0]["reason"]);
+    }
   EXPECT_NEAR(all["std"], 90.0, 1.0);
   EXPECT_NEAR(all["ssw"], 1.2, 1e-3);
   EXPECT_EQ(all["smc"].size(), 2U);

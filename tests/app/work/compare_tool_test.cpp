@@ -1,7 +1,10 @@
 #include "app/work/compare_tool.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -144,6 +147,39 @@ TEST_F(CompareToolTest, a_nominal_mesh_is_compared_as_a_scan) {
   // On a slope of 2.5 the nearest place is nearer than the one above.
   EXPECT_LT(tool.compared()->most_mm, 0.02);
   EXPECT_EQ(tool.compared()->tolerated->at(0), tool.compared()->samples);
+}
+
+// Pads every 2 mm, each scan with noise of its own: the lines say that the other scan fits a period further.
+TEST_F(CompareToolTest, a_surface_that_repeats_itself_is_said_to_fit_a_period_further) {
+  const auto pads = [](unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal(0.0, 0.002);
+    return tests::fieldOf(
+        kComparedWide, kComparedHigh,
+        [&](int c, int r) {
+          return 0.02 * std::sin(0.1 * std::numbers::pi * c) + 0.02 * std::sin(0.1 * std::numbers::pi * r) +
+                 normal(random);
+        },
+        0.1, 0.1);
+  };
+  engine::JobControl job;
+  const std::string path = folder.file("pads.tif");
+  ASSERT_TRUE(engine::exportField(pads(2), path, {}, job));
+  LoopClientBench over{pads(1)};
+  tool.compareWith(over.client(), path, {});
+  ASSERT_TRUE(over.until([&] {
+    (void)tool.poll(over.client(), over.noticesToFill());
+    return !tool.busy();
+  }));
+  ASSERT_NE(tool.compared(), nullptr) << (over.notices().empty() ? "" : over.notices().back().what);
+  const auto says = [](const std::string& line) {
+    return line.find("the surface repeats itself every ") != std::string::npos;
+  };
+  EXPECT_EQ(std::ranges::count_if(tool.lines(), says), 1);
+  ASSERT_TRUE(tool.compared()->alignment->repeat);
+  EXPECT_NEAR(std::hypot(tool.compared()->alignment->repeat->x, tool.compared()->alignment->repeat->y), 2.0,
+              0.02);
+  tool.clear();
 }
 
 }  // namespace
