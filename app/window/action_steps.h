@@ -13,6 +13,7 @@
 #include "app/window/parts.h"
 #include "app/window/result_files.h"
 #include "app/window/scene_edits.h"
+#include "app/work/filter_list.h"
 #include "app/work/line_edits.h"
 #include "engine/marks/change_marks.h"
 
@@ -315,9 +316,7 @@ inline void suggestFilters(Parts& p) {
   if (!p.suggester.busy()) p.suggester.search(clientOf(p));
 }
 inline void nextFilter(Parts& p) {
-  const std::size_t now = static_cast<std::size_t>(p.filters.spec.kind);
-  p.filters.chooseKind(engine::filters()[(now + 1) % engine::filters().size()].kind,
-                       clientOf(p).field().grid());
+  p.filters.chooseKind(filterAfter(p.filters.spec.kind), clientOf(p).field().grid());
 }
 template <FilterPreview::Keep keep>
 void preview(Parts& p) {

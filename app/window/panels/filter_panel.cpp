@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -7,13 +8,35 @@
 #include "app/texts/texts.h"
 #include "app/window/panels/panels.h"
 #include "app/window/screen_text.h"
+#include "app/work/filter_list.h"
 
 namespace fettle::app {
 namespace {
 
 constexpr int kPreviewLines = 5;
 
-void kindField(FilterPreview& filters, const engine::Grid& grid) {
+// What no filter does and people look for here: entries that show its preview, in its panel.
+void otherEntries(const HeightTool& heights, const Act& act) {
+  struct Entry {
+    const char* name;
+    Action preview;
+    const char* says;
+    bool shown;
+  };
+  for (const Entry& entry :
+       {Entry{textOf("Level lines (rows or columns) ..."), Action::kLevelPreview,
+              textOf("Rows of a line scanner that are off against each other: in the panel Holes and lines."),
+              heights.previews(heights.lines)},
+        Entry{textOf("Fill holes ..."), Action::kFillPreview,
+              textOf("Samples without a height: in the panel Holes and lines."),
+              heights.previews(heights.fill)}}) {
+    // The action would drop a preview that is shown.
+    if (ImGui::Selectable(labelOf(entry.name)) && !entry.shown) act(entry.preview);
+    explain(entry.says);
+  }
+}
+
+void kindField(const PanelContext& context, FilterPreview& filters, const HeightTool& heights) {
   const engine::FilterSpec& spec = filters.spec;
   fieldName("filter", engine::filterOf(spec.kind).says);
   const bool open =
@@ -22,10 +45,17 @@ void kindField(FilterPreview& filters, const engine::Grid& grid) {
     explain(engine::filterOf(spec.kind).says);
     return;
   }
-  for (const engine::Filter& each : engine::filters()) {
-    const bool chosen = ImGui::Selectable(labelOf(each.title), each.kind == spec.kind);
-    explain(each.says);
-    if (chosen) filters.chooseKind(each.kind, grid);
+  bool first = true;
+  for (const FilterGroup& group : filterGroups()) {
+    if (!first) ImGui::Separator();
+    ImGui::TextDisabled("%s", tr(group.heading));
+    for (const engine::FilterKind kind : group.filters) {
+      const engine::Filter& each = engine::filterOf(kind);
+      const bool chosen = ImGui::Selectable(labelOf(each.title), kind == spec.kind);
+      explain(each.says);
+      if (chosen) filters.chooseKind(kind, context.client.field().grid());
+    }
+    if (std::exchange(first, false)) otherEntries(heights, context.act);
   }
   ImGui::EndCombo();
 }
@@ -174,11 +204,16 @@ void previewList(bool anything_marked, const engine::LengthUnit& height, const r
 
 }  // namespace
 
-void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display) {
+void filterPanel(const PanelContext& context, FilterPreview& filters, const HeightTool& heights,
+                 Display& display) {
   engine::FilterSpec& spec = filters.spec;
   const engine::Grid& grid = context.client.field().grid();
   beginFields();
-  kindField(filters, grid);
+  kindField(context, filters, heights);
+  endFields();
+  // Above the fields, whose number is that of the filter: a button stays under the pointer whatever is chosen.
+  runButtons(context, filters);
+  beginFields();
   sizeFields(spec, grid, context.units);
   sigmaFields(spec, context.units, filters.rangeOfNoise(context.client));
   (void)limitField(context, spec.max_change, Action::kFilterMaxChange);
@@ -190,7 +225,6 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   ImGui::RadioButton(labelOf("only marks"), &scope, 1);
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
-  runButtons(context, filters);
   ImGui::BeginDisabled(filters.variants().size() != 1);
   tickBox(
       "split line", display.split,

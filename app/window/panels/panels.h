@@ -33,7 +33,9 @@ void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 /// Filters that were tried for the scan as it is seen; one is taken into the fields of `filters` by a click.
 void suggestionPanel(const PanelContext& context, FilterSuggester& suggester, FilterPreview& filters,
                      EdgeTool& edges);
-void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
+/// `heights`: whose previews its list of filters has, too.
+void filterPanel(const PanelContext& context, FilterPreview& filters, const HeightTool& heights,
+                 Display& display);
 /// The form that lies over the field, and the one that is to.
 void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points);
 /// Holes that are filled, lines that are levelled.

@@ -48,13 +48,16 @@ render::ValueRange seenHeights(const PanelContext& context, const WindowPicture&
   return bounds.empty() ? render::ValueRange{0.0, 1.0} : render::ValueRange{bounds.min, bounds.max};
 }
 
-void heightFields(RemoveOptions& remove, const render::ValueRange& seen, const render::ShownUnit& unit) {
+void whichHeights(RemoveOptions& remove, const render::ValueRange& seen) {
   int chosen = static_cast<int>(removedHeights(remove));
   if (field("heights", "Samples lower, higher, between two heights or outside them.", [&] {
         return chooseWord("##removed heights", chosen,
                           {"any height", "below", "above", "between", "outside"});
       }))
     setHeights(remove, static_cast<RemovedHeights>(chosen), seen);
+}
+
+void limitFields(RemoveOptions& remove, const render::ShownUnit& unit) {
   const RemovedHeights heights = removedHeights(remove);
   const double width = remove.high - remove.low;
   const bool both = heights == RemovedHeights::kBetween || heights == RemovedHeights::kOutside;
@@ -114,7 +117,14 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   RemoveOptions remove = turned ? engine::upsideDown(heights.remove) : heights.remove;
   beginFields();
   whichSamples(remove);
-  heightFields(remove, seen, context.units.height);
+  whichHeights(remove, seen);
+  endFields();
+  heights.remove = turned ? engine::upsideDown(remove) : remove;
+  // Above the limits, which come and go with the word before: a button stays under the pointer.
+  heightButtons(context, heights, heights.remove,
+                {Action::kRemovePreview, Action::kRemoveSamples, textOf("Remove")});
+  beginFields();
+  limitFields(remove, context.units.height);
   endFields();
   if (const RemovedHeights kind = removedHeights(remove); kind != RemovedHeights::kAny) {
     if (pressButton(
@@ -127,9 +137,7 @@ void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount&
   }
   heights.remove = turned ? engine::upsideDown(remove) : remove;
   count.want(heights.remove);
-  heightButtons(context, heights, heights.remove,
-                {Action::kRemovePreview, Action::kRemoveSamples, textOf("Remove")});
-  // Below the buttons: it takes one line or two.
+  // It takes one line or two.
   beginPlace("##remove count", kCountLines);
   writeWrapped(countText(count));
   endPlace();

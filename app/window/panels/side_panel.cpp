@@ -55,7 +55,8 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
   });
   section(parts, "Suggested filters", false,
           [&] { suggestionPanel(context, parts.suggester, parts.filters, parts.marking.edges); });
-  section(parts, "Filters", true, [&] { filterPanel(context, parts.filters, settings.display); });
+  section(parts, "Filters", true,
+          [&] { filterPanel(context, parts.filters, parts.heights, settings.display); });
   section(parts, "Remove samples", false,
           [&] { removePanel(context, parts.heights, parts.removal, parts.picture); });
   section(parts, "Holes and lines", false, [&] { heightsPanel(context, parts.heights); });
