@@ -34,6 +34,7 @@ void ToolResults::begin(Parts& parts) {
   step_ = client.history().number();
   stepped_ = false;
   extremes_ = client.upright().reader().bounds();
+  parts.heights.fill = {.most_extent_mm = HeightTool::usualExtentMm(client.field().grid())};
   noteHeights(parts);
 }
 

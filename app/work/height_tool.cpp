@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "app/texts/texts.h"
+#include "app/work/hole_count.h"
 #include "app/work/read_units.h"
 #include "engine/remove/remove_step.h"
 
@@ -42,16 +44,18 @@ struct MakerName {
   }
 };
 
-std::string removedText(const engine::RemoveCounts& counts) {
-  std::string text = trFormat("removes {} of {} samples", counts.removed, counts.heights);
+std::string removedText(const engine::RemoveCounts& counts, bool done) {
+  std::string text = done ? trFormat("{} of {} samples removed", counts.removed, counts.heights)
+                          : trFormat("removes {} of {} samples", counts.removed, counts.heights);
   if (counts.spared > 0) text += trFormat("; {} stay since they are marked", counts.spared);
   return text;
 }
 
+// `holes`: samples without a height that are left; `done`: it is a step.
 std::string foundIn(const haptic::ComputedHeights& heights, const haptic::HeightsMaker& maker,
-                    const engine::Version& before) {
+                    const engine::Version& before, std::int64_t holes, bool done) {
   const engine::Grid& grid = before.grid();
-  if (std::holds_alternative<engine::RemoveOptions>(maker)) return removedText(heights.removed);
+  if (std::holds_alternative<engine::RemoveOptions>(maker)) return removedText(heights.removed, done);
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
     std::string text = trFormat("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
@@ -66,6 +70,8 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   const auto stay = [&](std::int64_t count, const char* why) {
     if (count > 0) text += fmt::format("; {} {}", count, why);
   };
+  if (const std::int64_t left = filled.holes - filled.filled_holes; left > 0)
+    text += trFormat("; {} of {} samples are left", left, holes);
   stay(filled.larger, tr("are larger"));
   stay(filled.at_border, tr("reach the border"));
   stay(filled.too_many, tr("have too many samples"));
@@ -93,6 +99,11 @@ std::string earlyState(const engine::EarlyPicture& picture) {
   return soFarText({off.has_value(),
                     off ? offText(off->rms, off->estimated, picture.field.grid()) : std::string(),
                     picture.exact, picture.untouched});
+}
+
+double HeightTool::usualExtentMm(const engine::Grid& grid) noexcept {
+  constexpr double kUsual = 20.0;
+  return kUsual * std::max(grid.spacingXMm(), grid.spacingYMm());
 }
 
 void HeightTool::make(const haptic::HeightsMaker& maker) {
@@ -298,7 +309,7 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   if (done_ && !(step && client.strokeIsUnderWay())) {
     changed = true;
     forgetFound();
-    found_ = foundIn(done_->heights, wanted_.maker, done_->base);
+    found_ = foundIn(done_->heights, wanted_.maker, done_->base, done_->holes, step);
     if (step) made_from_ = done_->base;
     if (!step) {
       paces_[wanted_.maker.index()].see(PreviewPace::Clock::now());
@@ -332,7 +343,9 @@ void HeightTool::start(LoopClient& client) {
     if (job.cancelled()) return engine::cancelled();
     auto heights = haptic::computeHeights(base, wanted.maker, job);
     if (!heights) return tl::unexpected(heights.error());
-    return Work{base, *std::move(heights)};
+    const std::int64_t holes =
+        std::holds_alternative<engine::FillOptions>(wanted.maker) ? holesIn(heights->field) : 0;
+    return Work{base, *std::move(heights), holes};
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -33,6 +34,10 @@ class HeightTool {
   /// Slow form stays unless a person says otherwise: who takes stripes away does not expect it to go.
   engine::LineOptions lines{.form_degree = engine::LineOptions::kUsualFormDegree};
   engine::RemoveOptions remove;
+
+  /// Up to how long holes are filled in a scan that was just opened [mm]: a hole of that length is as long as 20 samples. Where
+  /// the scanner missed some, the rim says what was there; it does not of a pocket or of what lies around a part.
+  [[nodiscard]] static double usualExtentMm(const engine::Grid& grid) noexcept;
 
   void fillHoles() { make(fill); }
   void levelLines() { make(lines); }
@@ -76,6 +81,8 @@ class HeightTool {
   }
   /// What is shown until the whole result is there, in words; empty without.
   [[nodiscard]] std::string soFar() const;
+  /// Whether picture() is of means of samples: smoother than the result.
+  [[nodiscard]] bool showsMeans() const noexcept { return early_ && early_->picture.step > 1; }
   /// What is to be drawn next to the field.
   [[nodiscard]] std::optional<PreviewPicture> picture() const;
   /// Forgets all of a document that is closed.
@@ -91,6 +98,7 @@ class HeightTool {
   struct Work {
     engine::Version base;
     haptic::ComputedHeights heights;
+    std::int64_t holes = 0;  // samples without a height that are left when holes were filled
   };
   struct Preview {
     haptic::HeightsMaker maker;

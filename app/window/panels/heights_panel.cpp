@@ -24,6 +24,8 @@ void extentField(engine::FillOptions& fill, const render::ShownUnit& length, dou
     noField("any size");
 }
 
+constexpr int kMethodLines = 3;
+
 void linesFields(engine::LineOptions& lines) {
   struct Row {
     const char* name;
@@ -31,20 +33,26 @@ void linesFields(engine::LineOptions& lines) {
     int degree;
     const char* says;
   };
+  // What it does to the lines, and for which it is.
   constexpr Row kRows[] = {
       {textOf("median"), engine::LineMethod::kMedian, 0,
-       textOf("All lines get the same median height: what fills less than half of a line does not count.")},
+       textOf("For lines that are off by a height each: all get the same median. Features may take less than "
+              "half of a line.")},
       {textOf("mean"), engine::LineMethod::kPolynomial, 0,
-       textOf("All lines get the same mean height: everything on a line counts.")},
+       textOf("For lines that are off by a height each, of a surface without steps: all get the same mean.")},
       {textOf("straight line"), engine::LineMethod::kPolynomial, 1,
-       textOf("All lines get the same mean height and slope.")},
+       textOf("For lines that are tilted against each other: all get the same mean height and slope.")},
       {textOf("polynomial 2"), engine::LineMethod::kPolynomial, 2,
-       textOf("The same mean height, slope and bend.")},
-      {textOf("polynomial 3"), engine::LineMethod::kPolynomial, 3, textOf("The same with one bend more.")},
+       textOf("For lines that are tilted and bent: all get the same mean height, slope and bend.")},
+      {textOf("polynomial 3"), engine::LineMethod::kPolynomial, 3,
+       textOf("For lines that are bent like an S: as polynomial 2, with one bend more.")},
       {textOf("difference"), engine::LineMethod::kDifference, 0,
-       textOf("From line to line by the middle of their differences: features may fill a line.")},
+       textOf(
+           "For lines that are off by a height each, where features fill whole lines: from line to line by "
+           "the middle of their differences.")},
       {textOf("matching"), engine::LineMethod::kMatching, 0,
-       textOf("From line to line by what is alike in both: best where there is noise.")}};
+       textOf("For lines that are off by a height each, with features and noise, as most scans: from line to "
+              "line by what is alike in both.")}};
   int chosen = 0;
   for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
@@ -61,6 +69,9 @@ void linesFields(engine::LineOptions& lines) {
     ImGui::EndCombo();
     return true;
   });
+  beginPlace("##for which lines", kMethodLines);
+  writeIn(render::PanelColour::kMuted, kRows[chosen].says);
+  endPlace();
   (void)field("lines are", "Which way the scanner moved: along the rows, or along the columns.", [&] {
     int axis = lines.axis == engine::ScanAxis::kX ? 0 : 1;
     const bool changed = chooseWord("##scan axis", axis, {"rows", "columns"});
@@ -136,7 +147,7 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
             }))
     heights.fill.method = method == 0 ? engine::FillMethod::kCurvature : engine::FillMethod::kMembrane;
   endFields();
-  extentField(heights.fill, length, 20.0 * std::fmax(grid.spacingXMm(), grid.spacingYMm()));
+  extentField(heights.fill, length, HeightTool::usualExtentMm(grid));
   tickBox("at the border too", heights.fill.at_border,
           "Holes that reach the edge of the field have no rim there: what fills them is less sure.");
   heightButtons(context, heights, heights.fill, kFillButtons);
