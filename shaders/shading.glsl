@@ -130,6 +130,22 @@ float contourInk(SurfacePoint p, float contour, float contour_width, mat2 steps)
   return shown * (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
 }
 
+// The share of a mark's colour at sample `s`, which has the mark `mark`: of an outline all or none of it.
+float markShare(ivec2 s, uint mark, float opacity) {
+  if (opacity >= 0.0) return opacity;
+  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+  for (int i = 0; i < 4; ++i)
+    if (inField(s + steps[i]) && texelFetch(marks_image, shadeTexelOf(s + steps[i]), 0).x != mark) return 1.0;
+  return 0.0;
+}
+
+// Grey of a point that the original has no height for: its own height is all there is to show.
+vec3 greyByHeight(SurfacePoint p) {
+  const float height = mix(mix(p.h.x, p.h.y, p.f.x), mix(p.h.z, p.h.w, p.f.x), p.f.y);
+  const float share = (height - panel.limits.x) / max(panel.limits.y - panel.limits.x, 1e-30);
+  return panel.no_data.rgb * mix(0.5, 1.5, clamp(share, 0.0, 1.0));
+}
+
 // `facet`: normal of the geometry, used where the point is displaced. The others as contourInk().
 vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_width, mat2 steps) {
   const ivec2 nearest = p.cell + ivec2(round(p.f));
@@ -148,12 +164,12 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
   vec3 normal = normalize(vec3(-g * panel.relief.z / (panel.placing.zw * float(1 << shade_log2)), 1.0));
   if (p.displaced && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
 
-  vec3 c = p.compared ? mapped(p.value) : panel.no_data.rgb;
+  vec3 c = p.compared ? mapped(p.value) : greyByHeight(p);
   if (kMaterial && p.compared) c = mix(panel.material.body.rgb, c, panel.to_right.w);
   if (kMarks) {
     const uint mark = texelFetch(marks_image, shadeTexelOf(nearest), 0).x;
     const vec4 tint = mark == uint(kSuggested) ? panel.suggested_tint : panel.marks_tint;
-    if (mark != 0u) c = mix(c, tint.rgb, tint.a);
+    if (mark != 0u) c = mix(c, tint.rgb, markShare(nearest, mark, tint.a));
   }
   // A level surface has exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
   if (kMaterial)

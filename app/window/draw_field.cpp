@@ -14,33 +14,6 @@ namespace {
 
 using Draws = WindowPicture::Draws;
 
-// The settings of the user.
-render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, const DrawOptions& options) {
-  const Display& display = parts.settings.display;
-  render::FrameInput input;
-  input.view = parts.view;
-  input.vertex_budget = display.vertices;
-  input.arrangement = display.split && parts.picture.shown().versions.size() == 2
-                          ? render::Arrangement::kSplit
-                          : render::Arrangement::kSideBySide;
-  input.split = display.split_at;
-  input.contours = display.contours ? render::Contours::kShow : render::Contours::kHide;
-  input.form = display.form;
-  input.marks_opacity = display.marks_opacity;
-  input.range = parts.colours.range(display, parts.picture.shown());
-  input.colouring = parts.colours.colouring(display, ColourRange::quantityOf(parts.picture.shown()));
-  input.stereo.mode = display.stereo;
-  input.stereo.eye_separation = static_cast<double>(display.eye_separation);
-  input.theme = display.theme;
-  if (display.half_in_motion && !options.sharp_motion) input.sharpness = sharpness;
-  input.titles_in_margin = true;  // the picture stays where it is when a preview begins
-  input.decoration_scale = WindowPicture::kDecorations * parts.window.scale();
-  input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
-  input.light_azimuth_deg = display.light_azimuth_deg;
-  input.light_elevation_deg = display.light_elevation_deg;
-  return input;
-}
-
 // What the colours show the difference from, and what that is.
 struct Compared {
   engine::Version with;
@@ -52,11 +25,15 @@ std::optional<Compared> comparedWith(Parts& parts) {
   const engine::Version& field = parts.document.client()->field();
   if (const auto& form = parts.form.previewed()) return Compared{form->surface, {tr("deviation")}, true};
   if (parts.fit.shown)
-    if (const auto* surface = parts.fit.surface(field)) return Compared{*surface, {tr("distance")}, true};
+    if (const auto* surface = parts.fit.surface(field))
+      return Compared{*surface, {tr("distance"), false, parts.fit.leavesOut() ? tr("not fitted") : ""}, true};
   if (parts.features.shown)
     if (const auto* saddles = parts.features.saddles(field)) {
       const bool dales = (*parts.features.found())["kind"] == "dales";
-      return Compared{*saddles, {dales ? tr("dale depth") : tr("hill height"), true}, true};
+      return Compared{
+          *saddles,
+          {dales ? tr("dale depth") : tr("hill height"), true, dales ? tr("no dale") : tr("no hill")},
+          true};
     }
   if (parts.compare.shown)
     if (const auto* other = parts.compare.beside(field)) return Compared{*other, {tr("deviation")}, true};
@@ -69,6 +46,41 @@ std::optional<Compared> comparedWith(Parts& parts) {
 bool handMarks(const Parts& parts) {
   return parts.marking.lasso().active() ||
          (parts.stylus.on() && haptic::isMarkTool(parts.document.client()->tool()));
+}
+
+// Residuals are read by their colours: a tint would falsify them.
+bool outlinesMarks(Parts& parts) {
+  if (!parts.document.isOpen()) return false;
+  const auto compared = comparedWith(parts);
+  return compared && compared->residuals && !handMarks(parts);
+}
+
+// The settings of the user.
+render::FrameInput frameInput(Parts& parts, render::Sharpness sharpness, const DrawOptions& options) {
+  const Display& display = parts.settings.display;
+  render::FrameInput input;
+  input.view = parts.view;
+  input.vertex_budget = display.vertices;
+  input.arrangement = display.split && parts.picture.shown().versions.size() == 2
+                          ? render::Arrangement::kSplit
+                          : render::Arrangement::kSideBySide;
+  input.split = display.split_at;
+  input.contours = display.contours ? render::Contours::kShow : render::Contours::kHide;
+  input.form = display.form;
+  input.marks_opacity = display.marks_opacity;
+  input.marks_look = outlinesMarks(parts) ? render::MarksLook::kOutline : render::MarksLook::kTint;
+  input.range = parts.colours.range(display, parts.picture.shown());
+  input.colouring = parts.colours.colouring(display, ColourRange::quantityOf(parts.picture.shown()));
+  input.stereo.mode = display.stereo;
+  input.stereo.eye_separation = static_cast<double>(display.eye_separation);
+  input.theme = display.theme;
+  if (display.half_in_motion && !options.sharp_motion) input.sharpness = sharpness;
+  input.titles_in_margin = true;  // the picture stays where it is when a preview begins
+  input.decoration_scale = WindowPicture::kDecorations * parts.window.scale();
+  input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
+  input.light_azimuth_deg = display.light_azimuth_deg;
+  input.light_elevation_deg = display.light_elevation_deg;
+  return input;
 }
 
 // Means of a large field, in its place until the surface of a previewed form is there for all of its samples.
@@ -97,9 +109,8 @@ render::Shown shownOf(Parts& parts, const std::vector<PreviewPicture>& previews)
   const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
   const auto compared = comparedWith(parts);
-  const bool tinted = display.marks && !(compared && compared->residuals && !handMarks(parts));
   render::Shown shown;
-  shown.marks = tinted ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+  shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
   if (compared) shown.difference = compared->difference;
   // All with the same sign: the loop inverts the field some ticks after the scene was changed, and a preview
   // may have been computed before that.

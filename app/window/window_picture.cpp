@@ -24,9 +24,10 @@ constexpr int kPicks =
 // Whether what differs between two frames changes every pixel of the surface, whatever the field and the view are.
 bool looksAlike(const render::FrameInput& a, const render::FrameInput& b) {
   return a.contours == b.contours && a.form == b.form && a.colouring == b.colouring && a.range == b.range &&
-         a.marks_opacity == b.marks_opacity && a.theme == b.theme && a.arrangement == b.arrangement &&
-         a.decoration == b.decoration && a.light_azimuth_deg == b.light_azimuth_deg &&
-         a.light_elevation_deg == b.light_elevation_deg && a.stereo.mode == b.stereo.mode;
+         a.marks_opacity == b.marks_opacity && a.marks_look == b.marks_look && a.theme == b.theme &&
+         a.arrangement == b.arrangement && a.decoration == b.decoration &&
+         a.light_azimuth_deg == b.light_azimuth_deg && a.light_elevation_deg == b.light_elevation_deg &&
+         a.stereo.mode == b.stereo.mode;
 }
 
 // Whether both are the same but for what is previewed beside the field.

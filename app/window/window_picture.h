@@ -89,6 +89,10 @@ class WindowPicture {
 
   [[nodiscard]] const render::Shown& shown() const noexcept { return shown_; }
   [[nodiscard]] bool empty() const noexcept { return shown_.versions.empty(); }
+  /// How the last frame showed marks.
+  [[nodiscard]] render::MarksLook marksLook() const noexcept {
+    return look_ ? look_->marks_look : render::MarksLook::kTint;
+  }
   /// Of the last frame.
   [[nodiscard]] render::Sharpness drawnSharpness() const noexcept { return drawn_sharpness_; }
   [[nodiscard]] const render::FrameStatistics& figures() const noexcept { return figures_; }

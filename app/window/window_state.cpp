@@ -135,7 +135,10 @@ void addBrushAndView(const Parts& p, Report& r) {
   const RangeRule& rule = ColourRange::ruleOf(display, ColourRange::quantityOf(shown));
   r["colours_are"] = shown.original ? shown.difference.name : "height";
   r["colour_map"] = static_cast<int>(p.colours.colouring(display, ColourRange::quantityOf(shown)).map);
-  r["marks_tinted"] = shown.marks == render::MarksOverlay::kShow;
+  const bool marks = shown.marks == render::MarksOverlay::kShow;
+  r["marks_tinted"] = marks && p.picture.marksLook() == render::MarksLook::kTint;
+  r["marks_outlined"] = marks && p.picture.marksLook() == render::MarksLook::kOutline;
+  r["without_colour"] = shown.original ? shown.difference.without : "";
   static constexpr const char* kRules[] = {"automatic", "share", "all", "typed"};
   r["colour_rule"] = kRules[static_cast<std::size_t>(rule.kind)];
   r["contour_step"] = p.picture.figures().contour_step;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/work/fit_noise.h"
+#include "app/work/hole_count.h"
 #include "app/work/less_distances.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/input_file.h"
@@ -20,22 +21,29 @@ std::vector<engine::ShapeKind> kindsOf(const FitTool::Options& options) {
   return kinds;
 }
 
+// Who has marked something and fits means that.
+engine::Region countedIn(const engine::Version& field, const FitTool::Options& options) {
+  if (options.region) return *options.region;
+  return engine::anyIn(field.reader(), engine::Region::kMarked) ? engine::Region::kMarked
+                                                                : engine::Region::kAll;
+}
+
 engine::Result<std::vector<engine::FitRegion>> fittedRegions(const engine::Version& field,
                                                              const FitTool::Options& options,
-                                                             engine::JobControl& job) {
+                                                             engine::Region region, engine::JobControl& job) {
   const bool lines = options.between_lines && field.lines() != nullptr && !field.lines()->empty();
   if (lines) {
     engine::FitRegionOptions how;
-    how.region = options.region;
+    how.region = region;
     auto regions = engine::regionsBetween(field, *field.lines(), how, job);
     if (regions && regions->empty())
       return engine::inputError(fmt::format("nothing between the edge lines has {} samples", how.least), "",
                                 "let all samples count, or fit across the lines");
     return regions;
   }
-  auto whole = engine::wholeRegion(field, options.region, job);
+  auto whole = engine::wholeRegion(field, region, job);
   if (!whole) return tl::unexpected(whole.error());
-  if (whole->samples == 0) return engine::nothingIn(options.region, "");
+  if (whole->samples == 0) return engine::nothingIn(region, "");
   return std::vector<engine::FitRegion>{*std::move(whole)};
 }
 
@@ -43,7 +51,8 @@ engine::Result<std::vector<engine::FitRegion>> fittedRegions(const engine::Versi
 
 void FitTool::fit(const LoopClient& client) {
   work_.begin([field = client.newest(), what = options](engine::JobControl& job) -> engine::Result<Work> {
-    auto regions = fittedRegions(field, what, job);
+    const engine::Region region = countedIn(field, what);
+    auto regions = fittedRegions(field, what, region, job);
     if (!regions) return tl::unexpected(regions.error());
     engine::FitOptions how;
     how.vertical = what.vertical;
@@ -55,7 +64,8 @@ void FitTool::fit(const LoopClient& client) {
     if (!distances) return tl::unexpected(distances.error());
     auto surface = lessDistances(field, *distances, job);
     if (!surface) return tl::unexpected(surface.error());
-    return Work{field, *std::move(fits), *std::move(surface)};
+    const bool leaves_out = holesIn(*surface) > holesIn(field);
+    return Work{field, *std::move(fits), *std::move(surface), region, leaves_out};
   });
 }
 

@@ -17,8 +17,9 @@ class FitTool {
  public:
   /// Edited by the panel.
   struct Options {
-    std::optional<engine::ShapeKind> shape;        ///< none: the simplest that the samples do not contradict
-    engine::Region region = engine::Region::kAll;  ///< samples that count
+    std::optional<engine::ShapeKind> shape;  ///< none: the simplest that the samples do not contradict
+    std::optional<engine::Region>
+        region;                 ///< samples that count; none: marked ones where there are any, else all
     bool between_lines = true;  ///< where there are edge lines: each region between them by itself
     bool robust = false;
     bool vertical = false;  ///< distances along z
@@ -38,6 +39,10 @@ class FitTool {
   [[nodiscard]] const FieldFits* fits() const noexcept { return work_.get() ? &work_.get()->fits : nullptr; }
   /// The field that they are of.
   [[nodiscard]] const engine::Version& field() const noexcept { return work_.get()->field; }
+  /// The samples that counted for them.
+  [[nodiscard]] engine::Region region() const noexcept { return work_.get()->region; }
+  /// Whether samples with a height were not fitted to.
+  [[nodiscard]] bool leavesOut() const noexcept { return work_.get()->leaves_out; }
   /// Whether the field has changed since.
   [[nodiscard]] bool outdated() const noexcept { return work_.outdated(); }
   /// What the colours show the difference from: heights less their distances from the shapes, holes where nothing was fitted. Null
@@ -61,6 +66,8 @@ class FitTool {
     engine::Version field;
     FieldFits fits;
     engine::Version surface;
+    engine::Region region = engine::Region::kAll;
+    bool leaves_out = false;
   };
   BesideTheField<Work> work_;
   std::optional<std::pair<std::size_t, std::size_t>> pair_;

@@ -117,6 +117,7 @@ struct FrameInput {
   double split = 0.5;  ///< of kSplit: position of the line, as a fraction of the plot's width, 0 .. 1
   Contours contours = Contours::kHide;
   FormShading form;
+  MarksLook marks_look = MarksLook::kTint;
   double marks_opacity = 0.65;
   Colouring colouring{};
   Theme theme = Theme::kDark;

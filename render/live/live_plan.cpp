@@ -159,6 +159,7 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
   spec.difference = shown.difference;
   spec.range = input.range;
   spec.marks = shown.marks;
+  spec.marks_look = input.marks_look;
   spec.marks_opacity = input.marks_opacity;
   spec.colouring = input.colouring;
   spec.contours = input.contours;

@@ -222,11 +222,13 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Decorati
     (void)add(what, palette.ink);
   };
   if (f.no_data) swatch(palette.no_data, "no data");
+  if (!f.without.empty()) swatch(palette.no_data, f.without);
   if (f.marks) swatch(palette.marks, "marked");
   if (f.suggested) swatch(palette.suggested, "suggested");
 }
 
-// What the colours of lines mean, smaller and under all that is always there: nothing moves when lines come and go.
+// What the colours of lines mean, smaller and under all that is always there: nothing moves when lines come and go. At the
+// right: under the scale bar a short line with a word would be read as its label.
 void linesRow(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
               const Palette& palette, std::vector<std::string>& warnings) {
   if (f.lines.empty()) return;
@@ -237,10 +239,17 @@ void linesRow(Pen& pen, const Layout& layout, const View& view, const Decoration
   const double middle = std::round(lowest.y + lowest.height + below - 0.6 * px);
   const double long_side = std::round(18 * s), thick = std::max(3.0, std::round(4 * s));
   const double rim = std::max(1.0, std::round(s));
-  double x = layout.plots.front().x + rim;
+  const auto widthOf = [&](const LineMeaning& line) {
+    return pen.glyphs().width(std::string(line.name), px, kRegular);
+  };
+  const double apart = 18 * s;
+  double all = -apart;
+  for (const LineMeaning& line : f.lines) all += long_side + 6 * s + widthOf(line) + apart;
+  const double left = layout.plots.front().x + rim, right = lowest.x + lowest.width - rim;
+  double x = std::round(std::max(left, right - all));
   for (const LineMeaning& line : f.lines) {
     const std::string name(line.name);
-    const double width = pen.glyphs().width(name, px, kRegular);
+    const double width = widthOf(line);
     if (x + long_side + 6 * s + width > view.width - 4 * s) {
       warnings.emplace_back("no room for \"" + name + "\", make the picture wider");
       return;
@@ -251,7 +260,7 @@ void linesRow(Pen& pen, const Layout& layout, const View& view, const Decoration
     pen.box(x, middle - std::floor(thick / 2), long_side, thick, line.colour);
     x += long_side + 6 * s;
     pen.text(x, middle + px * 0.36, name, px, kRegular, palette.ink);
-    x += width + 18 * s;
+    x += width + apart;
   }
 }
 

@@ -57,6 +57,7 @@ struct DecorationContent {
   double exaggeration = 1.0;
   bool approximate_scale = false;  ///< perspective: the scale bar holds at the middle only
   bool marks = false, suggested = false, no_data = false;  ///< legend entries
+  std::string without;  ///< legend entry of Difference::without; empty: none
   float marks_opacity = 1.0F;
   std::vector<std::string> titles;  ///< one per panel
   std::vector<LineMeaning> lines;   ///< of the lines in the picture: a row of its own, under the others

@@ -56,6 +56,12 @@ enum class MarksOverlay {
   kShow,  ///< marked samples tinted, the tint's opacity in PictureSpec::marks_opacity
 };
 
+/// How marked samples are shown.
+enum class MarksLook {
+  kTint,     ///< all of them, over the colours of the values
+  kOutline,  ///< those with a neighbour that is not marked: inside, colours say what they say without marks
+};
+
 enum class Contours {
   kHide,
   kShow,  ///< lines of equal height, or deviation
@@ -126,6 +132,9 @@ struct Difference {
   std::string name = "deviation";  ///< over the colour bar
   /// All of it lies on one side of zero: colours begin there and end at the farthest value, and the map is that of heights.
   bool one_sign = false;
+  /// What a sample is that the other field has no height for, in the legend; empty: it is not named there. Such samples are
+  /// grey, darker where they are lower.
+  std::string without = {};
   friend bool operator==(const Difference&, const Difference&) = default;
 };
 
@@ -133,7 +142,7 @@ struct Difference {
 struct PictureSpec {
   View view;
   /// Colours show (field - this) instead of the height, symmetric about zero. Must have the width and height
-  /// of all fields. A sample that is a hole in either is drawn as no-data.
+  /// of all fields. A sample that is a hole in the other alone is grey (Difference::without).
   std::optional<engine::Version> deviation_from;
   Difference difference{};  ///< of the field from that
   /// Range of the colours. Empty: robust, so that single spikes do not use up the colours
@@ -141,7 +150,8 @@ struct PictureSpec {
   /// sides.
   std::optional<ValueRange> range;
   MarksOverlay marks = MarksOverlay::kHide;
-  double marks_opacity = 0.65;  ///< 0 .. 1
+  MarksLook marks_look = MarksLook::kTint;
+  double marks_opacity = 0.65;  ///< of a tint, 0 .. 1
   Colouring colouring{};
   Contours contours = Contours::kHide;
   Decoration decoration = Decoration::kFull;

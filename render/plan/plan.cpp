@@ -233,8 +233,9 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
     u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp),
                                    spec.deviation_from ? kDeviationAmbient : kAmbient));
-    u.marks_tint = vec4Of(plan.palette.marks, spec.marks_opacity);
-    u.suggested_tint = vec4Of(plan.palette.suggested, spec.marks_opacity);
+    const double marks_share = spec.marks_look == MarksLook::kOutline ? -1.0 : spec.marks_opacity;
+    u.marks_tint = vec4Of(plan.palette.marks, marks_share);
+    u.suggested_tint = vec4Of(plan.palette.suggested, marks_share);
     u.no_data = vec4Of(plan.palette.no_data, 1.0);
     u.wall = vec4Of(plan.palette.wall, 1.0);
     u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);
@@ -265,6 +266,8 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     f.marks = f.marks || (spec.marks == MarksOverlay::kShow && anyMark(v));
     f.no_data = f.no_data || anyHole(v);
   }
+  if (quantity != Quantity::kHeight && spec.deviation_from && anyHole(*spec.deviation_from))
+    f.without = spec.difference.without;
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
     f.note = fmt::format("lowest {}\nhighest {}", shortNumber(extreme.low * f.height_unit.per_unit),

@@ -71,8 +71,8 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
     picture.requestRedraw();
   }
   if (tickBox("colours show the deviation from it", compare.shown,
-              "Red where this scan is higher than the other, blue where it is lower. Marks have no colour "
-              "meanwhile, unless a tool sets them.")) {
+              "Red where this scan is higher than the other, blue where it is lower. Marks are "
+              "outlines meanwhile, unless a tool sets them.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

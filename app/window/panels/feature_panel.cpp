@@ -137,8 +137,8 @@ void featurePanel(const PanelContext& context, FeatureTool& features, WindowPict
     picture.requestRedraw();
   }
   if (tickBox("colours show heights above saddles", features.shown,
-              "Each feature has the colour of its height over its saddle; the rest has none. Marks have no "
-              "colour meanwhile, unless a tool sets them.")) {
+              "Each feature has the colour of its height over its saddle; the rest has none. Marks are "
+              "outlines meanwhile, unless a tool sets them.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -32,10 +33,12 @@ void fitFields(FitTool::Options& options) {
                 return true;
               });
   (void)field("to", "Which samples the shape is fitted to.", [&] {
-    constexpr engine::Region kOf[] = {engine::Region::kAll, engine::Region::kMarked,
-                                      engine::Region::kUnmarked};
+    constexpr std::optional<engine::Region> kOf[] = {std::nullopt, engine::Region::kAll,
+                                                     engine::Region::kMarked, engine::Region::kUnmarked};
     int of = static_cast<int>(std::ranges::find(kOf, options.region) - std::begin(kOf));
-    const bool changed = chooseRegion("##fitted to", of);
+    const bool changed =
+        chooseWord("##fitted to", of,
+                   {"marked samples, else all", "all samples", "marked samples", "samples not marked"});
     if (changed) options.region = kOf[of];
     return changed;
   });
@@ -92,9 +95,21 @@ void pairFields(FitTool& fit) {
   fitTable(relationLines(fit.fits()->report["between"]), "relation");
 }
 
+const char* fittedTo(engine::Region region) {
+  switch (region) {
+    case engine::Region::kMarked:
+      return tr("fitted to the marked samples");
+    case engine::Region::kUnmarked:
+      return tr("fitted to the samples that are not marked");
+    default:
+      return tr("fitted to all samples");
+  }
+}
+
 void outcome(FitTool& fit) {
   const FieldFits& fits = *fit.fits();
   if (fit.outdated()) writeWrapped("the field has changed since: Fit");
+  writeIn(render::PanelColour::kMuted, std::string(fittedTo(fit.region())));
   pairFields(fit);
   int number = 0;
   for (const Report& one : fits.report["fits"]) {
@@ -111,7 +126,7 @@ void outcome(FitTool& fit) {
             trFormat("region {}: {}", one["region"].get<int>(), one["reason"].get<std::string>()));
 }
 
-// As it stands in the panel, in columns.
+// As it stands in the panel, in columns: units and errors as on the screen, those of files are in ASCII.
 std::string copiedText(const FieldFits& fits) {
   std::string text;
   const auto add = [&text](const std::vector<FitLine>& lines) {
@@ -121,11 +136,11 @@ std::string copiedText(const FieldFits& fits) {
     text += fitTitle(one) + "\n";
     add(fitLines(one));
   }
-  if (!fits.report.contains("between")) return text;
+  if (!fits.report.contains("between")) return screenText(text);
   const Report& between = fits.report["between"];
   text += trFormat("between {} and {}\n", between["first"].get<int>(), between["second"].get<int>());
   add(relationLines(between));
-  return text;
+  return screenText(text);
 }
 
 }  // namespace
@@ -147,8 +162,8 @@ void fitPanel(const PanelContext& context, FitTool& fit, WindowPicture& picture)
     picture.requestRedraw();
   }
   if (tickBox("colours show the distances from it", fit.shown,
-              "Red where the surface lies above the shape, blue where it lies below. Marks have no colour "
-              "meanwhile, unless a tool sets them.")) {
+              "Red where the surface lies above the shape, blue where it lies below. Marks are "
+              "outlines meanwhile, unless a tool sets them.")) {
     picture.refreshRanges();
     picture.requestRedraw();
   }

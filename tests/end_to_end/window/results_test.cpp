@@ -262,7 +262,8 @@ TEST_F(ResultFiles, shapes_are_fitted_and_written_as_the_command_does) {
   (void)quitWithoutSaving(user);
 }
 
-TEST_F(ResultFiles, distances_from_a_fit_lie_under_no_tint_but_while_marks_are_set) {
+// What is marked is what is fitted to, without a word; marks are outlines over the distances, and the rest is said to have none.
+TEST_F(ResultFiles, distances_from_a_fit_of_marks_lie_under_no_tint_but_while_marks_are_set) {
   openPanel("Fit");
   const auto program = start({scan});
   User user(display, *program, "fit of marks");
@@ -275,19 +276,41 @@ TEST_F(ResultFiles, distances_from_a_fit_lie_under_no_tint_but_while_marks_are_s
   const Screen marked = user.look("marked");
   (void)user.click("the simplest");
   (void)user.click("plane");
-  (void)user.click("all samples");
-  (void)user.click("marked samples");
+  EXPECT_TRUE(user.reads("marked samples, else all"));
   const State fitted = user.key("ctrl+shift+f");
   ASSERT_TRUE(fitted["fits"].is_object()) << fitted["notices"].dump();
   EXPECT_EQ(fitted["colours_are"], "distance");
   EXPECT_EQ(fitted["marks_tinted"], false);
+  EXPECT_EQ(fitted["marks_outlined"], true);
+  EXPECT_EQ(fitted["without_colour"], "not fitted");
+  EXPECT_TRUE(user.reads("fitted to the marked samples"));
   EXPECT_EQ(fitted["marks"], true) << "the setting stays";
   EXPECT_TRUE(user.reads("errors are by the noise between samples"));
   EXPECT_TRUE(user.reads("\u00b1")) << "errors are written one way";
   EXPECT_FALSE(user.reads("+-"));
   EXPECT_FALSE(user.reads(" um"));
+  // What is copied reads as on the screen; where it is pasted shows it.
+  (void)user.click("Copy");
+  (void)user.press("ctrl+o");
+  program->until("the dialog",
+                 [](const State& s) { return s["dialog"] == "open" && s["text_field"] == true; });
+  (void)user.press("ctrl+v");
+  const State pasted = program->until(
+      "pasted", [](const State& s) { return s["dialog_path"].dump().find("\u00b1") != std::string::npos; });
+  EXPECT_EQ(pasted["dialog_path"].dump().find("+-"), std::string::npos) << pasted["dialog_path"];
+  EXPECT_EQ(pasted["dialog_path"].dump().find(" um"), std::string::npos) << pasted["dialog_path"];
+  (void)user.press("Escape");
+  program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
   user.at({20, 890});
   const Screen distances = user.changed("distances", marked);
+  // Around the box alone: what is inside has the colours that it has without marks.
+  (void)user.key("h");
+  user.at({20, 890});
+  const Screen unmarked = user.changed("distances without marks", distances, 100);
+  EXPECT_LT(differing(distances, unmarked, user.surface()), 4 * (200 + 140) * 2);
+  (void)user.key("h");
+  user.at({20, 890});
+  (void)user.same("distances with marks", distances);
   // A hand that marks sees what it marks.
   EXPECT_EQ(user.key("b")["marks_tinted"], true);
   EXPECT_EQ(user.key("Escape")["marks_tinted"], false);
