@@ -75,6 +75,8 @@ class FilterPreview {
   void look(const engine::FieldView& view);
   /// The picture so far of what is computed; its field is empty before, and afterwards.
   [[nodiscard]] const engine::FilterView::Picture& soFar() const noexcept { return so_far_; }
+  /// Whether its picture, the last of pictures(), is of means of samples: smoother than the result.
+  [[nodiscard]] bool showsMeans() const noexcept { return !so_far_.field.empty() && so_far_.step > 1; }
   /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`. Where the preview
   /// that is shown is one of another filter, that of `spec` is shown instead, a notice says so, and nothing is applied: what
   /// was never seen becomes no step beside a picture of something else.

@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -31,21 +32,41 @@ void drawLasso(const Lasso& lasso, float scale) {
   }
 }
 
+// Words over the picture, in its middle or over its last plot.
+void labelOver(const char* id, const char* words, const ImVec2& middle) {
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, ImVec2(0.5F, 0.0F));
+  // A window that takes its size from what is in it is seen a frame later, when the key may have been released.
+  const ImVec2 text = ImGui::CalcTextSize(words), padding = ImGui::GetStyle().WindowPadding;
+  ImGui::SetNextWindowSize(ImVec2(text.x + 2.0F * padding.x, text.y + 2.0F * padding.y));
+  ImGui::Begin(id, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::TextUnformatted(words);
+  ImGui::End();
+}
+
+// Of the picture's width, below the titles.
+ImVec2 placeOver(const Parts& parts, double share, float scale) {
+  const render::Rectangle area = parts.window.pictureArea();
+  constexpr float kBelow = 12.0F, kBelowTitles = 34.0F;
+  return ImVec2(static_cast<float>(area.x) + static_cast<float>(share * area.width),
+                static_cast<float>(area.y) + (share == 0.5 ? kBelow : kBelowTitles) * scale);
+}
+
 // Who looks at what was must know it.
 void beforeLabel(const Parts& parts, float scale) {
-  const render::Rectangle area = parts.window.pictureArea();
-  const float x = static_cast<float>(area.x) + 0.5F * static_cast<float>(area.width);
-  ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(area.y) + 12.0F * scale), ImGuiCond_Always,
-                          ImVec2(0.5F, 0.0F));
-  const char* const before = tr("before: the scan as it was");
-  // A window that takes its size from what is in it is seen a frame later, when the key may have been released.
-  const ImVec2 text = ImGui::CalcTextSize(before), padding = ImGui::GetStyle().WindowPadding;
-  ImGui::SetNextWindowSize(ImVec2(text.x + 2.0F * padding.x, text.y + 2.0F * padding.y));
-  ImGui::Begin("##before", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::TextUnformatted(before);
-  ImGui::End();
+  labelOver("##before", tr("before: the scan as it was"), placeOver(parts, 0.5, scale));
+}
+
+// Means are smoother than what comes of them: who judges a filter by them is misled.
+void coarseLabel(const Parts& parts, float scale) {
+  const std::size_t plots = parts.picture.shown().versions.size();
+  const bool filters = parts.filters.showsMeans(), heights = parts.heights.showsMeans();
+  if (plots < 2 || !(filters || heights)) return;
+  // What is computed is the last plot; in one plot with a line it is the right part.
+  const double share = 1.0 - 0.5 / static_cast<double>(plots);
+  labelOver("##coarse", tr("coarse as yet: smoother than the result"), placeOver(parts, share, scale));
 }
 
 }  // namespace
@@ -63,6 +84,7 @@ void pictureOverlay(const Parts& parts) {
         colourOf(PanelColour::kSplitHandle));
   }
   if (parts.shows_before && parts.document.isOpen()) beforeLabel(parts, scale);
+  if (parts.document.isOpen()) coarseLabel(parts, scale);
   if (parts.marking.lasso().active()) drawLasso(parts.marking.lasso(), scale);
 }
 

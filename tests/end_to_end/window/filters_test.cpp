@@ -125,12 +125,16 @@ TEST_F(WindowTest, a_preview_shows_what_is_seen_first) {
            s["texts"].dump().find("from means of") != std::string::npos;
   });
   EXPECT_EQ(first["filtering"], true);
+  // Where one looks, too: means are smoother than what the filter leaves.
+  const char* const coarse = "coarse as yet: smoother than the result";
+  EXPECT_NE(first["texts"].dump().find(coarse), std::string::npos);
   (void)user.look("approximate");
   // Near one place: what is seen of it is there long before the rest.
   for (int i = 0; i < 14; ++i) (void)user.press("Prior");
   const State exact =
       program->until("exact where it is seen", [&](const State& s) { return soFar(s) == "exact in view"; });
   EXPECT_EQ(exact["filtering"], true);
+  EXPECT_EQ(exact["texts"].dump().find(coarse), std::string::npos);
   (void)user.look("exact");
   user.tap("Cancel");
   const State ended = user.rest("cancelled");
@@ -202,6 +206,34 @@ TEST_F(WindowTest, a_preview_follows_its_fields) {
   (void)user.look("another filter");
   EXPECT_EQ(user.click("Show it")["variants"], State{"Bilateral 3 x 3"});
   EXPECT_TRUE(user.reads("Preview"));
+  (void)quit(user);
+}
+
+// Who looks for spikes, rows or holes finds all three at the top of the list, each with its preview.
+TEST_F(WindowTest, the_list_of_filters_begins_with_spikes_lines_and_holes) {
+  const auto program = start({scan});
+  User user(display, *program, "list");
+  (void)opened(*program);
+  (void)user.click("Tool");
+  (void)user.click("Box");
+  (void)user.look("list");
+  for (const char* heading : {"spikes, lines, holes", "noise, edges get round", "noise, edges stay",
+                              "waves by their length (ISO 16610)"})
+    EXPECT_TRUE(user.reads(heading)) << heading;
+  EXPECT_TRUE(user.click("Outliers")["filter"].get<std::string>().starts_with("Outliers"));
+  EXPECT_TRUE(user.reads("by the noise between samples")) << "which noise the range is from";
+  (void)user.click("Outliers");
+  EXPECT_EQ(user.click("Level lines (rows or columns) ...")["heights_preview"],
+            "Level rows: median, form stays");
+  EXPECT_TRUE(user.readsScrolled("For lines that are off by a height each: all get the same"))
+      << "which lines that is for";
+  (void)user.look("levelled");
+  EXPECT_TRUE(user.readsScrolled("Add preview"));
+  (void)user.click("Outliers");
+  EXPECT_EQ(user.click("Fill holes ...")["heights_preview"], "Fill holes: least curvature");
+  (void)user.click("Outliers");
+  EXPECT_EQ(user.click("Fill holes ...")["heights_preview"], "Fill holes: least curvature")
+      << "a preview that is shown stays";
   (void)quit(user);
 }
 
