@@ -63,6 +63,7 @@ struct Question {
   Kind from = Kind::kSaveAs;               ///< kReplace, kImport: the dialog of the path
   bool typed = false;                      ///< the path came from there, and the user can go back to it
   std::vector<std::string> replaced = {};  ///< kReplace: a sentence for each file to be replaced
+  bool confirmed = false;  ///< kCompare, kJoin: it is answered when it is known whether the file can be read
 };
 
 /// "open", "save as", ...: stable, for scripts.

@@ -242,6 +242,18 @@ std::string Saving::exportedTo(const ActiveDocument& document) const {
   return same ? exported_->path : "";
 }
 
+std::string Saving::statusText(const std::string& status, const ActiveDocument& document) const {
+  const std::string exported = exportedTo(document);
+  const bool names = status == trFormat("written: {}", target_);
+  if (names && exported == target_) return status;
+  const std::string kept = document.keptText(exported);
+  // Of a session every step is in the file.
+  const bool changed = names && !isSessionPath(target_) && document.unsaved();
+  std::string line = changed ? trFormat("written: {}, changed since", target_) : status;
+  if (!kept.empty()) line += "  (" + kept + ")";
+  return line;
+}
+
 bool Saving::busy(const ActiveDocument& document) const {
   const SessionKeeper* const keeper = document.keeper();
   return writing_.busy() || waits_for_scan_ || (keeper != nullptr && keeper->saving());

@@ -66,6 +66,10 @@ class Saving {
   /// The path of the file that was exported last, if it holds the present state; else empty.
   [[nodiscard]] std::string exportedTo(const ActiveDocument& document) const;
 
+  /// The line of the status bar on a document whose status is `status`: where that is what was written last, the line does not
+  /// name the file twice, and says so when the work has changed since.
+  [[nodiscard]] std::string statusText(const std::string& status, const ActiveDocument& document) const;
+
   bool embeds = true;  ///< the scan is stored in a session saved as
   bool mesh_in_mm =
       true;  ///< numbers of a mesh without units are millimetres, where that can be chosen; else the scan's

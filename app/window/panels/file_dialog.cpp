@@ -3,7 +3,9 @@
 #include <array>
 #include <ctime>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/chrono.h>
@@ -18,6 +20,7 @@
 #include "app/window/panels/scan_picture.h"
 #include "app/window/result_files.h"
 #include "app/window/screen_text.h"
+#include "app/work/nominal_compare.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 
@@ -395,6 +398,17 @@ void listFormat(const Question& question, const ResultFile* result, FileBrowser&
   }
 }
 
+// Whether a scan to compare or join with can be read: else the dialog says why, and another one is chosen there. Nothing
+// while it is not known.
+std::optional<bool> readable(Question& question, Parts& parts) {
+  const bool beside = question.kind == Kind::kCompare || question.kind == Kind::kJoin;
+  if (!beside || isNominalFile(question.path)) return true;
+  const ThumbnailShelf::Shown shown = parts.files.shelf.find(question.path, parts.readingOf(question.path));
+  if (shown.problem != nullptr) question.said = {inFieldWords(shown.problem->line()), ""};
+  if (shown.picture == nullptr && shown.problem == nullptr) return std::nullopt;
+  return shown.problem == nullptr;
+}
+
 }  // namespace
 
 std::optional<Choice> fileDialog(Question& question, Parts& parts) {
@@ -447,7 +461,9 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
       pressButton("Read as ...", "Says unit, spacing, scale and holes of the file before it is opened.");
   if (question.kind == Kind::kOpen) ImGui::SameLine();
   const bool left = dialogButton("Cancel", questions, Key::kEscape);
-  if (!appears && question.path != path_before) question.said = {};  // it was said of another file
+  // It was said of another file.
+  if (!appears && question.path != path_before) question.said = {}, question.confirmed = false;
+  confirmed = confirmed || std::exchange(question.confirmed, false);
   remark(question, files.browser, result);
   if (left) return Choice::kBack;
   std::error_code error;
@@ -470,7 +486,9 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
     return std::nullopt;
   }
   if (result != nullptr && formatOf(*result, question.path) == nullptr) return std::nullopt;
-  return Choice::kConfirm;
+  const std::optional<bool> can = readable(question, parts);
+  question.confirmed = !can;
+  return can.value_or(false) ? std::optional(Choice::kConfirm) : std::nullopt;
 }
 
 }  // namespace fettle::app

@@ -89,6 +89,9 @@ void unitChoice(Files& files) {
 // What the file's whole numbers are multiplied with; of other numbers none is known.
 std::string foundScale(const Files& files) {
   if (!files.found_grid || files.found_grid->height_per_count == 0.0) return tr("as in the file, else 1");
+  // Most files say none, and 1 is taken then.
+  const bool stated = files.found_grid->height_per_count != 1.0;
+  if (!stated && !isAssumed(files.found_warnings, "--z-scale")) return tr("1 unless you say another");
   return fmt::format("{:.6g} {}", files.found_grid->height_per_count,
                      isAssumed(files.found_warnings, "--z-scale") ? tr("guessed") : tr("in the file"));
 }

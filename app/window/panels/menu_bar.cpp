@@ -13,16 +13,22 @@ namespace {
 constexpr std::array<std::string_view, 8> kMenus{"File",  "Edit", "Filter", "Tool",
                                                  "Marks", "View", "Device", "Help"};
 constexpr int kGroups = 3;  // of a menu, at most
+// Of the menu of marks, and looked for among the tools as well: the radial menu has them there.
+constexpr std::array kToolsToo{Action::kBox, Action::kLasso};
+
+void item(const ActionRow& row, const Parts& parts, const Act& act) {
+  const bool ticked = row.ticked != nullptr && row.ticked(parts);
+  const bool enabled = row.enabled != nullptr ? row.enabled(parts) : ready(row, parts);
+  if (ImGui::MenuItem(labelOf(std::string(row.name).c_str()), keyText(row.key, row.modifiers).c_str(), ticked,
+                      enabled))
+    act(row.action);
+}
 
 void items(std::string_view menu, int group, const Parts& parts, const Act& act) {
-  for (const ActionRow& row : actions()) {
-    if (row.menu.group != group || row.menuTitle() != menu) continue;
-    const bool ticked = row.ticked != nullptr && row.ticked(parts);
-    const bool enabled = row.enabled != nullptr ? row.enabled(parts) : ready(row, parts);
-    if (ImGui::MenuItem(labelOf(std::string(row.name).c_str()), keyText(row.key, row.modifiers).c_str(),
-                        ticked, enabled))
-      act(row.action);
-  }
+  for (const ActionRow& row : actions())
+    if (row.menu.group == group && row.menuTitle() == menu) item(row, parts, act);
+  if (menu == "Tool" && group == 1)
+    for (const Action action : kToolsToo) item(rowOf(action), parts, act);
 }
 
 bool hasItems(std::string_view menu, int group) {

@@ -67,12 +67,8 @@ std::string placeText(const Parts& parts) {
 
 // The open document, how it is stored, and the cursor's position.
 std::string documentText(const Parts& parts) {
-  std::string line = parts.feedback.status;
-  if (!parts.document.isOpen()) return line;
-  if (const std::string kept = parts.document.keptText(parts.saving.exportedTo(parts.document));
-      !kept.empty())
-    line += "  (" + kept + ")";
-  return line + placeText(parts);
+  if (!parts.document.isOpen()) return parts.feedback.status;
+  return parts.saving.statusText(parts.feedback.status, parts.document) + placeText(parts);
 }
 
 void content(Parts& parts) {

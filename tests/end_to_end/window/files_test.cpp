@@ -326,6 +326,31 @@ TEST_F(WindowTest, a_mesh_for_cad_is_in_mm_unless_the_unit_of_the_scan_is_chosen
   quit(user);
 }
 
+// Who writes a PNG sees which names are taken.
+TEST_F(WindowTest, a_dialog_that_writes_lists_the_files_of_its_format) {
+  std::ofstream(folder.file("taken.png")) << "no picture";
+  const auto program = start({scan});
+  User user(display, *program, "by format");
+  (void)opened(*program);
+  const auto lists = [](const State& s, const char* name) {
+    return std::any_of(s["texts"].begin(), s["texts"].end(),
+                       [&](const State& text) { return text["text"] == name; });
+  };
+  (void)user.press("ctrl+e");
+  program->until("those of a TIFF", [&](const State& s) {
+    return s["dialog"] == "export" && s["text_field"] == true && lists(s, "part.tif") &&
+           !lists(s, "taken.png");
+  });
+  user.type(folder.file("new.png"));
+  program->until("those of a PNG", [&](const State& s) {
+    return s["settled"] == true && lists(s, "taken.png") && !lists(s, "part.tif");
+  });
+  (void)user.look("by format");
+  (void)user.press("Escape");
+  program->until("the scan", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  quit(user);
+}
+
 TEST_F(WindowTest, a_dialog_stays_with_what_is_wrong_with_its_file) {
   const std::string broken = folder.file("broken.tif");
   std::ofstream(broken) << "II*";  // and nothing behind it
@@ -356,6 +381,23 @@ TEST_F(WindowTest, a_dialog_stays_with_what_is_wrong_with_its_file) {
   (void)user.look("a broken one");
   (void)user.press("Escape");
   program->until("the scan", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  // Neither is another scan taken that is none.
+  for (const auto& [key, dialog] : {std::pair("alt+b", "compare"), {"alt+j", "join"}}) {
+    (void)user.press(key);
+    program->until("the dialog", [&, dialog = dialog](const State& s) {
+      return s["dialog"] == dialog && s["settled"] == true && s["text_field"] == true;
+    });
+    user.type(broken);
+    (void)user.press("Return");
+    const State refused = program->until("a broken one", [&, dialog = dialog](const State& s) {
+      return s["dialog"] == dialog && s["settled"] == true && s["message"] != "";
+    });
+    EXPECT_TRUE(says(refused, "broken.tif")) << dialog;
+    EXPECT_EQ(refused["notices"], State::array()) << dialog;
+    (void)user.look(dialog);
+    (void)user.press("Escape");
+    program->until("the scan", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  }
   quit(user);
 }
 
