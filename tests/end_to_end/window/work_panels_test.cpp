@@ -191,7 +191,8 @@ TEST_F(WindowTest, the_wheel_goes_on_with_the_panels_where_a_list_ends) {
   (void)opened(*program);
   for (int i = 0; i < 12; ++i) (void)user.key("ctrl+i");
   const auto undo = [&] {
-    for (const State& text : program->now()["texts"])
+    const State now = program->now();
+    for (const State& text : now["texts"])
       if (text["text"] == "Undo") return User::Place{text["at"][0], text["at"][1]};
     ADD_FAILURE() << "no button Undo: " << program->now()["texts"].dump();
     return User::Place{};
