@@ -326,6 +326,7 @@ Report waitedFor(const Parts& p, const Input& input) {
     waits("a key held", p.held());
     waits("tiles", p.picture.figures().upload.pending_tiles > 0);
     waits("the dialog", questions.frames() < kInPlace);
+    waits("the file that was chosen", questions.shown() != nullptr && questions.shown()->confirmed);
   } else {
     waits("a movement", isActive(p, input));
     waits("a finer picture", p.document.isOpen() && p.picture.refining());

@@ -69,7 +69,8 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
             {"save scene", {"alt+s"}},
             {"export sections", {"Home", "7", "over 40 40", "q", "over 60 60", "shift+q", "ctrl+shift+e"}},
             {"export report", {"alt+e"}},
-            {"export fits", {"ctrl+shift+f", "alt+f"}},
+            // Marked may be too few samples, or all but too few.
+            {"export fits", {"ctrl+shift+f", "ctrl+i", "ctrl+shift+f", "alt+f"}},
             {"unsaved", {"ctrl+i", "drop " + folder.file("second.tif")}},
             {"replace", {"ctrl+e", "ctrl+a", "type " + folder.file("there.tif"), "Return"}},
             {"recover", {"drop " + folder.file("left.tif"), "Delete"}},
@@ -91,7 +92,8 @@ std::vector<Reach> reachesIn(const TempFolder& folder) {
       {"ctrl+f"});
   add("seen", "a point of a plane",
       [](const State& s) { return s.value("plane_point", State()).is_number(); }, {"alt+d"});
-  add("seen", "a fit", [](const State& s) { return s.value("fits", State()).is_object(); }, {"ctrl+shift+f"});
+  add("seen", "a fit", [](const State& s) { return s.value("fits", State()).is_object(); },
+      {"ctrl+shift+f", "ctrl+i", "ctrl+shift+f"});
   add("seen", "full screen", [](const State& s) { return s["full_screen"] == true; }, {"F11"});
   add("seen", "the scan as it was", [](const State& s) { return s.value("shows_before", false); },
       {"hold BackSpace", "release BackSpace"});

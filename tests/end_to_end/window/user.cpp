@@ -275,6 +275,12 @@ Screen User::until(const std::string& what, const std::function<bool(const Scree
   return before;
 }
 
+Screen User::glance(const std::string& what) {
+  Screen now = display_.screen();
+  keep(now, what);
+  return now;
+}
+
 Screen User::look(const std::string& what) {
   return until(what, [](const Screen&) { return true; });
 }

@@ -59,6 +59,8 @@ class User {
 
   /// The surface of the picture without the colour bar and the status line.
   [[nodiscard]] Part surface();
+  /// What is on the screen now, whatever moves there. Kept as look() does.
+  Screen glance(const std::string& what);
   /// What is on the screen, at rest. Kept as a picture called `what` when pictures are kept.
   Screen look(const std::string& what);
   /// Looks until the screen is as asked for and stays so.
