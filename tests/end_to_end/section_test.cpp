@@ -49,7 +49,7 @@ TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   const Outcome text =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--groove", "auto"});
   EXPECT_NE(text.out.find("depth 50 +- "), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("width 2 mm +- 0.041 mm from 2.95 mm"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("width 2 +- 0.041 mm from 2.95 mm"), std::string::npos) << text.out;
   const Outcome step =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--step", "2.95"});
   EXPECT_NE(step.out.find("by 0 to 1.96667 mm and 3.93333 to 5.9 mm"), std::string::npos) << step.out;
