@@ -67,7 +67,7 @@ void fitTable(const std::vector<FitLine>& lines, const char* id) {
 // Angle and distance between two of several.
 void pairFields(FitTool& fit) {
   if (!fit.pair()) return;
-  auto [first, second] = *fit.pair();
+  std::size_t first = fit.pair()->first, second = fit.pair()->second;
   const std::vector<FittedRegion>& fitted = fit.fits()->fitted;
   const auto choose = [&](const char* id, std::size_t& now, std::size_t other) {
     const auto name = [&](std::size_t i) {
