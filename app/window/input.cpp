@@ -116,6 +116,7 @@ std::optional<InputEvent> Input::next(Parts& parts) {
   const Pending pending = queue_.front();
   queue_.pop_front();
   const InputEvent& event = pending.event;
+  acted_ = acted_ || event.kind != InputKind::kMove;
   counts_.keys += event.kind == InputKind::kKeyDown;
   counts_.buttons += event.kind == InputKind::kButtonDown || event.kind == InputKind::kButtonUp;
   counts_.wheels += event.kind == InputKind::kWheel;

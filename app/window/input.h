@@ -37,6 +37,11 @@ class Input {
 
   void countDrop() noexcept { ++counts_.drops; }
   [[nodiscard]] bool empty() const noexcept { return queue_.empty(); }
+  /// A frame begins.
+  void beginFrame() noexcept { acted_ = false; }
+  /// Whether the frame had an event that may open a list, scroll or fold a panel: those stand in their place one frame later,
+  /// which must not wait.
+  [[nodiscard]] bool acted() const noexcept { return acted_; }
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
 
  private:
@@ -48,6 +53,7 @@ class Input {
 
   std::deque<Pending> queue_;
   Counts counts_;
+  bool acted_ = false;
 };
 
 }  // namespace fettle::app

@@ -314,7 +314,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   const auto waits = [&](const char* name, bool is) {
     if (is) names.push_back(name);
   };
-  waits("input", !input.empty());
+  waits("input", !input.empty() || input.acted());
   waits("the panels' keys", p.window.panelsAreBehind());
   waits("opening", p.opening.busy());
   waits("files", p.files.busy());
@@ -373,7 +373,7 @@ Report waitedFor(const Parts& p, const Input& input) {
 }  // namespace
 
 bool isActive(const Parts& parts, const Input& input) {
-  return parts.picture.active() || !input.empty() || parts.held() || parts.flight.active() ||
+  return parts.picture.active() || !input.empty() || input.acted() || parts.held() || parts.flight.active() ||
          parts.window.panelsAreBehind();
 }
 

@@ -434,6 +434,9 @@ std::string UiLayer::fieldText() const {
 
 void UiLayer::endFrame() {
   ImGui::Render();
+  const ImVector<ImGuiWindow*>& windows = ImGui::GetCurrentContext()->Windows;
+  opens_ = std::any_of(windows.begin(), windows.end(),
+                       [](const ImGuiWindow* window) { return window->Active && window->Appearing; });
 }
 
 // The pixels to be drawn again.

@@ -66,9 +66,10 @@ class UiLayer {
   };
   void point(const Pointed& at);
   void leavePointer() { pointed_.push_back(std::nullopt); }
-  /// Whether presses or characters wait for a later frame.
+  /// Whether presses or characters wait for a later frame, or a list, a menu or a dialog does, which is drawn one frame after it
+  /// is opened, when its size is known.
   [[nodiscard]] bool behind() const noexcept {
-    return !pressed_.empty() || !waiting_.empty() || !clicks_.empty() || !pointed_.empty();
+    return opens_ || !pressed_.empty() || !waiting_.empty() || !clicks_.empty() || !pointed_.empty();
   }
   void beginFrame(const WindowShape& shape);
   /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
@@ -127,6 +128,7 @@ class UiLayer {
   Context* context_ = nullptr;
   Theme theme_ = Theme::kDark;
   bool entered_ = false;
+  bool opens_ = false;
   int leaving_ = 0;  // frames until a field that a key leaves has the keyboard no more
   GLFWwindow* window_;
   std::unique_ptr<UiFrame> frame_;

@@ -135,6 +135,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 
 void Workstation::runFrame() {
   window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
+  input_.beginFrame();
   whileWaiting();
   handleInput();
   followFlight();

@@ -221,7 +221,7 @@ TEST_F(WindowTest, the_list_of_filters_begins_with_spikes_lines_and_holes) {
                               "waves by their length (ISO 16610)"})
     EXPECT_TRUE(user.reads(heading)) << heading;
   EXPECT_TRUE(user.click("Outliers")["filter"].get<std::string>().starts_with("Outliers"));
-  EXPECT_TRUE(user.reads("by the noise between samples")) << "which noise the range is from";
+  EXPECT_TRUE(user.reads("by the noise")) << "what the range is from";
   (void)user.click("Outliers");
   EXPECT_EQ(user.click("Level lines (rows or columns) ...")["heights_preview"],
             "Level rows: median, form stays");
