@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/digit.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 
@@ -14,10 +15,6 @@ namespace fettle::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 // Of ASCII letters alone: file names are UTF-8, whose other bytes stay as they are.
 char lower(char c) {
@@ -32,7 +29,7 @@ std::string lower(std::string_view text) {
 
 // A number at the beginning of `text`, without leading zeros, taken off it.
 std::string_view takeNumber(std::string_view& text) {
-  const auto end = std::find_if_not(text.begin(), text.end(), isDigit);
+  const auto end = std::find_if_not(text.begin(), text.end(), engine::isDigit);
   std::string_view number = text.substr(0, static_cast<std::size_t>(end - text.begin()));
   text.remove_prefix(number.size());
   while (number.size() > 1 && number.front() == '0') number.remove_prefix(1);
@@ -42,7 +39,7 @@ std::string_view takeNumber(std::string_view& text) {
 // -1, 0, 1; numbers by their value, of any length.
 int compared(std::string_view a, std::string_view b) {
   while (!a.empty() && !b.empty()) {
-    if (isDigit(a.front()) && isDigit(b.front())) {
+    if (engine::isDigit(a.front()) && engine::isDigit(b.front())) {
       const std::string_view x = takeNumber(a), y = takeNumber(b);
       if (x.size() != y.size()) return x.size() < y.size() ? -1 : 1;
       if (const int order = x.compare(y); order != 0) return order < 0 ? -1 : 1;

@@ -1,24 +1,21 @@
 #include "app/window/broken_text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
+
+#include "engine/base/digit.h"
 
 namespace fettle::app {
 namespace {
 
 constexpr std::size_t kLongestUnit = 6;  // bytes, "N/mm", "µm," with its comma
 
-bool isDigit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
 // Whether a line must not end between two words.
 bool belongTogether(std::string_view word, std::string_view next) {
   if (word.empty() || next.empty()) return false;
-  if (word == "x") return isDigit(next.front());
-  if (!isDigit(word.back())) return false;
-  return next.size() <= kLongestUnit && !isDigit(next.front()) && next.front() != '(';
+  if (word == "x") return engine::isDigit(next.front());
+  if (!engine::isDigit(word.back())) return false;
+  return next.size() <= kLongestUnit && !engine::isDigit(next.front()) && next.front() != '(';
 }
 
 }  // namespace

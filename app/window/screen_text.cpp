@@ -1,15 +1,12 @@
 #include "app/window/screen_text.h"
 
 #include <array>
-#include <cctype>
 #include <cstddef>
+
+#include "engine/base/digit.h"
 
 namespace fettle::app {
 namespace {
-
-bool isDigit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 // Whether the text begins at `at` where no word, option or path goes on.
 bool beginsThere(std::string_view text, std::size_t at) {
@@ -28,12 +25,12 @@ bool endsThere(std::string_view text, std::size_t at) {
 // Whether a number stands before `at`, with a space or without.
 bool hasNumber(std::string_view text, std::size_t at) {
   if (at > 0 && text[at - 1] == ' ') --at;
-  return at > 0 && isDigit(text[at - 1]);
+  return at > 0 && engine::isDigit(text[at - 1]);
 }
 
 // As a unit: the same behind the stroke of a fraction, 1/mm2 or um3/um2.
 bool isUnit(std::string_view text, std::size_t at, std::size_t end) {
-  const bool below = at > 1 && text[at - 1] == '/' && isDigit(text[at - 2]);
+  const bool below = at > 1 && text[at - 1] == '/' && engine::isDigit(text[at - 2]);
   return endsThere(text, end) && (beginsThere(text, at) || hasNumber(text, at) || below);
 }
 
@@ -46,7 +43,7 @@ constexpr std::array kWords{
          [](std::string_view text, std::size_t at, std::size_t end) {
            const bool before = beginsThere(text, at);
            return before &&
-                  (end == text.size() || text[end] == ' ' || text[end] == '.' || isDigit(text[end]));
+                  (end == text.size() || text[end] == ' ' || text[end] == '.' || engine::isDigit(text[end]));
          }},
     Word{"um", "\u00b5m",
          [](std::string_view text, std::size_t at, std::size_t end) {
@@ -57,7 +54,7 @@ constexpr std::array kWords{
     Word{"mm3", "mm\u00b3", isUnit}, Word{"m2", "m\u00b2", isUnit}, Word{"m3", "m\u00b3", isUnit},
     Word{" degrees", "\u00b0",
          [](std::string_view text, std::size_t at, std::size_t end) {
-           return endsThere(text, end) && at > 0 && isDigit(text[at - 1]);
+           return endsThere(text, end) && at > 0 && engine::isDigit(text[at - 1]);
          }},
     // A word of the language, too.
     Word{"us", "\u00b5s", [](std::string_view text, std::size_t at, std::size_t end) {
