@@ -18,6 +18,9 @@ namespace {
 constexpr double kMeasuring_ms = 20.0;
 constexpr std::chrono::milliseconds kShownMeanwhile{250};
 
+// Nobody waits for a rehearsal, and much else begins with a field.
+constexpr std::chrono::seconds kRehearsedAfter{1};
+
 constexpr int kPicks =
     12;  // positions of the picture, in each direction, at which the visible part is sampled
 
@@ -63,6 +66,8 @@ void WindowPicture::clear() {
   results_came_ = false;
   measured_ = Measured::kNothing;
   needs_redraw_ = true;
+  look_.reset();
+  rehearses_ = false;
 }
 
 void WindowPicture::fit(render::View& view) {
@@ -115,6 +120,8 @@ bool WindowPicture::takeDue(Draws draws) {
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;
+  if (!due && refines && look_ && now - drawn_ >= kRehearsedAfter && !std::exchange(rehearses_, true))
+    rehearsal_.begin(live_->device(), shown_, *look_);
   return due;
 }
 

@@ -11,6 +11,7 @@
 #include "app/window/camera_motion.h"
 #include "app/window/frame_budget.h"
 #include "app/window/picture_at_rest.h"
+#include "app/window/picture_rehearsal.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
 #include "app/window/sharp_later.h"
@@ -46,6 +47,8 @@ class WindowPicture {
   [[nodiscard]] engine::Status make();
   void lose() { live_.reset(); }
   [[nodiscard]] bool made() const noexcept { return live_ != nullptr; }
+  /// Whether other pictures of what is shown were drawn beforehand (PictureRehearsal), as far as that goes.
+  [[nodiscard]] bool rehearsed() const noexcept { return rehearsal_.done(); }
   /// Another field follows: shows nothing.
   void clear();
 
@@ -155,6 +158,8 @@ class WindowPicture {
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
   Refinement::Clock::time_point drawn_;  // the last frame
   DrawFigures draw_figures_;
+  bool rehearses_ = false;  // what is shown; begun
+  PictureRehearsal rehearsal_;
 };
 
 }  // namespace fettle::app

@@ -151,6 +151,7 @@ void addBrushAndView(const Parts& p, Report& r) {
       scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
   r["measured"] = {!p.costs.contact().empty(), !p.costs.detail().empty()};
   r["map"] = static_cast<int>(display.map);
+  r["rehearsed"] = p.picture.rehearsed();
   r["mouse"] = std::string(kMousePresets[static_cast<std::size_t>(p.settings.habits)].word);
   r["bookmarks"] = p.bookmarks.count();
   r["axes"] = axesState(p);

@@ -93,6 +93,7 @@ double redrawnShare(const std::vector<LivePanel>& panels) {
 struct LivePicture::Impl {
   std::unique_ptr<Context> own;  // empty when the context belongs to the caller
   Context& context;
+  vk::Format colour_format;
   Glyphs glyphs;
   Submissions submissions;
   StagingRing staging;
@@ -117,6 +118,7 @@ struct LivePicture::Impl {
   Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& options, Glyphs g)
       : own(std::move(owned)),
         context(used),
+        colour_format(colour),
         glyphs(std::move(g)),
         submissions(context),
         staging(context, kStagingBytes),
@@ -353,9 +355,11 @@ engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(const LiveOptio
   if (!glyphs) return tl::unexpected(glyphs.error());
   Context& used = **context;
   const std::string name = used.name();
+  const vk::Format format =
+      options.colour_format == 0 ? kColourFormat : static_cast<vk::Format>(options.colour_format);
   try {
     return std::unique_ptr<LivePicture>(new LivePicture(
-        std::make_unique<Impl>(*std::move(context), used, kColourFormat, options, *std::move(glyphs))));
+        std::make_unique<Impl>(*std::move(context), used, format, options, *std::move(glyphs))));
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(name, error.what()));
   }
@@ -440,7 +444,7 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
         fmt::format("give {} to {} pixels per side", kSmallestPicture, most));
   if (impl_->canvas.image.extent() != extent) {
     impl_->submissions.finish();
-    impl_->canvas.image = pictureImage(impl_->context, extent);
+    impl_->canvas.image = pictureImage(impl_->context, extent, impl_->colour_format);
   }
   engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
   if (!stats) return stats;

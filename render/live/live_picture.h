@@ -232,6 +232,8 @@ struct Grip {
 struct LiveOptions {
   Validation validation = Validation::kOff;
   std::string device;  ///< as DeviceOptions
+  /// Of pictures that are drawn off-screen and not read back, a VkFormat; 0: that of an Image.
+  std::uint32_t colour_format = 0;
   /// Longest side of one image in samples, rounded up to a tile; 0: the device's limit. Larger fields are
   /// spread over the layers of an image array. For tests of that case.
   int max_image_side = 0;
@@ -300,9 +302,9 @@ class LivePicture {
   /// Draws the next frame and returns without waiting for it (two may be in flight). Errors: kInput for an
   /// input out of range; kFailed for a lost device: create another LivePicture, the field is not affected.
   [[nodiscard]] engine::Result<FrameStatistics> draw(const FrameInput& input, LiveTarget& target);
-  /// The same to memory: draws, waits and copies out.
+  /// The same to memory: draws, waits and copies out. Not with a colour format of its own.
   [[nodiscard]] engine::Result<FrameStatistics> draw(const FrameInput& input, Image& out);
-  /// Draws to memory, waits, copies nothing: for measurements.
+  /// Draws to memory, waits, copies nothing: for measurements and rehearsals.
   [[nodiscard]] engine::Result<FrameStatistics> drawAndWait(const FrameInput& input);
 
   /// The surface point under pixel (x, y) of the last frame: (0, 0) is the top left corner of the picture.

@@ -178,7 +178,7 @@ enum class DriverKind {
 /// Which Vulkan device draws or computes.
 struct DeviceOptions {
   Validation validation = Validation::kOff;
-  /// Use the device whose name contains this text (upper and lower case alike); empty: the best suitable one.
+  /// Use the device whose name, with that of its driver, contains this text (upper and lower case alike); empty: the best suitable one.
   std::string device{};
   DriverKind kind = DriverKind::kAny;
 };

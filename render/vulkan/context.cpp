@@ -66,6 +66,15 @@ vk::DeviceSize hostImageAlignmentOf(const vk::raii::PhysicalDevice& device) {
       .minImportedHostPointerAlignment;
 }
 
+std::string nameWithDriver(const vk::raii::PhysicalDevice& device) {
+  const auto properties =
+      device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+  const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
+  return fmt::format("{} ({} {})",
+                     properties.get<vk::PhysicalDeviceProperties2>().properties.deviceName.data(),
+                     driver.driverName.data(), driver.driverInfo.data());
+}
+
 }  // namespace
 
 std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family,
@@ -163,8 +172,8 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     const std::string name = properties.deviceName;
     std::uint32_t family = 0;
     std::string reason = rejection(device, family, *context->surface_);
-    if (reason.empty() &&
-        engine::lowerCase(name).find(engine::lowerCase(options.device)) == std::string::npos)
+    if (reason.empty() && engine::lowerCase(nameWithDriver(device)).find(engine::lowerCase(options.device)) ==
+                              std::string::npos)
       reason = "is not the requested one";
     if (reason.empty() && options.kind == DriverKind::kHardware &&
         properties.deviceType == vk::PhysicalDeviceType::eCpu)
@@ -197,13 +206,8 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
         reasons.empty() ? "no Vulkan device found" : "no suitable Vulkan device: " + reasons, "Vulkan",
         options.device.empty() ? kInstall : "name another device or none");
 
-  const auto properties =
-      context->physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
-  context->limits_ = properties.get<vk::PhysicalDeviceProperties2>().properties.limits;
-  const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
-  context->name_ =
-      fmt::format("{} ({} {})", properties.get<vk::PhysicalDeviceProperties2>().properties.deviceName.data(),
-                  driver.driverName.data(), driver.driverInfo.data());
+  context->limits_ = context->physical_.getProperties().limits;
+  context->name_ = nameWithDriver(context->physical_);
   context->memory_ = context->physical_.getMemoryProperties();
   return context;
 } catch (const vk::SystemError& error) {

@@ -1,0 +1,98 @@
+#include "app/window/picture_rehearsal.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "render/window/window.h"
+
+namespace fettle::app {
+namespace {
+
+// Not a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
+constexpr int kSide_px = 62;
+// Samples of a field of any size: 4 times what such a part of a picture can ask for.
+constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
+// From one end of how near a field is seen to the other.
+constexpr double kNear = 64.0;
+
+// The middle of the picture, in its own pixels: what cells are smaller than a pixel there are so here.
+void takeMiddle(render::FrameInput& input) {
+  const auto along = [](int side) {
+    return std::pair{(side - std::min(side, kSide_px)) / 4 * 2, std::min(side, kSide_px)};
+  };
+  const auto [x, width] = along(input.view.width);
+  const auto [y, height] = along(input.view.height);
+  input.part = render::Rectangle{x, y, width, height};
+}
+
+struct Scene {
+  render::Shown shown;
+  render::FrameInput input;
+};
+
+// A pen in contact, a line through the surface and one over it.
+void addStylus(const engine::Version& field, render::Overlays& overlays) {
+  const engine::Grid& grid = field.grid();
+  const glm::dvec3 middle{0.5 * (grid.width - 1) * grid.spacingXMm(),
+                          0.5 * (grid.height - 1) * grid.spacingYMm(), 0.0};
+  overlays.stylus = render::StylusBody{.tip_mm = middle};
+  for (const auto depth : {render::OverlayLine::Depth::kInScene, render::OverlayLine::Depth::kOnTop})
+    overlays.lines.push_back({.from_mm = middle, .to_mm = middle + glm::dvec3(1.0), .depth = depth});
+}
+
+// What a few keys and a wheel make of this picture, the likeliest first; each while something moves and at rest.
+std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput& look) {
+  Scene now{shown, look};
+  takeMiddle(now.input);
+  now.input.panel_vertices.clear();  // those were of the window's last frame
+  std::vector<Scene> scenes;
+  const auto add = [&scenes](Scene scene) {
+    scene.input.sharpness = render::Sharpness::kHalf;
+    scenes.push_back(scene);
+    scene.input.sharpness = render::Sharpness::kFine;
+    scenes.push_back(std::move(scene));
+  };
+  Scene pen = now;
+  addStylus(shown.versions.front(), pen.input.overlays);
+  add(std::move(pen));
+  for (const bool other_projection : {false, true})
+    for (const bool deviation : {false, true})
+      for (const double nearer : {1.0, kNear, 1.0 / kNear})
+        for (const bool contours : {false, true}) {
+          Scene scene = now;
+          if (other_projection)
+            scene.input.view.projection = look.view.projection == render::Projection::kPerspective
+                                              ? render::Projection::kOrthographic
+                                              : render::Projection::kPerspective;
+          if (deviation && !scene.shown.original) scene.shown.original = shown.versions.front();
+          scene.input.view.zoom *= nearer;
+          if (contours) scene.input.contours = render::Contours::kShow;
+          add(std::move(scene));
+        }
+  now.shown.marks = render::MarksOverlay::kHide;
+  add(std::move(now));
+  return scenes;
+}
+
+}  // namespace
+
+void PictureRehearsal::begin(std::string device, render::Shown shown, render::FrameInput look) {
+  done_ = std::make_shared<std::atomic<bool>>(false);
+  work_.replace([device = std::move(device), shown = std::move(shown), look = std::move(look),
+                 done = done_](engine::JobControl& job) -> engine::Result<Nothing> {
+    render::LiveOptions options;
+    options.device = device;
+    options.colour_format = render::Window::pictureFormat();
+    options.memory_budget_bytes = kDeviceBytes;
+    if (const auto picture = render::LivePicture::create(options))
+      for (const Scene& scene : scenesOf(shown, look)) {
+        if (job.cancelled()) return engine::cancelled();
+        if ((*picture)->update(scene.shown)) (void)(*picture)->drawAndWait(scene.input);
+      }
+    done->store(true, std::memory_order_relaxed);
+    return Nothing{};
+  });
+}
+
+}  // namespace fettle::app
