@@ -38,7 +38,7 @@ void fitFields(FitTool::Options& options) {
     int of = static_cast<int>(std::ranges::find(kOf, options.region) - std::begin(kOf));
     const bool changed =
         chooseWord("##fitted to", of,
-                   {"marked samples, else all", "all samples", "marked samples", "samples not marked"});
+                   {"marked, else all", "all samples", "marked samples", "samples not marked"});
     if (changed) options.region = kOf[of];
     return changed;
   });

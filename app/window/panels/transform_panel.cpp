@@ -26,7 +26,7 @@ bool transformPanel(const PanelContext& context, TransformTool& transform) {
                       {"0 degrees", "90 degrees", "180 degrees", "270 degrees"});
   });
   (void)field("and by", "A further angle, counter-clockwise; heights between samples are resampled.",
-              [&] { return typeNumber("##angle", options.angle_deg, -180.0, 180.0, "%.6g degrees"); });
+              [&] { return typeNumber("##angle", options.angle_deg, -180.0, 180.0, "%.6g\u00b0"); });
   endFields();
   if (tickBox("other spacing", options.resample,
               "Distance of the samples of the new field, along rows and columns.") &&

@@ -276,7 +276,7 @@ TEST_F(ResultFiles, distances_from_a_fit_of_marks_lie_under_no_tint_but_while_ma
   const Screen marked = user.look("marked");
   (void)user.click("the simplest");
   (void)user.click("plane");
-  EXPECT_TRUE(user.reads("marked samples, else all"));
+  EXPECT_TRUE(user.reads("marked, else all"));
   const State fitted = user.key("ctrl+shift+f");
   ASSERT_TRUE(fitted["fits"].is_object()) << fitted["notices"].dump();
   EXPECT_EQ(fitted["colours_are"], "distance");
