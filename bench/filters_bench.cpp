@@ -241,6 +241,13 @@ std::string groundName(FilterGround ground) {
   return {};
 }
 
+double suggestedCost(const FiltersBenchRow& row) noexcept {
+  if (row.threads != 1 || row.on_device) return 0.0;
+  for (const engine::FilterTrial& trial : engine::filterOf(row.kind).trials)
+    if (trial.window == row.window) return trial.cost;
+  return 0.0;
+}
+
 FilterTarget targetOf(const FiltersBenchRow& row) noexcept {
   using engine::FilterKind;
   struct Share {

@@ -70,6 +70,10 @@ struct FilterTarget {
   double share = 0.0;
   double over_one = 0.0;
 };
+/// What suggestFilter takes for the cost of a pass like this one (FilterTrial::cost) [ns per sample]; 0 of a row of several
+/// threads, of a device, or of a window that it does not try.
+[[nodiscard]] double suggestedCost(const FiltersBenchRow& row) noexcept;
+
 [[nodiscard]] FilterTarget targetOf(const FiltersBenchRow& row) noexcept;
 
 /// Filters synthetic relief with noise, `repeats` times each row, alternating between all rows, with a plain

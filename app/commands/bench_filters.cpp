@@ -53,6 +53,7 @@ engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_devic
   for (const bench::FiltersBenchRow& row : measured->rows) {
     const bench::FilterTarget target = bench::targetOf(row);
     const bool rolls = engine::filterOf(row.kind).has_element;
+    const double cost = bench::suggestedCost(row);
     report["rows"].push_back({{"kind", engine::name(row.kind)},
                               {"element", rolls ? Report(elementWord(row.element)) : Report()},
                               {"window", row.window},
@@ -70,6 +71,7 @@ engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_devic
                               {"over_one_thread", row.over_one},
                               {"over_cpu", row.on_device ? Report(row.over_processor) : Report()},
                               {"off_cpu_range_sigmas", row.on_device ? Report(row.most_off) : Report()},
+                              {"suggested_cost_ns", cost > 0.0 ? Report(cost) : Report()},
                               {"share_target", target.share},
                               {"over_one_thread_target", target.over_one},
                               {"bound_filter_s", row.bound.filter},
@@ -103,16 +105,18 @@ void printBenchFilters(const Report& report) {
   fmt::print(
       "{}\nwhole filter with its report, million samples/s, median of {} runs; share: of plain copying of "
       "floats by as many threads, in the same run, and its target; x one: of the rate with one thread, and "
-      "its target; *: met; CPU: per second of processor time\n\n",
+      "its target; *: met; CPU: per second of processor time; cost: ns per sample that --suggest takes for "
+      "it\n\n",
       report["machine"].get<std::string>(), report["repeats"].get<int>());
-  fmt::print("{:<16}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}  hash\n", "",
+  fmt::print("{:<16}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}{:>6}  hash\n", "",
              "window", "ground", "threads", "side", "Ms/s", "slowest", "fastest", "copy", "share target ",
-             "x one target ", "CPU Ms/s", "CPU share");
+             "x one target ", "CPU Ms/s", "CPU share", "cost");
   for (const Report& row : report["rows"]) {
     const auto number = [&row](const char* key) { return row[key].get<double>(); };
     const bool several = row["threads"].get<int>() > 1;
     fmt::print(
-        "{:<16}{:>7}{:>8}{:>9}{:>7}{:>10.2f}{:>10.2f}{:>10.2f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
+        "{:<16}{:>7}{:>8}{:>9}{:>7}{:>10.2f}{:>10.2f}{:>10.2f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}{:>6}  "
+        "{}\n",
         fmt::format("{}{}{}", row["kind"].get<std::string>(), row["element"].is_null() ? "" : " ",
                     row["element"].is_null() ? "" : row["element"].get<std::string>()),
         row["window"].get<int>(), row["ground"].get<std::string>(), row["threads"].get<int>(),
@@ -120,7 +124,9 @@ void printBenchFilters(const Report& report) {
         number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
         valueAndTarget(number("share_of_copy"), number("share_target"), 4),
         valueAndTarget(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
-        number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
+        number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"),
+        row["suggested_cost_ns"].is_null() ? "" : fmt::format("{:g}", number("suggested_cost_ns")),
+        row["hash"].get<std::string>());
     if (number("bound_tiles_s") > 0.0) {
       const double tiles = number("bound_tiles_s"), operations = number("bound_operations_s");
       fmt::print(

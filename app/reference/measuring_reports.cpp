@@ -277,6 +277,8 @@ std::vector<ReportSchema> measuring() {
                 {"over_one_thread", "number", ""},
                 {"over_cpu", "number", "of a device"},
                 {"off_cpu_range_sigmas", "number", "of a device"},
+                {"suggested_cost_ns", "number?",
+                 "what a suggestion takes for a pass, per sample; null where it tries no such one"},
                 {"share_target", "number", ""},
                 {"over_one_thread_target", "number", ""},
                 {"bound_filter_s", "number", "--bound: of a sample; 0 without it"},

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/filter/catalogue.h"
 #include "tests/engine/filter/cpu_tgv_device.h"
 
 namespace fettle::bench {
@@ -59,6 +60,28 @@ TEST(FiltersBench, NamesTheTargetsOfThePapersFiltersOnPlainGround) {
     }
   row.ground = FilterGround::kHoles;
   EXPECT_EQ(targetOf(row).over_one, 0.0);
+}
+
+// Every setting that suggestFilter tries has its cost beside what it takes here; others, and several threads, have none.
+TEST(FiltersBench, NamesTheCostsThatSuggestionsGoBy) {
+  int costs = 0;
+  for (const engine::Filter& filter : engine::filters())
+    for (const engine::FilterTrial& trial : filter.trials) {
+      FiltersBenchRow row;
+      row.kind = filter.kind;
+      row.window = trial.window;
+      row.threads = 1;
+      EXPECT_EQ(suggestedCost(row), trial.cost) << filter.word << " " << trial.window;
+      row.threads = 2;
+      EXPECT_EQ(suggestedCost(row), 0.0);
+      ++costs;
+    }
+  EXPECT_GT(costs, 20);
+  FiltersBenchRow other;
+  other.kind = FilterKind::kBox;
+  other.window = 101;
+  other.threads = 1;
+  EXPECT_EQ(suggestedCost(other), 0.0);
 }
 
 TEST(FiltersBench, MeasuresASmallerFieldWhereTheLimitLeavesNoTimeForTheWhole) {

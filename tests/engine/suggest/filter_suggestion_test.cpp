@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -145,62 +143,6 @@ TEST(FilterSuggestion, PicksTheCheapestWithinTheTolerance) {
   EXPECT_EQ(named.picked().error_edge, usual.picked().error_edge);
   for (const FilterCandidate& c : named.candidates)
     EXPECT_EQ(std::isnan(c.error()), c.cost > named.picked().cost) << methodOf(c);
-}
-
-// The table against processor time on one thread, least of three passes, all in one run: the ratios of both must be the same within a factor of
-// three. Other processors have other ratios, of which one of two is not known to be right.
-TEST(FilterSuggestion, KnowsWhatFiltersCostBesideEachOther) {
-  if (kInstrumented) GTEST_SKIP() << "of instrumented code";
-  const auto processorSeconds = [] {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-  };
-  JobControl job;
-  const auto scanOfSide = [&job](int side) {
-    ScannerSpec spec;
-    spec.width = spec.height = side;
-    return simulateScan(spec, job)->scan;
-  };
-  const Version large = scanOfSide(1024), small = scanOfSide(256);
-  struct Timed {
-    FilterSpec spec;
-    std::string_view word;
-    double expected;
-    const Version* scan;
-    double least = std::numeric_limits<double>::infinity();  // [ns per sample]
-    [[nodiscard]] double ratio() const { return least / expected; }
-    [[nodiscard]] std::string what() const {
-      return fmt::format("{} {}: {:.1f} ns, {}", word, spec.window, least, expected);
-    }
-  };
-  std::vector<Timed> all;
-  for (const Filter& filter : filters())
-    for (const FilterTrial& trial : filter.trials) {
-      if (trial.around_edges) continue;
-      FilterSpec spec;
-      spec.kind = filter.kind;
-      spec.window = trial.window;
-      spec.threads = 1;
-      if (hasRange(filter.kind)) spec.range_sigma = trial.noises * 0.02;
-      all.push_back({spec, filter.word, trial.cost, trial.cost > 100.0 ? &small : &large});
-    }
-  // What else the machine does only adds to a time: the least of more rounds comes nearer to the cost, and a wrong figure stays wrong.
-  constexpr int kMostRounds = 20;
-  double middle = 0.0;
-  for (int round = 1; round <= kMostRounds; ++round) {
-    for (Timed& timed : all) {
-      const double start = processorSeconds();
-      ASSERT_TRUE(applyFilter(*timed.scan, *timed.scan, timed.spec, job));
-      const double took = 1e9 * (processorSeconds() - start);
-      timed.least = std::min(timed.least, took / static_cast<double>(timed.scan->grid().samples()));
-    }
-    std::ranges::sort(all, {}, &Timed::ratio);
-    middle = all[all.size() / 2].ratio();
-    if (round >= 3 && all.front().ratio() > middle / 3.0 && all.back().ratio() < middle * 3.0) break;
-  }
-  EXPECT_GT(all.front().ratio(), middle / 3.0) << all.front().what();
-  EXPECT_LT(all.back().ratio(), middle * 3.0) << all.back().what();
 }
 
 TEST(FilterSuggestion, PicksTheNearestWhenNoneIsWithinTheTolerance) {
