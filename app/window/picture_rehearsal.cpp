@@ -77,22 +77,39 @@ std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput
 
 }  // namespace
 
-void PictureRehearsal::begin(std::string device, render::Shown shown, render::FrameInput look) {
-  done_ = std::make_shared<std::atomic<bool>>(false);
-  work_.replace([device = std::move(device), shown = std::move(shown), look = std::move(look),
-                 done = done_](engine::JobControl& job) -> engine::Result<Nothing> {
-    render::LiveOptions options;
-    options.device = device;
-    options.colour_format = render::Window::pictureFormat();
-    options.memory_budget_bytes = kDeviceBytes;
+void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, render::FrameInput look) {
+  end();
+  stage_ = std::make_shared<Stage>();
+  stage_->window = &window;
+  render::LiveOptions options;
+  options.device = window.device();
+  options.colour_format = render::Window::pictureFormat();
+  options.memory_budget_bytes = kDeviceBytes;
+  work_.replace([options = std::move(options), shown = std::move(shown), look = std::move(look),
+                 stage = stage_](engine::JobControl& job) -> engine::Result<Nothing> {
     if (const auto picture = render::LivePicture::create(options))
       for (const Scene& scene : scenesOf(shown, look)) {
         if (job.cancelled()) return engine::cancelled();
         if ((*picture)->update(scene.shown)) (void)(*picture)->drawAndWait(scene.input);
+        prepare(*stage, **picture);
       }
-    done->store(true, std::memory_order_relaxed);
+    stage->done.store(true, std::memory_order_relaxed);
     return Nothing{};
   });
+}
+
+// One thing at a time: the window waits for no more than that when its picture ends.
+void PictureRehearsal::prepare(Stage& stage, const render::LivePicture& rehearsed) {
+  for (bool more = true; more;) {
+    const std::scoped_lock lock(stage.mutex);
+    more = stage.window != nullptr && stage.window->prepareNextOf(rehearsed);
+  }
+}
+
+void PictureRehearsal::end() noexcept {
+  work_.cancel();
+  const std::scoped_lock lock(stage_->mutex);
+  stage_->window = nullptr;
 }
 
 }  // namespace fettle::app

@@ -49,6 +49,7 @@ bool same(const render::Shown& a, const render::Shown& b) {
 engine::Status WindowPicture::make() {
   auto live = render::LivePicture::create(window_.context(), render::Window::pictureFormat());
   if (!live) return tl::unexpected(live.error());
+  lose();
   live_ = std::move(*live);
   clear();
   return {};
@@ -121,7 +122,7 @@ bool WindowPicture::takeDue(Draws draws) {
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;
   if (!due && refines && look_ && now - drawn_ >= kRehearsedAfter && !std::exchange(rehearses_, true))
-    rehearsal_.begin(live_->device(), shown_, *look_);
+    rehearsal_.begin(*live_, shown_, *look_);
   return due;
 }
 

@@ -42,10 +42,15 @@ class WindowPicture {
   static constexpr double kDecorations = 0.87;
 
   explicit WindowPicture(render::Window& window) : window_(window) {}
+  WindowPicture& operator=(WindowPicture&&) = delete;
+  ~WindowPicture() { lose(); }
 
   /// Creates it with the window's device; its content is uploaded again. Errors: LivePicture::create.
   [[nodiscard]] engine::Status make();
-  void lose() { live_.reset(); }
+  void lose() {
+    rehearsal_.end();
+    live_.reset();
+  }
   [[nodiscard]] bool made() const noexcept { return live_ != nullptr; }
   /// Whether other pictures of what is shown were drawn beforehand (PictureRehearsal), as far as that goes.
   [[nodiscard]] bool rehearsed() const noexcept { return rehearsal_.done(); }

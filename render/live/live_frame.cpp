@@ -257,13 +257,13 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const auto paged = pagedOf(p);
     const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
     if (whole > 0)
-      draws.instances(pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
+      draws.instances(pipelines_.of(Geometry{Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
                       *sets.surface, gpu::kPatchVertices, 0, whole);
     if (whole < all)
-      draws.instances(pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
+      draws.instances(pipelines_.of(Geometry{Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
                       *sets.surface, gpu::kPatchVertices, whole, all - whole);
     if (!p.choice->seams.empty())
-      draws.instances(pipelines_.depth({Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
+      draws.instances(pipelines_.of(Geometry{Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
                       gpu::kSeamStripVertices, 0, 2 * p.choice->seams.size());
   }
   commands.endRendering();
@@ -290,7 +290,7 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     if (empty(part)) continue;
     draws.begin(panels[i], part, layers.scale);
     if (redraw == Redraw::kParts) clear(commands, kColour, nothing, scaled(part, layers.scale));
-    draws.instances(pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
+    draws.instances(pipelines_.of(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
 
@@ -312,10 +312,11 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     if (empty(part)) continue;
     draws.begin(p, part, layers.scale);
     // The plate is only visible through holes.
-    if (p.variant.holes) draws.instances(pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
+    if (p.variant.holes)
+      draws.instances(pipelines_.of(Pipelines::Flat::kFloor), *slot.panels[i].surface, 4, 0, 1);
     if (!p.choice->walls.empty())
-      draws.instances(pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices, 0,
-                      p.choice->walls.size());
+      draws.instances(pipelines_.of(Pipelines::Wall{pagedOf(p), holesOf(p)}), *slot.panels[i].walls,
+                      gpu::kWallVertices, 0, p.choice->walls.size());
   }
   // Over the copy they move without shading the surface again.
   if (lines == HiddenLines::kInBase)
@@ -335,8 +336,8 @@ void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot&
     const std::vector<gpu::Line>& lines = in_scene ? p.in_scene : p.on_top;
     if (empty(p.visible) || lines.empty()) continue;
     draws.begin(p, p.visible, scale);
-    draws.instances(pipelines_.lines(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top, 4,
-                    0, lines.size());
+    draws.instances(pipelines_.of(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top, 4, 0,
+                    lines.size());
   }
 }
 
@@ -371,7 +372,7 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
   commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
                                        static_cast<float>(extent.height), 0.0F, 1.0F});
   commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
-  commands.bindPipeline(kGraphics, pipelines_.quads());
+  commands.bindPipeline(kGraphics, pipelines_.of(Pipelines::Flat::kQuads));
   const gpu::vec4 size{extent.width, extent.height, 0, 0};
   commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
   commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});

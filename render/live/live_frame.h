@@ -74,6 +74,7 @@ class LiveFrame {
                   const LiveTarget& target, const Rest& rest);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
+  [[nodiscard]] Pipelines& pipelines() noexcept { return pipelines_; }
 
  private:
   struct PanelSets {

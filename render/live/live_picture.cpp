@@ -516,6 +516,15 @@ void LivePicture::finish() {
   }
 }
 
+bool LivePicture::prepareNextOf(const LivePicture& rehearsed) noexcept try {
+  for (const Pipelines::Kind& kind : rehearsed.impl_->frame.pipelines().kinds())
+    if (impl_->frame.pipelines().prepare(kind)) return true;
+  return false;
+} catch (const std::exception&) {
+  // A lost device, or one without memory: the frame that needs it reports that.
+  return false;
+}
+
 const std::string& LivePicture::device() const noexcept {
   return impl_->context.name();
 }

@@ -333,6 +333,11 @@ class LivePicture {
   /// Waits until all frames are completed.
   void finish();
 
+  /// Makes one thing for the device that `rehearsed`, a picture on a device of the same kind, has drawn with and this one has
+  /// not: so the first frame that needs it does not wait for that, some tens of milliseconds on a processor. Returns whether
+  /// there was one. For any thread, also while this picture draws; not while `rehearsed` does. Both must live meanwhile.
+  bool prepareNextOf(const LivePicture& rehearsed) noexcept;
+
   [[nodiscard]] const std::string& device() const noexcept;
   /// The messages of the validation layers so far; only with a context of its own.
   [[nodiscard]] std::vector<std::string> validationMessages() const;

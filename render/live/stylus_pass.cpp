@@ -36,11 +36,10 @@ void StylusPass::record(const vk::raii::CommandBuffer& commands, std::span<const
     if (empty(p.visible) || !p.stylus) continue;
     draws.begin(p, p.visible, to.scale);
     const vk::DescriptorSet set = sets[i];
-    if (p.stylus->shadow.x > 0.0F)
-      draws.instances(pipelines_.stylus(Pipelines::Stylus::kShadow), set, 4, 0, 1);
+    if (p.stylus->shadow.x > 0.0F) draws.instances(pipelines_.of(Pipelines::Stylus::kShadow), set, 4, 0, 1);
     const std::size_t bodies = p.stylus->shadow.w > 0.0F ? 2 : 1;
     for (const auto pass : {Pipelines::Stylus::kHidden, Pipelines::Stylus::kSeen})
-      draws.instances(pipelines_.stylus(pass), set, gpu::kStylusVertices, 0, bodies);
+      draws.instances(pipelines_.of(pass), set, gpu::kStylusVertices, 0, bodies);
   }
   commands.endRendering();
   Barriers after;

@@ -1,6 +1,7 @@
 #include "render/vulkan/pipelines.h"
 
 #include <array>
+#include <utility>
 
 #include "render/vulkan/picture_pipeline.h"
 
@@ -92,7 +93,7 @@ Pipelines::Words Pipelines::one(Words for_one, Words for_both) const noexcept {
   return views_ == Views::kBoth ? for_both : for_one;
 }
 
-vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
+vk::raii::Pipeline Pipelines::make(const Recipe& recipe) const {
   std::array<vk::SpecializationMapEntry, gpu::kSpecCount> entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i)
     entries[i] =
@@ -113,7 +114,6 @@ vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
   pass.depth.setDepthTestEnable(writes || behind || recipe.depth == Recipe::Depth::kTest)
       .setDepthWriteEnable(writes)
       .setDepthCompareOp(behind ? vk::CompareOp::eGreater : vk::CompareOp::eLessOrEqual);
-  ++made_;
   return makePipeline(context_, pass);
 }
 
@@ -131,9 +131,7 @@ std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
 
 }  // namespace
 
-vk::Pipeline Pipelines::depth(const Geometry& geometry) {
-  const auto found = depths_.find(geometry);
-  if (found != depths_.end()) return *found->second;
+Pipelines::Recipe Pipelines::recipeOf(const Geometry& geometry) const {
   Recipe recipe{.vertex = geometry.kind == Geometry::Kind::kSeams
                               ? one(seam_vert_spirv, seam_vert_eyes_spirv)
                               : one(surface_vert_spirv, surface_vert_eyes_spirv),
@@ -143,34 +141,27 @@ vk::Pipeline Pipelines::depth(const Geometry& geometry) {
   recipe.constants[gpu::kSpecPaged] = geometry.paged == Paged::kYes;
   recipe.constants[gpu::kSpecOnDemand] = geometry.paged == Paged::kByNeed;
   recipe.constants[gpu::kSpecHoles] = geometry.holes == Holes::kYes;
-  return *depths_.emplace(geometry, make(recipe)).first->second;
+  return recipe;
 }
 
-vk::Pipeline Pipelines::shade(const SurfaceVariant& variant) {
-  const auto found = shades_.find(variant);
-  if (found != shades_.end()) return *found->second;
+Pipelines::Recipe Pipelines::recipeOf(const SurfaceVariant& variant) const {
   Recipe recipe{.vertex = one(shade_vert_spirv, shade_vert_eyes_spirv),
                 .fragment = one(shade_frag_spirv, shade_frag_eyes_spirv),
                 .layout = *scene_layout_,
                 .depth = Recipe::Depth::kBehind};
   recipe.constants = constantsOf(variant);
-  return *shades_.emplace(variant, make(recipe)).first->second;
+  return recipe;
 }
 
-vk::Pipeline Pipelines::lines(Lines depth) {
-  const auto found = lines_.find(depth);
-  if (found != lines_.end()) return *found->second;
-  const Recipe recipe{.vertex = one(line_vert_spirv, line_vert_eyes_spirv),
-                      .fragment = line_frag_spirv,
-                      .layout = *scene_layout_,
-                      .depth = depth == Lines::kInScene ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
-                      .blend = Recipe::Blend::kPremultiplied};
-  return *lines_.emplace(depth, make(recipe)).first->second;
+Pipelines::Recipe Pipelines::recipeOf(Lines depth) const {
+  return {.vertex = one(line_vert_spirv, line_vert_eyes_spirv),
+          .fragment = line_frag_spirv,
+          .layout = *scene_layout_,
+          .depth = depth == Lines::kInScene ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
+          .blend = Recipe::Blend::kPremultiplied};
 }
 
-vk::Pipeline Pipelines::stylus(Stylus pass) {
-  const auto found = styli_.find(pass);
-  if (found != styli_.end()) return *found->second;
+Pipelines::Recipe Pipelines::recipeOf(Stylus pass) const {
   const bool shadow = pass == Stylus::kShadow;
   Recipe recipe{
       .vertex = shadow ? one(stylus_shadow_vert_spirv, stylus_shadow_vert_eyes_spirv)
@@ -182,37 +173,57 @@ vk::Pipeline Pipelines::stylus(Stylus pass) {
       .depth = pass == Stylus::kSeen ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
       .blend = Recipe::Blend::kPremultiplied};
   recipe.constants[gpu::kSpecFaint] = pass == Stylus::kHidden;
-  return *styli_.emplace(pass, make(recipe)).first->second;
+  return recipe;
 }
 
-vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
-  const auto found = walls_.find({paged, holes});
-  if (found != walls_.end()) return *found->second;
+Pipelines::Recipe Pipelines::recipeOf(const Wall& wall) const {
   Recipe recipe{.vertex = one(wall_vert_spirv, wall_vert_eyes_spirv),
                 .fragment = wall_frag_spirv,
                 .layout = *scene_layout_};
-  recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
-  recipe.constants[gpu::kSpecHoles] = holes == Holes::kYes;
-  recipe.constants[gpu::kSpecOnDemand] = paged == Paged::kByNeed;
-  return *walls_.emplace(std::pair{paged, holes}, make(recipe)).first->second;
+  recipe.constants[gpu::kSpecPaged] = wall.paged == Paged::kYes;
+  recipe.constants[gpu::kSpecHoles] = wall.holes == Holes::kYes;
+  recipe.constants[gpu::kSpecOnDemand] = wall.paged == Paged::kByNeed;
+  return recipe;
 }
 
-vk::Pipeline Pipelines::floor() {
-  if (!*floor_)
-    floor_ = make({.vertex = one(floor_vert_spirv, floor_vert_eyes_spirv),
-                   .fragment = floor_frag_spirv,
-                   .layout = *scene_layout_});
-  return *floor_;
+Pipelines::Recipe Pipelines::recipeOf(Flat what) const {
+  if (what == Flat::kFloor)
+    return {.vertex = one(floor_vert_spirv, floor_vert_eyes_spirv),
+            .fragment = floor_frag_spirv,
+            .layout = *scene_layout_};
+  return {.vertex = quad_vert_spirv,
+          .fragment = quad_frag_spirv,
+          .layout = *picture_layout_,
+          .depth = Recipe::Depth::kNone,
+          .blend = Recipe::Blend::kPremultiplied};
 }
 
-vk::Pipeline Pipelines::quads() {
-  if (!*quads_)
-    quads_ = make({.vertex = quad_vert_spirv,
-                   .fragment = quad_frag_spirv,
-                   .layout = *picture_layout_,
-                   .depth = Recipe::Depth::kNone,
-                   .blend = Recipe::Blend::kPremultiplied});
-  return *quads_;
+vk::Pipeline Pipelines::found(const Kind& kind) const {
+  const std::scoped_lock lock(mutex_);
+  const auto at = made_.find(kind);
+  return at == made_.end() ? vk::Pipeline() : *at->second;
+}
+
+vk::Pipeline Pipelines::of(const Kind& kind) {
+  if (const vk::Pipeline there = found(kind)) return there;
+  vk::raii::Pipeline pipeline = std::visit([this](const auto& each) { return make(recipeOf(each)); }, kind);
+  const std::scoped_lock lock(mutex_);
+  // Another thread may have been quicker: its pipeline may be in use.
+  return *made_.try_emplace(kind, std::move(pipeline)).first->second;
+}
+
+std::vector<Pipelines::Kind> Pipelines::kinds() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Kind> kinds;
+  kinds.reserve(made_.size());
+  for (const auto& [kind, pipeline] : made_) kinds.push_back(kind);
+  return kinds;
+}
+
+bool Pipelines::prepare(const Kind& kind) {
+  if (found(kind)) return false;
+  (void)of(kind);
+  return true;
 }
 
 }  // namespace fettle::render

@@ -2,8 +2,10 @@
 
 #include <compare>
 #include <map>
+#include <mutex>
 #include <span>
-#include <utility>
+#include <variant>
+#include <vector>
 
 #include "render/vulkan/context.h"
 #include "render/vulkan/memory.h"
@@ -32,18 +34,16 @@ struct SurfaceVariant {
 };
 
 /// The pipelines, created on first use and kept. Throws vk::SystemError.
+///
+/// Threading: as Context, but for kinds() and prepare(), which any thread may call meanwhile.
 class Pipelines {
  public:
   enum class Views {
     kOne,
     kBoth,  ///< passes draw for both eyes at once, to two layers; not without multiview
   };
-  /// For pictures of this format.
-  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat, Views views = Views::kOne);
-
   enum class Paged { kNo, kYes, kByNeed };
   enum class Holes { kNo, kYes };  ///< whether some cells are left out
-  [[nodiscard]] vk::Pipeline wall(Paged paged, Holes holes = Holes::kYes);
   /// Depth of the surface only: of patches, and of the seams between them.
   struct Geometry {
     enum class Kind { kPatches, kSeams } kind = Kind::kPatches;
@@ -52,30 +52,50 @@ class Pipelines {
     // NOLINTNEXTLINE(modernize-use-nullptr): as above
     friend auto operator<=>(const Geometry&, const Geometry&) = default;
   };
-  [[nodiscard]] vk::Pipeline depth(const Geometry& geometry);
-  /// Shades a plot from that depth, once per pixel: colour only.
-  [[nodiscard]] vk::Pipeline shade(const SurfaceVariant& variant);
-  [[nodiscard]] vk::Pipeline floor();
+  /// Colour and depth of the sides of the block.
+  struct Wall {
+    Paged paged = Paged::kNo;
+    Holes holes = Holes::kYes;
+    // NOLINTNEXTLINE(modernize-use-nullptr): as above
+    friend auto operator<=>(const Wall&, const Wall&) = default;
+  };
   enum class Lines { kOnTop, kInScene };
-  [[nodiscard]] vk::Pipeline lines(Lines depth);
   /// Its shadow; what the surface hides of it, faintly; what it does not. They do not write depth.
   enum class Stylus { kShadow, kHidden, kSeen };
-  [[nodiscard]] vk::Pipeline stylus(Stylus pass);
-  [[nodiscard]] vk::Pipeline quads();
+  enum class Flat {
+    kFloor,  ///< the plate below the field
+    kQuads,  ///< text and bars
+  };
+  /// What one of them draws. A SurfaceVariant shades a plot from the depth, once per pixel: colour only.
+  using Kind = std::variant<Geometry, SurfaceVariant, Wall, Lines, Stylus, Flat>;
+
+  /// For pictures of this format.
+  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat, Views views = Views::kOne);
+
+  [[nodiscard]] vk::Pipeline of(const Kind& kind);
+  /// What was drawn so far: what another picture of these things is going to need.
+  [[nodiscard]] std::vector<Kind> kinds() const;
+  /// Makes it where it is missing, which takes tens of milliseconds on a processor; whether it was.
+  bool prepare(const Kind& kind);
 
   /// Layouts of the surface's and the picture's set 0 and pipelines (shaders/layout.h names the bindings).
   [[nodiscard]] vk::PipelineLayout sceneLayout() const noexcept { return *scene_layout_; }
   [[nodiscard]] vk::DescriptorSetLayout sceneSet() const noexcept { return *scene_set_; }
   [[nodiscard]] vk::PipelineLayout pictureLayout() const noexcept { return *picture_layout_; }
   [[nodiscard]] vk::DescriptorSetLayout pictureSet() const noexcept { return *picture_set_; }
-  /// Number of pipelines: pictures without an option create none for it.
-  [[nodiscard]] std::size_t made() const noexcept { return made_; }
 
  private:
   struct Recipe;
   using Words = std::span<const std::uint32_t>;
   [[nodiscard]] Words one(Words for_one, Words for_both) const noexcept;
-  [[nodiscard]] vk::raii::Pipeline make(const Recipe& recipe);
+  [[nodiscard]] Recipe recipeOf(const Geometry& geometry) const;
+  [[nodiscard]] Recipe recipeOf(const SurfaceVariant& variant) const;
+  [[nodiscard]] Recipe recipeOf(const Wall& wall) const;
+  [[nodiscard]] Recipe recipeOf(Lines depth) const;
+  [[nodiscard]] Recipe recipeOf(Stylus pass) const;
+  [[nodiscard]] Recipe recipeOf(Flat what) const;
+  [[nodiscard]] vk::raii::Pipeline make(const Recipe& recipe) const;
+  [[nodiscard]] vk::Pipeline found(const Kind& kind) const;
 
   const Context& context_;
   vk::Format colour_;
@@ -83,13 +103,8 @@ class Pipelines {
   vk::raii::Sampler nearest_ = nullptr;
   vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
   vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;
-  std::map<SurfaceVariant, vk::raii::Pipeline> shades_;
-  std::map<Geometry, vk::raii::Pipeline> depths_;
-  std::map<std::pair<Paged, Holes>, vk::raii::Pipeline> walls_;
-  std::map<Lines, vk::raii::Pipeline> lines_;
-  std::map<Stylus, vk::raii::Pipeline> styli_;
-  vk::raii::Pipeline floor_ = nullptr, quads_ = nullptr;
-  std::size_t made_ = 0;
+  mutable std::mutex mutex_;  // of what follows; no pipeline is made under it
+  std::map<Kind, vk::raii::Pipeline> made_;
 };
 
 }  // namespace fettle::render

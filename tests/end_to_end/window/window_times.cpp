@@ -110,6 +110,8 @@ class Run {
       : hand_(display.name()), program_(arguments(scan, drawing), {}, ViewProgram::Watched::kNo) {
     if (!hand_.works()) throw std::runtime_error("the display has no XTEST extension");
     settle("the scan at rest");
+    // Nobody presses a key within a second of the first picture.
+    (void)program_.until("the rehearsal", [](const State& s) { return s.value("rehearsed", false); });
   }
 
   Row measure() {
