@@ -175,9 +175,10 @@ std::string biasWarning(const Report& fit, bool vertical) {
   constexpr double kOfError = 1.0 / 3.0;
   double most = kOfError;
   std::string text;
-  const auto look = [&](const std::string& name, const Report& bias, const Report& error, const char* unit) {
+  const auto look = [&](const std::string& name, const Report& bias, const Report& error, const char* unit,
+                        double along = 0.0) {
     if (bias.is_null() || error.is_null() || !(error.get<double>() > 0.0)) return;
-    const double by = bias.get<double>(), of_error = std::abs(by) / error.get<double>();
+    const double by = bias.get<double>() - along, of_error = std::abs(by) / error.get<double>();
     if (!(of_error > most)) return;
     most = of_error;
     const ReadAs as =
@@ -186,12 +187,19 @@ std::string biasWarning(const Report& fit, bool vertical) {
                        as.name.empty() ? "" : " ", as.name, of_error);
   };
   const std::string shape = fit["shape"].get<std::string>();
+  // Noise turns a direction either way, which on average makes its largest component smaller by half of the square of its error: a
+  // 1e-10 of an upright axis, whose error to first order is as small. That is a length of 1, no other direction.
+  double shorter = 0.0;
+  if (fit.contains("direction"))
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!fit["direction_bias"][k].is_null())
+        shorter += fit["direction_bias"][k].get<double>() * fit["direction"][k].get<double>();
   for (std::size_t k = 0; k < 3; ++k) {
     look(fmt::format("{} {}", pointTitle(shape), kAxes[k]), fit["point_bias_mm"][k], fit["point_error_mm"][k],
          "mm");
     if (fit.contains("direction"))
       look(fmt::format("{} {}", shape == "plane" ? "normal" : "axis", kAxes[k]), fit["direction_bias"][k],
-           fit["direction_error"][k], "");
+           fit["direction_error"][k], "", shorter * fit["direction"][k].get<double>());
   }
   for (const FitFigure& figure : kFitFigures)
     if (const std::string key = fmt::format("{}_bias_{}", figure.key, figure.unit); fit.contains(key))

@@ -117,6 +117,25 @@ TEST(FitCommand, WarnsOfWhatNoiseMovesOnAverage) {
   EXPECT_EQ(fettle(along).err.find("noise moves"), std::string::npos);
 }
 
+// An axis that is upright but for noise: its z is 1 less half of the square of how far it is turned, which is no motion of the axis.
+TEST(FitCommand, DoesNotWarnOfTheLengthOfAnAxis) {
+  const TempFolder folder;
+  const std::string scan = folder.file("cone.asc");
+  {
+    std::ofstream out(scan);
+    out << "ncols 81\nnrows 61\nxllcenter 0\nyllcenter 0\ncellsize 0.08\n";
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0.0, 0.003);
+    for (int i = 0; i < 81 * 61; ++i) {
+      const double x = 0.08 * (i % 81 - 40), y = 0.08 * (i / 81 - 30);
+      out << 0.6 * std::hypot(x, y) + noise(random) << (i % 81 == 80 ? '\n' : ' ');
+    }
+  }
+  const Outcome cone = fettle({"fit", scan, "--unit", "mm", "--shape", "cone"});
+  EXPECT_EQ(cone.status, 0);
+  EXPECT_EQ(cone.err.find("noise moves the axis"), std::string::npos) << cone.err;
+}
+
 TEST(FitCommand, SaysWhatItCannotDo) {
   const TempFolder folder;
   const std::string scan = folder.file("part.asc"), out = folder.file("o.csv");
