@@ -370,6 +370,17 @@ double SpatialParameters::layWithout(double share) const noexcept {
   return halfTurn(lay_less[k] + (place - static_cast<double>(k)) * turn);
 }
 
+double SpatialParameters::strWithout(double share) const noexcept {
+  double low = 0.0, at_low = 1.0;
+  for (std::size_t k = 0; k < kLowered.size(); ++k) {
+    if (share <= kLowered[k])
+      return str * (at_low + (str_lowered[k] - at_low) * (share - low) / (kLowered[k] - low));
+    low = kLowered[k];
+    at_low = str_lowered[k];
+  }
+  return str * at_low;
+}
+
 double correlationBytes(const Surface& surface) noexcept {
   const auto [width, height] = paddedSize(surface);
   return 16.0 * width * height + 4.0 * surface.width * surface.height;

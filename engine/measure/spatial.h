@@ -64,6 +64,8 @@ struct SpatialParameters {
   /// is that at a lower level. A jump between two of them is another direction, or another wave, that decays last.
   static constexpr std::array<double, 8> kLowered{0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
   std::array<double, kLowered.size()> str_lowered{};
+  /// Str were noise a share of the mean square, between these; that of the highest beyond it.
+  [[nodiscard]] double strWithout(double share) const noexcept;
   /// Std were k / kLayParts of the mean square noise that neighbours do not share: of the angular spectrum less what that has in each direction. NaN
   /// where nothing is left. A jump from one to the next is another peak, or another one beside it that counts with it, as long as noise lifts both.
   static constexpr int kLayParts = 32;

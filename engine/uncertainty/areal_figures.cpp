@@ -62,16 +62,37 @@ constexpr double kOtherHills = 0.15;
 // Of what Str would be without noise, over what it is: beyond this another direction, or another wave, decays last.
 constexpr double kOtherDecay = 0.1;
 
+// Standard deviation of what noise scatters the autocorrelation by, as a share of the level of decay: the mean of noise times heights a lag
+// away on both sides, 2 noise / (Sq sqrt(samples)) at most, over 0.2.
+double decayScatter(const NoiseModel& noise, const ArealParameters& measured) noexcept {
+  constexpr double kLevel = 0.2;
+  return 2.0 * noise.sigma / (kLevel * measured.sq * std::sqrt(static_cast<double>(measured.samples)));
+}
+
 // Whether noise decides Str: where a level of decay that is lower by as much as noise lowers the autocorrelation, and by three standard deviations
 // of what it scatters that, is reached elsewhere. Trials do not see it, since more noise does not lead back.
 bool noiseDecidesDecay(const NoiseModel& noise, const ArealParameters& measured) noexcept {
   const double share = noise.sigma * noise.sigma / (measured.sq * measured.sq);
-  const double lowered = share + 6.0 * std::sqrt(share / static_cast<double>(measured.samples));
+  const double lowered = share + 3.0 * decayScatter(noise, measured);
   for (std::size_t k = 0; k < SpatialParameters::kLowered.size(); ++k) {
     if (!(std::abs(measured.spatial.str_lowered[k] - 1.0) <= kOtherDecay)) return true;
     if (SpatialParameters::kLowered[k] >= lowered) return false;
   }
   return false;
+}
+
+// Where the autocorrelation falls slowly around its level a few trials say by chance little or much of what noise moves and scatters Str by, and
+// where it bends not where Str comes from. Both follow from Str at lower levels, too: the error is no less than what a standard deviation of the
+// autocorrelation's scatter moves it by, and has in it by how much both ways differ.
+void addDecayDoubt(NoiseEffect& aspect, double heights_without, const NoiseModel& noise,
+                   const ArealParameters& measured) {
+  const SpatialParameters& spatial = measured.spatial;
+  const double scattered = std::abs(spatial.strWithout(decayScatter(noise, measured)) - spatial.str);
+  aspect.error = std::max(aspect.error, scattered);
+  // Of what rows have in common not all is missing at a lag.
+  const double left = heights_without / measured.sq,
+               share = std::isnan(left) ? 0.0 : (1.0 - left * left) * noise.uncorrelatedShare();
+  aspect.error = std::hypot(aspect.error, spatial.strWithout(share) - aspect.without);
 }
 
 // What lines share has all of its power in one direction, which a trial with as much of it again leaves as it is. Whether it decides the
@@ -189,6 +210,8 @@ void addDominanceDoubt(std::span<NoiseEffect> effects, const NoiseModel& noise,
   if (!std::isnan(aspect.without) && noiseDecidesDecay(noise, measured))
     aspect = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
               "noise decides which direction decays last"};
+  if (!std::isnan(aspect.without))
+    addDecayDoubt(aspect, effects[indexOfFigure("sq")].without, noise, measured);
   // Five highest peaks of hills that noise made are others' (0.6 of S5p is left on steps), and extremes say not how many.
   if (share < kOtherHills) return;
   const auto hillsChange = [&](std::string_view density) {

@@ -198,11 +198,66 @@ TEST(ArealNoise, MeansOfFiveExtremesUnderLoudNoise) {
 // do not lead back, so that it was stated as 0.45 with an error of a hundredth.
 TEST(ArealNoise, StrIsNotStatedWhereNoiseDecidesWhichDirectionDecaysLast) {
   const auto str = static_cast<std::size_t>(&arealFigure("str") - arealFigures().data());
+  // Of 20 scans one was stated, 62 errors off, while what noise scatters the autocorrelation was not taken over its level.
+  EXPECT_EQ(coverageOf(kSurfaces[3].heights(), 0.1, 20, 2, 1000)[str].stated, 0);
   const int seeds = 2;
-  EXPECT_EQ(coverageOf(kSurfaces[3].heights(), 0.1, seeds, 2, 1000)[str].stated, 0);
   const Coverage lay = coverageOf(kSurfaces[1].heights(), 0.1, seeds, 2, 1000)[str];
   EXPECT_EQ(lay.stated, seeds);
   EXPECT_EQ(lay.within[2], seeds);
+}
+
+// Str alone, which is quick, of all surfaces: by as few trials as a million samples have. Two roughnesses, whose autocorrelation falls slowly around
+// 0.2, had errors of 0.45 of what Str was off with noise of 0.3, where trials led away from it.
+TEST(ArealNoise, StrOfAllSurfacesIsCovered) {
+  const auto str = static_cast<std::size_t>(&arealFigure("str") - arealFigures().data());
+  const auto spatialOf = [](const Version& field, TrialNoise) {
+    JobControl job;
+    const auto fit = fitForm(field, {}, job);
+    return measureAreal(field, fit->form, {.hybrid = false, .functional = false, .feature = false}, job);
+  };
+  const int seeds = seedsOf(6);
+  for (const double sigma : {0.02, 0.1, 0.3}) {
+    Coverage together;
+    for (const std::span<const KnownSurface> all :
+         {std::span<const KnownSurface>(kSurfaces), std::span<const KnownSurface>(kOtherSurfaces)})
+      for (const KnownSurface& surface : all) {
+        const std::vector<double> truth = surface.heights();
+        const double known = spatialOf(fieldOf(truth), TrialNoise::kOwn)->spatial.str;
+        Coverage of;
+        for (int s = 0; s < seeds; ++s) {
+          std::mt19937_64 random(120000 + static_cast<std::uint64_t>(s));
+          std::normal_distribution<double> normal(0.0, sigma);
+          std::vector<double> noisy = truth;
+          for (double& z : noisy) z += normal(random);
+          const Version field = fieldOf(noisy);
+          JobControl job;
+          const auto model = measureNoise(field, job);
+          const ArealParameters measured = *spatialOf(field, TrialNoise::kOwn);
+          const auto effects =
+              arealEffects(field, *model, measured, spatialOf,
+                           {.pairs = 2, .seed = 77 + 1000 * static_cast<std::uint64_t>(s)}, job);
+          const NoiseEffect& e = (*effects)[str];
+          if (std::isnan(e.error) || std::isnan(known)) continue;
+          const double off = e.without - known;
+          ++of.stated;
+          for (int k = 0; k < 3; ++k) of.within[k] += std::abs(off) <= (k + 1) * e.error ? 1 : 0;
+          of.off += off * off;
+          of.errors += e.error * e.error;
+        }
+        if (of.stated == 0) continue;
+        const double ratio = std::sqrt(of.errors / of.off);
+        fmt::print("{}, noise {}: {} stated, within {} {} {}, error over off {:.2f}\n", surface.name, sigma,
+                   of.stated, of.within[0], of.within[1], of.within[2], ratio);
+        EXPECT_GT(ratio, 0.6) << surface.name << ' ' << sigma;
+        together.stated += of.stated;
+        for (int k = 0; k < 3; ++k) together.within[k] += of.within[k];
+      }
+    fmt::print("noise {}: {} {} {} of {}\n", sigma, together.within[0], together.within[1],
+               together.within[2], together.stated);
+    EXPECT_GE(together.within[0], 0.55 * together.stated);
+    EXPECT_GE(together.within[1], 0.86 * together.stated);
+    EXPECT_GE(together.within[2], 0.94 * together.stated);
+  }
 }
 
 // Rows that are off have their power in one direction, which is no lay, and waves along it: Std and Ssw are not stated where they may decide them,
