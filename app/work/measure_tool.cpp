@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,7 +12,10 @@
 #include "engine/marks/change_marks.h"
 #include "engine/marks/polygon.h"
 #include "engine/measure/areal.h"
+#include "engine/measure/form.h"
 #include "engine/measure/form_fit.h"
+#include "engine/measure/only_region.h"
+#include "engine/measure/scale_filter.h"
 #include "engine/uncertainty/areal_figures.h"
 
 namespace fettle::app {
@@ -81,24 +85,78 @@ engine::Status checkRatios(const MeasureTool::Options& options) {
   return check(options.from, options.to);
 }
 
+engine::Status checkScales(const MeasureTool::Options& options) {
+  if (!options.scales || options.l_mm == 0.0 || options.l_mm > options.s_mm) return {};
+  return engine::inputError("the L-filter leaves nothing of what the S-filter left", "",
+                            "give it the longer one");
+}
+
+engine::Result<engine::Version> wavesOf(const engine::Version& field, double length_mm, engine::Waves waves,
+                                        engine::JobControl& job, const engine::NominalForm* about = nullptr) {
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kArealGaussian;
+  spec.nesting_mm = length_mm;
+  return engine::scaleFiltered(field, spec, waves, job, nullptr, about);
+}
+
+// What is measured: the field, or its S-F or S-L surface, and the form about which.
+struct MeasuredSurface {
+  engine::Version field;
+  engine::NominalForm form;
+  int numbers;  // of the form, FittedForm::numbers
+};
+
+// As `fettle measure` with --s-filter and --l-filter.
+engine::Result<MeasuredSurface> limitedSurface(engine::Version field, const MeasureTool::Options& options,
+                                               engine::JobControl& job) {
+  const engine::Region region = regionOf(options.where);
+  const double s_mm = options.scales ? options.s_mm : 0.0, l_mm = options.scales ? options.l_mm : 0.0;
+  const engine::FormInfo& info =
+      *std::ranges::find(engine::formInfos(), options.degree, &engine::FormInfo::degree);
+  const engine::FormChoice choice{.kind = info.kind, .region = region, .robust = options.robust};
+  if (s_mm > 0.0 || l_mm > 0.0) {
+    // What does not count is as good as a hole for filters, too.
+    auto counted = engine::onlyRegion(field, field, region, job);
+    if (!counted) return tl::unexpected(counted.error());
+    field = *std::move(counted);
+  }
+  if (s_mm > 0.0) {
+    // About a bent form: the ends of a bow would be bent up by what it is filtered with.
+    std::optional<engine::FittedForm> bow;
+    if (options.degree > 1) {
+      auto fitted = engine::fitNominalForm(field, choice, job);
+      if (fitted) bow = *std::move(fitted);
+    }
+    auto smooth = wavesOf(field, s_mm, engine::Waves::kLong, job, bow ? &bow->form : nullptr);
+    if (!smooth) return tl::unexpected(smooth.error());
+    field = *std::move(smooth);
+  }
+  auto fit = engine::fitNominalForm(field, choice, job);
+  if (!fit) return tl::unexpected(fit.error());
+  if (l_mm == 0.0) return MeasuredSurface{std::move(field), std::move(fit->form), fit->numbers};
+  const auto rest = engine::withoutForm(field, fit->form, job);
+  if (!rest) return tl::unexpected(rest.error());
+  auto rough = wavesOf(*rest, l_mm, engine::Waves::kShort, job);
+  if (!rough) return tl::unexpected(rough.error());
+  return MeasuredSurface{*std::move(rough),
+                         engine::PolynomialForm{0, fit->form.width(), fit->form.height(), 0.0, {0.0}},
+                         fit->numbers};
+}
+
 engine::Result<engine::ArealParameters> parametersOf(const engine::Version& field,
                                                      const MeasureTool::Options& options, Curves curves,
                                                      engine::TrialNoise noise, engine::JobControl& job) {
-  const engine::Region region = regionOf(options.where);
-  const engine::FormInfo& form =
-      *std::ranges::find(engine::formInfos(), options.degree, &engine::FormInfo::degree);
-  const auto fit =
-      engine::fitNominalForm(field, {.kind = form.kind, .region = region, .robust = options.robust}, job);
-  if (!fit) return tl::unexpected(fit.error());
+  const auto surface = limitedSurface(field, options, job);
+  if (!surface) return tl::unexpected(surface.error());
   engine::ArealOptions areal;
-  areal.region = region;
-  areal.fitted = fit->numbers;
+  areal.region = regionOf(options.where);
+  areal.fitted = surface->numbers;
   if (curves == Curves::kWith) {
     areal.at_ratios = curveRatios();
     areal.analysis = true;
   }
   choose(choiceOf(options), areal);
-  return engine::measureAreal(field, fit->form, engine::optionsOf(areal, noise), job);
+  return engine::measureAreal(surface->field, surface->form, engine::optionsOf(areal, noise), job);
 }
 
 struct MeasuredState {
@@ -145,6 +203,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     work.figures.before = engine::measureChange(scan, field).tiles > 0;
     engine::Version after = field, before = scan;
     if (auto status = checkRatios(what); !status) return tl::unexpected(status.error());
+    if (auto status = checkScales(what); !status) return tl::unexpected(status.error());
     if (what.where == Where::kVisible) {
       if (seen.columns <= 0 || seen.rows <= 0)
         return engine::inputError("nothing of the field is visible", "", "move the view to it");

@@ -22,8 +22,11 @@ class MeasureTool {
     Where where = Where::kAll;
     int degree = 1;  ///< of the form that is taken out
     bool robust = false;
-    bool noise = false;                 ///< figures without noise, by 16 trials
-    bool own = false;                   ///< the next ones count, else they are the usual ones
+    bool noise = false;   ///< figures without noise, by 16 trials
+    bool scales = false;  ///< the next two count; else no filter does
+    double s_mm = 0.0;    ///< of the S-filter before the form, an areal Gaussian; 0: none
+    double l_mm = 0.0;    ///< of the L-filter after the form, what it leaves is taken away; 0: none
+    bool own = false;     ///< the next ones count, else they are the usual ones
     double peaks = 10.0, dales = 80.0;  ///< material ratios where peaks end and dales begin [%]
     double prune = 5.0;                 ///< hills and dales that are lower are no features [% of Sz]
     bool between = false;               ///< also Sdc, of the next two

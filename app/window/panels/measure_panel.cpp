@@ -39,6 +39,17 @@ void ratioFields(MeasureTool::Options& options) {
   ImGui::EndDisabled();
 }
 
+// `unit`: of a lateral length in millimetres.
+void scaleFields(MeasureTool::Options& options, const render::ShownUnit& unit) {
+  constexpr double kLongest = 1e9;  // mm
+  beginFields();
+  (void)field("S-filter", "Waves shorter than this are taken out first, by an areal Gaussian (ISO 16610-61).",
+              [&] { return typeLength("##s-filter", options.s_mm, 0.0, kLongest, unit, "none"); });
+  (void)field("L-filter", "Waves longer than this are taken out after the form, by the same.",
+              [&] { return typeLength("##l-filter", options.l_mm, 0.0, kLongest, unit, "none"); });
+  endFields();
+}
+
 void measureFields(MeasureTool::Options& options) {
   using Where = MeasureTool::Where;
   beginFields();
@@ -58,6 +69,17 @@ void measureFields(MeasureTool::Options& options) {
           "Samples far from the form do not pull it; they count in the figures all the same.");
   tickBox("without noise, with errors", options.noise,
           "Below each figure a paler one: without the noise of the scan, +- its standard error.");
+  tickBox("S- and L-filter", options.scales,
+          "Parameters of the S-F or the S-L surface (ISO 25178-3): without noise and small detail, without "
+          "waviness.");
+}
+
+// "; S-L surface", unless it is the surface about the form alone.
+std::string surfaceText(const MeasureTool::Options& options) {
+  if (!options.scales || (options.s_mm == 0.0 && options.l_mm == 0.0)) return {};
+  return std::string("; ") + (options.l_mm == 0.0   ? tr("S-F surface")
+                              : options.s_mm == 0.0 ? tr("after the L-filter")
+                                                    : tr("S-L surface"));
 }
 
 void cell(const std::string& text) {
@@ -135,8 +157,9 @@ void caption(MeasureTool& measure) {
   if (measure.busy()) {
     if (cancelledBar(measure.progress(), "measuring", "Cancel##measure")) measure.cancel();
   } else if (const auto* figures = measure.figures()) {
-    writeWrapped(trFormat("ISO 25178-2, {} samples{}", figures->samples,
-                          measure.outdated() ? tr("; the field has changed since") : ""));
+    writeWrapped(trFormat(
+        "ISO 25178-2, {} samples{}", figures->samples,
+        surfaceText(figures->options) + (measure.outdated() ? tr("; the field has changed since") : "")));
     // Both kinds of figures are of one noise model, and a filtered field has next to no finest detail.
     if (figures->options.noise && figures->before && !measure.outdated())
       writeIn(render::PanelColour::kMuted, "errors know no noise that filters spread");
@@ -261,6 +284,9 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   tickBox(
       "own ratios", measure.options.own,
       "Other material ratios than 10 and 80 %, Sdc between two of them, other features than of 5 % of Sz.");
+  if (measure.options.scales)
+    scaleFields(measure.options,
+                render::ofMillimetres(context.units.length, context.client.field().grid().lateral_unit.mm));
   if (measure.options.own) ratioFields(measure.options);
   caption(measure);
   if (measure.asked() == nullptr) return;

@@ -9,6 +9,7 @@
 
 #include "engine/measure/areal.h"
 #include "engine/measure/form.h"
+#include "engine/measure/scale_filter.h"
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
 
@@ -35,6 +36,55 @@ std::string skewnessOf(const engine::Version& field) {
   const auto measured = engine::measureAreal(field, fit->form, height, job);
   EXPECT_TRUE(measured);
   return fmt::format("{:.5g}", measured->ssk);
+}
+
+// The skewness of the S-L surface of `field`.
+std::string skewnessBetween(const engine::Version& field, double s_mm, double l_mm) {
+  engine::JobControl job;
+  const auto filtered = [&](const engine::Version& of, double length, engine::Waves waves) {
+    engine::FilterSpec spec;
+    spec.kind = engine::FilterKind::kArealGaussian;
+    spec.nesting_mm = length;
+    return *engine::scaleFiltered(of, spec, waves, job);
+  };
+  const engine::Version smooth = filtered(field, s_mm, engine::Waves::kLong);
+  const auto fit = engine::fitForm(smooth, {}, job);
+  EXPECT_TRUE(fit);
+  const engine::Version rough =
+      filtered(*engine::withoutForm(smooth, fit->form, job), l_mm, engine::Waves::kShort);
+  engine::ArealOptions height;
+  height.hybrid = height.functional = height.spatial = height.feature = false;
+  const engine::PolynomialForm level{0, rough.grid().width, rough.grid().height, 0.0, {0.0}};
+  const auto measured = engine::measureAreal(rough, level, height, job);
+  EXPECT_TRUE(measured);
+  return fmt::format("{:.5g}", measured->ssk);
+}
+
+TEST_F(WindowTest, parameters_are_measured_of_the_s_l_surface) {
+  openPanel(folder, "Measure");
+  const auto program = start({scan});
+  User user(display, *program, "measure-scales");
+  (void)opened(*program);
+  const State all = user.click("Measure now");
+  EXPECT_EQ(all["parameters"]["Ssk"], State::array({skewnessOf(load(scan))}));
+  (void)user.click("S- and L-filter");
+  EXPECT_EQ(user.click("Measure now")["parameters"]["Ssk"], all["parameters"]["Ssk"])
+      << "no length is typed yet";
+  (void)user.enter("S-filter", "1 mm");
+  (void)user.enter("L-filter", "10 mm");
+  const State between = user.click("Measure now");
+  EXPECT_EQ(between["parameters"]["Ssk"], State::array({skewnessBetween(load(scan), 1.0, 10.0)}));
+  EXPECT_TRUE(user.reads("S-L surface"));
+  user.at({20, 790});
+  (void)user.look("S-L surface");
+  // A longer S-filter leaves nothing: said, and what was measured stays.
+  (void)user.enter("S-filter", "12 mm");
+  const State none = user.click("Measure now");
+  EXPECT_EQ(none["notices"].size(), 1U);
+  EXPECT_EQ(none["parameters"], between["parameters"]);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
 }
 
 TEST_F(WindowTest, parameters_are_measured_of_what_is_chosen_before_and_after) {

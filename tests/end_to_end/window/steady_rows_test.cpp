@@ -140,7 +140,7 @@ TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
 // The table of all parameters and what is below it.
 class SteadyFigures : public SteadyRows {
  protected:
-  SteadyFigures() : SteadyRows(1550) {}
+  SteadyFigures() : SteadyRows(1580) {}
 };
 
 // By a click on the button the table takes its place; nothing moves when the figures come, grow old or are measured again.
