@@ -147,6 +147,14 @@ class Table {
   // `own` is Gwyddion's definition worked out here, NaN where it is Fettle's.
   void row(const char* parameter, double fettle, double gwyddion,
            double own = std::numeric_limits<double>::quiet_NaN()) {
+    if (std::isnan(fettle)) {
+      // As Rsk of a profile that is flat, for which Gwyddion has 0.
+      fmt::print("| {} | {} | not stated | {:.9g} | | |\n", scan_, parameter, gwyddion);
+      if (gwyddion == 0.0 || std::isnan(gwyddion)) return;
+      fmt::print(stderr, "{}: {} is not stated\n", scan_, parameter);
+      failed_ = true;
+      return;
+    }
     const auto relative = [&](double value) {
       const double size = std::max(std::abs(value), std::abs(gwyddion));
       return size > 0.0 ? (value - gwyddion) / size : 0.0;
