@@ -35,6 +35,11 @@ glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
   return placeAt(reader.grid(), at, heightAbove(reader, at).value_or(0.0));
 }
 
+std::optional<glm::dvec3> aboveSamples(const engine::FieldReader& reader, glm::dvec2 at) {
+  const std::optional<double> height_mm = heightAbove(reader, at);
+  return height_mm ? std::optional(placeAt(reader.grid(), at, *height_mm)) : std::nullopt;
+}
+
 void addMeaning(const render::LineMeaning& meaning, std::vector<render::LineMeaning>& meanings) {
   if (std::ranges::find(meanings, meaning) == meanings.end()) meanings.push_back(meaning);
 }

@@ -16,6 +16,8 @@ namespace fettle::app {
 /// A position [samples] on the highest of the samples around it, in field coordinates [mm]: what is drawn there is
 /// not hidden by the surface's own noise. Positions outside take the height of the border, holes 0.
 [[nodiscard]] glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at);
+/// The same, but nothing over a hole: what is drawn at height 0 there is far from a surface whose heights are not about 0.
+[[nodiscard]] std::optional<glm::dvec3> aboveSamples(const engine::FieldReader& reader, glm::dvec2 at);
 
 /// The edge lines of a field in the picture: thin lines over a band of twice their standard deviation to either side;
 /// steps, creases, what is not located and the chosen line each in a colour. They lie on the upper side of the surface

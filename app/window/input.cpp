@@ -92,7 +92,12 @@ void Input::disarmAtOnce(const InputEvent& event, Parts& parts) {
     if (actionOf(before.event.key, before.event.modifiers) == Action::kArm) before.event.key = Key::kNone;
 }
 
-void Input::add(const InputEvent& event, Parts& parts) {
+void Input::add(const InputEvent& happened, Parts& parts) {
+  InputEvent event = happened;
+  // The second press of a double click on an entry of a menu that lay over the picture.
+  event.panels_mouse =
+      event.panels_mouse || (event.kind == InputKind::kButtonDown &&
+                             parts.list_press.repeats(event.x, event.y, ListPress::Clock::now()));
   const bool at_once = std::none_of(queue_.begin(), queue_.end(), [](const Pending& pending) {
     return pending.event.kind == InputKind::kKeyDown;
   });

@@ -26,7 +26,7 @@ class Input {
   };
 
   /// Called immediately, also while the device draws.
-  void add(const render::InputEvent& event, Parts& parts);
+  void add(const render::InputEvent& happened, Parts& parts);
   /// Smoothing lowers the surface under a cursor at rest: the stylus follows it.
   void followSurface(Parts& parts) const;
   /// The next event that can be handled: none while the answer to a dialog waits for the frame that executes

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -36,6 +37,15 @@ constexpr glm::vec3 kPointRim{0.02F, 0.02F, 0.02F};
 render::LineMeaning inWords(render::LineMeaning meaning) {
   meaning.name = tr(meaning.name);
   return meaning;
+}
+
+// From one position to another, unless one of them is over a hole.
+void addBetween(const std::optional<glm::dvec3>& from_mm, const std::optional<glm::dvec3>& to_mm,
+                render::OverlayLine piece, std::vector<render::OverlayLine>& pieces) {
+  if (!from_mm || !to_mm) return;
+  piece.from_mm = *from_mm;
+  piece.to_mm = *to_mm;
+  pieces.push_back(piece);
 }
 
 const render::LineMeaning& meaningOfPlace(State state, bool present) {
@@ -123,11 +133,9 @@ void appendStepArea(const engine::Version& field, const engine::SampleRect& chan
   for (std::size_t side = 0; side < corners.size(); ++side)
     for (int i = 0; i < kPieces; ++i) {
       const auto at = [&](int k) {
-        return aboveSurface(reader, glm::mix(corners[side], corners[(side + 1) % 4], k / double(kPieces)));
+        return aboveSamples(reader, glm::mix(corners[side], corners[(side + 1) % 4], k / double(kPieces)));
       };
-      piece.from_mm = at(i);
-      piece.to_mm = at(i + 1);
-      overlays.lines.push_back(piece);
+      addBetween(at(i), at(i + 1), piece, overlays.lines);
     }
 }
 
@@ -181,15 +189,11 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
   const double wanted = mm_per_pixel_ > 0.0 ? section.lengthMm() / (3.0 * mm_per_pixel_) : 1.0;
   const int count = static_cast<int>(std::clamp(wanted, 1.0, kMostPieces));
   const auto at = [&](int i) {
-    return aboveSurface(reader, (section.from + (section.to - section.from) * (i / double(count))) / spacing);
+    return aboveSamples(reader, (section.from + (section.to - section.from) * (i / double(count))) / spacing);
   };
   render::OverlayLine piece;
   const auto draw = [&] {
-    for (int i = 0; i < count; ++i) {
-      piece.from_mm = at(i);
-      piece.to_mm = at(i + 1);
-      pieces_.push_back(piece);
-    }
+    for (int i = 0; i < count; ++i) addBetween(at(i), at(i + 1), piece, pieces_);
   };
   // What the surface hides of it is still seen faintly; the rest is on a light rim, for dark colours.
   piece.colour = kSectionMeaning.colour;
@@ -211,8 +215,15 @@ void SectionOverlay::addSection(const engine::FieldReader& reader, const glm::dv
   if (!chosen) return;
   piece.depth = render::OverlayLine::Depth::kOnTop;
   piece.width_px = 9.0F;
+  // An end over a hole is at the height where the line goes on.
+  const auto height = [&](int end, int step) {
+    for (int i = end; i >= 0 && i <= count; i += step)
+      if (const auto there = at(i)) return there->z;
+    return 0.0;
+  };
   for (const int end : {0, count}) {
-    piece.from_mm = piece.to_mm = at(end);
+    const glm::dvec2 there_mm = end == 0 ? section.from : section.to;
+    piece.from_mm = piece.to_mm = glm::dvec3(there_mm, height(end, end == 0 ? 1 : -1));
     pieces_.push_back(piece);
   }
 }

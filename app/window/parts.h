@@ -14,6 +14,7 @@
 #include "app/window/drags.h"
 #include "app/window/files.h"
 #include "app/window/flight.h"
+#include "app/window/list_press.h"
 #include "app/window/marking.h"
 #include "app/window/notice_room.h"
 #include "app/window/opening.h"
@@ -65,6 +66,7 @@ struct Parts {
   RecentFiles recent;
   Feedback feedback;
   NoticeRoom notice_room;
+  ListPress list_press;
   Files files;
   ScanOptions usual_reading;  ///< as the command line says, of every scan that nothing else was said of
   ScanOptions reading;        ///< of the open scan

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <imgui.h>
+#include <imgui_internal.h>  // the window under the cursor
 
 #include "app/window/panels/panels.h"
 
@@ -56,10 +57,25 @@ void noticesAlone(Parts& parts, const Act& act, float bar) {
               ImVec2(width, height), NoticesLie::kOverTheRest);
 }
 
+// Takes the second press of a double click on an entry from what the list covered: the first one closed it.
+void leaveSecondPress(ListPress& press) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (!io.MouseClicked[ImGuiMouseButton_Left]) return;
+  const ImGuiWindow* const under = ImGui::GetCurrentContext()->HoveredWindow;
+  const int kind =
+      under == nullptr ? 0 : under->RootWindow->Flags & (ImGuiWindowFlags_Popup | ImGuiWindowFlags_Modal);
+  if (!press.press(io.MousePos.x, io.MousePos.y, kind == ImGuiWindowFlags_Popup, ListPress::Clock::now()))
+    return;
+  io.MouseClicked[ImGuiMouseButton_Left] = false;
+  io.MouseDoubleClicked[ImGuiMouseButton_Left] = false;
+  io.MouseClickedCount[ImGuiMouseButton_Left] = 0;
+}
+
 }  // namespace
 
 PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
+  leaveSecondPress(parts.list_press);
   usePanelTheme(parts.settings.panels_theme);
   const std::optional<std::int64_t> pointed_before = std::exchange(parts.pointed_step, std::nullopt);
   const Act act = [&parts](Action action) { carryOut(action, parts); };
