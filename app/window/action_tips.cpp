@@ -34,6 +34,7 @@ constexpr Tip kTips[] = {
     {Action::kFilterSuggest,
      "Tries filters on surfaces as this scan has, with noise like its own, and lists the best with what they "
      "leave of the error, why, and their time. Takes some ten seconds and changes nothing."},
+    {Action::kExport, "As GeoTIFF, STL mesh and more, by the ending of the name."},
     {Action::kExportSections,
      "All of them, or the chosen one: as a table, a drawing, a picture or polylines, by the ending of the "
      "name."},

@@ -71,7 +71,7 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
     if (count > 0) text += fmt::format("; {} {}", count, why);
   };
   if (const std::int64_t left = filled.holes - filled.filled_holes; left > 0)
-    text += trFormat("; {} of {} samples are left", left, holes);
+    text += trFormat("; {} holes of {} samples in all are left", left, holes);
   stay(filled.larger, tr("are larger"));
   stay(filled.at_border, tr("reach the border"));
   stay(filled.too_many, tr("have too many samples"));

@@ -51,8 +51,8 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
     ImGui::TextDisabled("%s", when_empty);
     return;
   }
-  const std::string low = fmt::format("-{}", render::shortNumber(histogram.reach * unit.per_unit)),
-                    high = fmt::format("+{}", lengthText(histogram.reach, unit, 3));
+  const std::string reach = lengthText(histogram.reach, unit, 3), high = "+" + reach,
+                    low = "-" + reach.substr(0, reach.find(' '));
   ImGui::TextDisabled("%s", low.c_str());
   ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 0.5F * width - 0.5F * ImGui::CalcTextSize("0").x);
   ImGui::TextDisabled("0");

@@ -154,9 +154,52 @@ bool filtersAbout(const std::string& sought) {
     if (lower(fmt::format("{} {}", title, says)).find(sought) == std::string::npos) continue;
     if (!std::exchange(found, true)) {
       ImGui::Separator();
-      ImGui::TextUnformatted(tr("Filters, in the list of the panel Filter"));
+      ImGui::TextUnformatted(tr("Filters, in the list of the panel Filters"));
     }
     writeWrapped(fmt::format("  {}: {}", title, says));
+  }
+  return found;
+}
+
+// What the panels at the right are for, in the words of those who look for it.
+struct PanelUse {
+  const char* name;
+  const char* says;
+};
+constexpr PanelUse kPanelUses[] = {
+    {textOf("Remove samples"), textOf("heights below or above a limit, or marked ones, become holes")},
+    {textOf("Holes and lines"), textOf("holes are filled; stripes of a line scanner are levelled")},
+    {textOf("Form"), textOf("tilt, bend, a plane, sphere or cylinder is taken out")},
+    {textOf("Steps"), textOf("everything that was done, to go back to and forward")},
+    {textOf("Change since the scan"),
+     textOf("how far heights differ from the scan: largest, rms, histogram")},
+    {textOf("Measure"), textOf("roughness and texture of the surface: Sa, Sq, Sz and more, by ISO 25178")},
+    {textOf("Section"),
+     textOf(
+         "profile along a line: step height, depth and width of a groove, angle, radius, roughness Ra, Rq, "
+         "Rz")},
+    {textOf("Fit"), textOf("radius, place and direction of a plane, sphere, cylinder, cone or torus")},
+    {textOf("Features"), textOf("hills or dales: how many, how high and wide")},
+    {textOf("Transform"), textOf("crop, mirror, rotate, other spacing (resample)")},
+    {textOf("Join"), textOf("scans that overlap become one (stitching, mosaic)")},
+    {textOf("Compare"),
+     textOf("deviation from another scan or from a nominal mesh (STL, CAD), with a tolerance")},
+    {textOf("Colours"), textOf("range and colour map of heights, tolerance, contour lines")},
+    {textOf("Display"), textOf("light or dark theme, size of text, light, heights exaggerated, mouse")},
+    {textOf("Haptics"), textOf("device, stiffness, force, tip and effects of the touch")},
+};
+
+// The panels that the search is about; whether there is any.
+bool panelsAbout(const std::string& sought) {
+  bool found = false;
+  for (const PanelUse& panel : kPanelUses) {
+    const std::string line = fmt::format("{}: {}", tr(panel.name), tr(panel.says));
+    if (lower(line).find(sought) == std::string::npos) continue;
+    if (!std::exchange(found, true)) {
+      ImGui::Separator();
+      ImGui::TextUnformatted(tr("Panels, at the right"));
+    }
+    writeWrapped("  " + line);
   }
   return found;
 }
@@ -167,7 +210,9 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
   ImGui::InputTextWithHint("##sought", tr("search: a word, or a key"), &question.sought);
   ImGui::SameLine();
   const bool left = dialogButton("Close (Esc)", questions, Key::kEscape);
-  const std::string sought = lower(question.sought);
+  std::string sought = lower(question.sought);
+  if (sought.size() > 3 && sought.back() == 's' && sought[sought.size() - 2] != 's')
+    sought.pop_back();  // "units" are there as "unit"
   if (sought.empty()) howToClean();
   std::string_view section;
   for (const ActionRow& row : actions()) {
@@ -190,8 +235,8 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
     writeWrapped(std::string(tr(row.name)));
   }
   if (!sought.empty()) {
-    const bool filter = filtersAbout(sought);
-    if (section.empty() && !filter)
+    const bool filter = filtersAbout(sought), panel = panelsAbout(sought);
+    if (section.empty() && !filter && !panel)
       writeWrapped("Nothing is found: try another word, or empty the field for the whole list.");
     return left ? std::optional(Choice::kBack) : std::nullopt;
   }

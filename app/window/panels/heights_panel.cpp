@@ -57,7 +57,7 @@ void linesFields(engine::LineOptions& lines) {
   for (int i = 0; i < static_cast<int>(std::size(kRows)); ++i)
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
   beginFields();
-  (void)field("by", kRows[chosen].says, [&] {
+  (void)field("lines by", kRows[chosen].says, [&] {
     if (!ImGui::BeginCombo("##lines by", tr(kRows[chosen].name))) return false;
     for (const Row& row : kRows) {
       if (ImGui::Selectable(labelOf(row.name), &row == &kRows[chosen])) {

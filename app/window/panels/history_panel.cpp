@@ -40,8 +40,11 @@ void historyPanel(const PanelContext& context, MarkEdit& edit, std::optional<std
     if (history.number() == 0 && history.last() > 0) saysWhatGoes();
     for (std::int64_t i = history.first() + 1; i <= history.last(); ++i) {
       const engine::StepInfo& info = history.info(i);
-      const std::string text = fmt::format("{}  {}   {}###step {}", i, tr(std::string_view(info.name)),
-                                           bytesText(static_cast<double>(info.bytes)), i);
+      // A name that fills the row has it alone: a size cut in the middle reads as another one.
+      const std::string name = fmt::format("{}  {}", i, tr(std::string_view(info.name))),
+                        sized = fmt::format("{}   {}", name, bytesText(static_cast<double>(info.bytes)));
+      const bool fits = ImGui::CalcTextSize(sized.c_str()).x <= ImGui::GetContentRegionAvail().x;
+      const std::string text = fmt::format("{}###step {}", fits ? sized : name, i);
       if (i > history.number()) ImGui::PushStyleColor(ImGuiCol_Text, colourOf(render::PanelColour::kMuted));
       if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
       if (i == history.number()) scrollTo(i, ImGui::GetID("present"));

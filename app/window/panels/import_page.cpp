@@ -191,6 +191,29 @@ void found(const ThumbnailShelf::Shown& shown, const Files& files) {
   ImGui::PopTextWrapPos();
 }
 
+// How large picture and fields, and what was found below them, are: smaller than kPicture and its fellows where large letters
+// or a small window leave less, so that the buttons stay on the screen.
+struct PageSizes {
+  ImVec2 picture, fields;
+  float found = 0.0F;
+};
+
+PageSizes pageSizes(float scale, bool with_reason) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float wide = ImGui::GetContentRegionAvail().x;
+  // Title, name of the file, what the cursor is on, buttons, and the edges of all.
+  const float rows = 4.0F * ImGui::GetFrameHeightWithSpacing() + 4.0F * style.WindowPadding.y +
+                     (with_reason ? ImGui::GetTextLineHeightWithSpacing() : 0.0F);
+  const float high = std::max(ImGui::GetIO().DisplaySize.y - rows, 8.0F * ImGui::GetFrameHeight());
+  PageSizes sizes;
+  sizes.picture.x = std::min(kPicture * scale, 0.45F * wide);
+  sizes.picture.y = std::min(0.75F * kPicture * scale, 0.57F * high);
+  sizes.fields =
+      ImVec2(std::min(kFieldsWidth * scale, wide - sizes.picture.x - style.ItemSpacing.x), sizes.picture.y);
+  sizes.found = std::min(kFoundHeight * scale, high - sizes.picture.y - 2.0F * style.ItemSpacing.y);
+  return sizes;
+}
+
 }  // namespace
 
 std::optional<Choice> importPage(Question& question, Parts& parts) {
@@ -207,8 +230,9 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   if (typed_so_far) files.reading = *typed_so_far;
   const ThumbnailShelf::Shown shown = files.shelf.find(question.path, files.reading);
   if (shown.picture != nullptr) files.noteFound(question.path, *shown.picture);
+  const PageSizes sizes = pageSizes(scale, question.guessed != nullptr);
+  const ImVec2& size = sizes.picture;
   ImGui::BeginGroup();
-  const ImVec2 size(kPicture * scale, 0.75F * kPicture * scale);
   std::optional<PictureCursor> cursor;
   if (shown.picture != nullptr)
     cursor = scanPicture(*shown.picture, size);
@@ -217,10 +241,9 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   ImGui::TextUnformatted(cursor ? cursorText(*shown.picture, *cursor).c_str() : " ");
   ImGui::EndGroup();
   ImGui::SameLine();
-  if (ImGui::BeginChild("fields", ImVec2(kFieldsWidth * scale, 0.75F * kPicture * scale)))
-    fields(files, shown.picture);
+  if (ImGui::BeginChild("fields", sizes.fields)) fields(files, shown.picture);
   ImGui::EndChild();
-  if (ImGui::BeginChild("found", ImVec2(0.0F, kFoundHeight * scale), true)) {
+  if (ImGui::BeginChild("found", ImVec2(0.0F, sizes.found), true)) {
     if (!typed_so_far) writeIn(PanelColour::kProblem, inFieldWords(typed_so_far.error().line()));
     found(shown, files);
   }

@@ -18,6 +18,11 @@ ReadAs readAs(double length, const engine::LengthUnit& unit) {
   return {shown.name, 1.0 / shown.per_unit};
 }
 
+// To four digits and without an exponent: readAs() leaves lengths of up to 5e4 in their unit.
+std::string plainNumber(double value) {
+  return std::abs(value) < 9999.5 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
 }  // namespace
 
 std::string sizeText(const ScanThumbnail& picture) {
@@ -31,8 +36,9 @@ std::string extentText(const ScanThumbnail& picture) {
   const double across = grid.width * grid.spacing_x, up = grid.height * grid.spacing_y;
   const ReadAs whole = readAs(std::max(across, up), grid.lateral_unit);
   const ReadAs apart = readAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit);
-  return trFormat("{:.4g} x {:.4g} {}, {:.4g} x {:.4g} {} apart", across / whole.size, up / whole.size,
-                  whole.name, grid.spacing_x / apart.size, grid.spacing_y / apart.size, apart.name);
+  return trFormat("{} x {} {}, {:.4g} x {:.4g} {} apart", plainNumber(across / whole.size),
+                  plainNumber(up / whole.size), whole.name, grid.spacing_x / apart.size,
+                  grid.spacing_y / apart.size, apart.name);
 }
 
 std::string heightsText(const ScanThumbnail& picture) {
@@ -40,9 +46,10 @@ std::string heightsText(const ScanThumbnail& picture) {
   const engine::LengthUnit& unit = picture.grid->height_unit;
   const double low = static_cast<double>(picture.lowest), high = static_cast<double>(picture.highest);
   const ReadAs as = readAs(std::max(std::abs(low), std::abs(high)), unit);
-  return picture.whole
-             ? trFormat("heights {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name)
-             : trFormat("heights about {:.4g} to {:.4g} {}", low / as.size, high / as.size, as.name);
+  return picture.whole ? trFormat("heights {} to {} {}", plainNumber(low / as.size),
+                                  plainNumber(high / as.size), as.name)
+                       : trFormat("heights about {} to {} {}", plainNumber(low / as.size),
+                                  plainNumber(high / as.size), as.name);
 }
 
 std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {

@@ -67,6 +67,27 @@ TEST_F(WindowTest, a_scan_is_found_with_the_arrow_keys_and_in_another_folder) {
   quit(user);
 }
 
+TEST_F(WindowTest, the_page_of_a_scan_to_be_read_is_whole_with_large_letters) {
+  const auto program = start({scan, "--ui-scale", "2"});
+  User user(display, *program, "large import");
+  (void)opened(*program);
+  (void)user.press("ctrl+shift+o");
+  const State page = program->until(
+      "the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
+  (void)user.look("the page");
+  int buttons = 0;
+  for (const State& text : page["texts"]) {
+    const State& at = text["at"];
+    if (text["text"] != "Open (Enter)" && text["text"] != "Go back (Esc)") continue;
+    ++buttons;
+    EXPECT_LE(at[1].get<int>() + at[3].get<int>(), height_) << text.dump();
+    EXPECT_EQ(text["cut"], false) << text.dump();
+  }
+  EXPECT_EQ(buttons, 2) << page["texts"].dump();
+  (void)user.key("Escape");
+  quit(user);
+}
+
 TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) {
   const std::string counts = writeCounts(folder.file("counts.asc"));
   const auto program = start({});

@@ -156,6 +156,18 @@ TEST_F(FirstUseTest, the_list_of_keys_begins_with_how_to_clean_a_scan_and_is_sea
   });
   EXPECT_FALSE(hasWords(found, "How to clean a scan"));
   (void)user.look("found");
+  // What is in a panel and has no key, formats of files, several of what is there as one.
+  for (const auto& [word, where] : {std::pair{"roughness", "Measure: "},
+                                    {"theme", "Display: "},
+                                    {"stl", "Compare: "},
+                                    {"units", "Read this scan with another unit"}}) {
+    (void)user.press("ctrl+a");
+    user.write(word);
+    program->until(word,
+                   [&where = where](const State& s) { return s["settled"] == true && hasWords(s, where); });
+    EXPECT_FALSE(hasWords(program->now(), "Nothing is found")) << word;
+  }
+  (void)user.look("found in panels");
   (void)user.press("Escape");
   program->until("closed", [](const State& s) { return s["dialog"] == "none"; });
   quit(user);
