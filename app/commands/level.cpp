@@ -61,6 +61,8 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   const auto levelling = levellingOf(*counted, task.in, *imported, lines, options.form, job);
   if (!levelling) return tl::unexpected(levelling.error());
   warnOfLeaving(levelling->fit, task.in);
+  if (auto status = warnOfMovedLines(*levelling, *counted, task.in, lines, job); !status)
+    return tl::unexpected(status.error());
   // Of the scan as it was read: the marks chose the samples that count, it keeps its own; and it is rounded once.
   const auto levelled = levelling->takenFrom(imported->field, job);
   if (!levelled) return tl::unexpected(levelled.error());

@@ -3,10 +3,14 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "app/terminal.h"
 #include "app/work/streams.h"
 #include "app/work/through_noise.h"
 #include "engine/field/piece.h"
 #include "engine/field/tile.h"
+#include "engine/measure/lines_apart.h"
 #include "engine/measure/lowered.h"
 
 namespace fettle::app {
@@ -93,6 +97,21 @@ engine::Result<Levelling> levellingOf(const engine::Version& counted, const std:
   if (auto status = addThroughNoise(levelling.fit, level, formChoiceOf(form), job); !status)
     return tl::unexpected(status.error());
   return levelling;
+}
+
+engine::Status warnOfMovedLines(const Levelling& levelling, const engine::Version& counted,
+                                const std::string& scan, const LineArguments& lines,
+                                engine::JobControl& job) {
+  if (!levelling.lines) return {};
+  const auto apart = engine::linesApart(counted, *levelling.lines, job);
+  if (!apart) return tl::unexpected(apart.error());
+  if (!apart->worse()) return {};
+  const bool from_line_to_line = lines.rows == "difference" || lines.rows == "matching";
+  warn(fmt::format(
+      "{}: lines next to each other lie further apart than before the levelling: {}", shownInput(scan),
+      from_line_to_line ? "they were level already"
+                        : "what is on some of them moves them, take --rows matching or --rows difference"));
+  return {};
 }
 
 PlannedOnPieces plannedLevel(const engine::Version& field, const engine::Version& counted,

@@ -52,6 +52,11 @@ struct Levelling {
                                                     const LineArguments& lines, const FormArguments& form,
                                                     engine::JobControl& job);
 
+/// Says so where lines lie further apart than before: parts of the surface were moved, not lines. Errors: kCancelled.
+[[nodiscard]] engine::Status warnOfMovedLines(const Levelling& levelling, const engine::Version& counted,
+                                              const std::string& scan, const LineArguments& lines,
+                                              engine::JobControl& job);
+
 /// How often a level is taken out of fields of one size: of the scan, or of what its changes are limited from as well.
 enum class Lowered : std::uint8_t { kOnce = 1, kTwice = 2 };
 

@@ -51,6 +51,16 @@ std::string removedText(const engine::RemoveCounts& counts, bool done) {
   return text;
 }
 
+// Where levelling made it worse, and what else there is: short, the panel has place for four lines.
+std::string apartText(const engine::LinesApart& apart, engine::LineMethod method) {
+  if (!apart.worse()) return {};
+  const bool from_line_to_line =
+      method == engine::LineMethod::kDifference || method == engine::LineMethod::kMatching;
+  const char* const rather = from_line_to_line ? tr("they were level") : tr("try matching or difference");
+  if (!(apart.before > apart.least)) return trFormat("; neighbours lie further apart now: {}", rather);
+  return trFormat("; neighbours lie {:.2g} times as far apart now: {}", apart.after / apart.before, rather);
+}
+
 // `holes`: samples without a height that are left; `done`: it is a step.
 std::string foundIn(const haptic::ComputedHeights& heights, const haptic::HeightsMaker& maker,
                     const engine::Version& before, std::int64_t holes, bool done) {
@@ -59,10 +69,13 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
   if (std::holds_alternative<engine::LineOptions>(maker)) {
     const ReadAs as = readOnScreenAs(heights.rows_rms, grid.height_unit.mm, grid.height_unit.name);
     std::string text = trFormat("lines were off by {:.3g} {} (rms)", heights.rows_rms / as.size, as.name);
-    if (!(heights.rows_form_rms > 0.0)) return text;
+    const std::string apart = apartText(heights.rows_apart, std::get<engine::LineOptions>(maker).method);
+    if (!(heights.rows_form_rms > 0.0)) return text + apart;
     const ReadAs form = readOnScreenAs(heights.rows_form_rms, grid.height_unit.mm, grid.height_unit.name);
-    return text + trFormat("; form across them of {:.3g} {} (rms) stays", heights.rows_form_rms / form.size,
-                           form.name);
+    return text +
+           trFormat("; form across them of {:.3g} {} (rms) stays", heights.rows_form_rms / form.size,
+                    form.name) +
+           apart;
   }
   const engine::Filled& filled = heights.filled;
   std::string text =

@@ -23,12 +23,15 @@ engine::Result<ComputedHeights> made(const engine::Version& before, const engine
                                      engine::JobControl& job) {
   const auto offsets = engine::findLineOffsets(before, options, job);
   if (!offsets) return tl::unexpected(offsets.error());
+  const auto apart = engine::linesApart(before, *offsets, job);
+  if (!apart) return tl::unexpected(apart.error());
   auto levelled = engine::levelledLines(before, *offsets, engine::allTiles(before.grid()), job);
   if (!levelled) return tl::unexpected(levelled.error());
   ComputedHeights result;
   result.field = *std::move(levelled);
   result.rows_rms = offsets->rms;
   result.rows_form_rms = offsets->form_rms;
+  result.rows_apart = *apart;
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "engine/field/version.h"
 #include "engine/fill/fill.h"
 #include "engine/measure/line_offsets.h"
+#include "engine/measure/lines_apart.h"
 #include "engine/remove/remove.h"
 
 namespace fettle::haptic {
@@ -19,7 +20,8 @@ struct ComputedHeights {
   engine::Version field;  ///< of the memory of the field before, sharing the tiles that stay
   engine::Filled filled;  ///< of holes; its field is empty
   double rows_rms = 0.0,
-         rows_form_rms = 0.0;  ///< of levelled lines, and of the form across them that stays [height_unit]
+         rows_form_rms = 0.0;     ///< of levelled lines, and of the form across them that stays [height_unit]
+  engine::LinesApart rows_apart;  ///< of levelled lines
   engine::RemoveCounts removed;
 };
 

@@ -57,6 +57,27 @@ TEST(Measure, LinesAreLevelledAlongTheirAxis) {
   expectRefused(fettle({"level", scan, level, "--unit", "mm", "--rows", "medium"}), "--rows");
 }
 
+// A plate that takes a changing share of the lines: the median of each makes steps of it.
+TEST(Measure, LinesThatALevellingMovesApartAreWarnedOf) {
+  const TempFolder folder;
+  const std::string scan = folder.file("plate.asc"), level = folder.file("level.tif");
+  std::ofstream out(scan);
+  out << "ncols 64\nnrows 64\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+  for (int r = 0; r < 64; ++r) {
+    for (int c = 0; c < 64; ++c)
+      out << (c < (r > 20 && r < 40 ? 44 : 24) ? 5.0 : 0.0) + 0.01 * ((c * 7 + r * 13) % 5) << ' ';
+    out << '\n';
+  }
+  out.close();
+  const auto warned = [&](const std::string& rows) {
+    const auto report = fettleJson({"level", scan, level, "--unit", "mm", "--form", "none", "--rows", rows});
+    return report.contains("warnings") &&
+           report["warnings"].dump().find("further apart than before") != std::string::npos;
+  };
+  EXPECT_TRUE(warned("median"));
+  EXPECT_FALSE(warned("difference"));
+}
+
 // A bend over the lines stays, and the stripes go: of their rms of 3.16 um a third part at most, the share of four polynomials
 // in 64 lines.
 TEST(Measure, FormAcrossLinesStaysWhereItIsToBeKept) {

@@ -1,0 +1,42 @@
+// Lines that are levelled by what does not fit the scan.
+#include <fstream>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+TEST_F(WindowTest, a_preview_of_levelled_lines_says_that_they_lie_further_apart) {
+  // A plate that takes a changing share of the rows: the median of each makes steps of it.
+  const std::string plate = folder.file("plate.asc");
+  std::ofstream out(plate);
+  out << "ncols 64\nnrows 64\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+  for (int r = 0; r < 64; ++r) {
+    for (int c = 0; c < 64; ++c)
+      out << (c < (r > 20 && r < 40 ? 44 : 24) ? 5.0 : 0.0) + 0.01 * ((c * 7 + r * 13) % 5) << ' ';
+    out << '\n';
+  }
+  out.close();
+  std::ofstream(folder.path() / "fettle" / "window.json") << State{{"panels", {{"Holes and lines", true}}}};
+  const auto program = start({plate, "--unit", "mm"});
+  User user(display, *program, "levelling");
+  (void)opened(*program);
+  for (const char* header : {"Tool", "Filters"}) (void)user.click(header);
+  const auto found = [&] { return program->now()["heights_found"].get<std::string>(); };
+  (void)user.key("ctrl+r");
+  EXPECT_NE(found().find("times as far apart now: try matching or difference"), std::string::npos) << found();
+  (void)user.look("by the median");
+  (void)user.click("median");
+  (void)user.click("difference");
+  program->until("the preview follows", [](const State& s) {
+    return s["settled"] == true && s["heights_preview"].is_string() &&
+           s["heights_preview"].get<std::string>().find("difference") != std::string::npos;
+  });
+  EXPECT_EQ(found().find("apart"), std::string::npos) << found();
+  quit(user);
+}
+
+}  // namespace
+}  // namespace fettle::tests
