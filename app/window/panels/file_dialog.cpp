@@ -244,6 +244,9 @@ void preview(const Question& question, Parts& parts, ImVec2 size) {
         for (const std::string& text :
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
           if (!text.empty()) ImGui::TextUnformatted(text.c_str());
+        // The fields that the guesses name are on the page.
+        if (question.kind == Kind::kOpen && anyGuess(shown.picture->warnings))
+          ImGui::TextUnformatted(tr("guessed; set by \"Read as ...\":"));
         for (const std::string& warning : shown.picture->warnings)
           ImGui::TextDisabled("%s", screenText(inFieldWords(warning)).c_str());
       } else if (shown.problem != nullptr) {

@@ -96,7 +96,7 @@ TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) 
   (void)user.press("ctrl+o");
   program->until("the dialog", opens);
   user.type(counts);
-  (void)user.rest();
+  EXPECT_TRUE(says(user.rest("the preview"), "guessed; set by")) << "where the guesses are set";
   (void)user.click("Read as ...");
   const State page = program->until(
       "the page", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
