@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <utility>
 
@@ -435,8 +436,10 @@ std::string UiLayer::fieldText() const {
 void UiLayer::endFrame() {
   ImGui::Render();
   const ImVector<ImGuiWindow*>& windows = ImGui::GetCurrentContext()->Windows;
-  opens_ = std::any_of(windows.begin(), windows.end(),
-                       [](const ImGuiWindow* window) { return window->Active && window->Appearing; });
+  opens_ = std::any_of(windows.begin(), windows.end(), [](const ImGuiWindow* window) {
+    const bool scrolls = window->ScrollTarget.x < FLT_MAX || window->ScrollTarget.y < FLT_MAX;
+    return window->Active && (window->Appearing || scrolls);
+  });
 }
 
 // The pixels to be drawn again.

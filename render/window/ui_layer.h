@@ -67,7 +67,7 @@ class UiLayer {
   void point(const Pointed& at);
   void leavePointer() { pointed_.push_back(std::nullopt); }
   /// Whether presses or characters wait for a later frame, or a list, a menu or a dialog does, which is drawn one frame after it
-  /// is opened, when its size is known.
+  /// is opened, when its size is known, or what a panel scrolls to.
   [[nodiscard]] bool behind() const noexcept {
     return opens_ || !pressed_.empty() || !waiting_.empty() || !clicks_.empty() || !pointed_.empty();
   }
