@@ -99,11 +99,15 @@ void endPlace() {
 
 float wheelPastEnd() {
   const ImGuiIO& io = ImGui::GetIO();
+  // Where it was a frame ago: what the wheel does to the list itself is done by now.
+  ImGuiStorage& kept = *ImGui::GetStateStorage();
+  const ImGuiID id = ImGui::GetID("##scrolled");
+  const float before = kept.GetFloat(id, ImGui::GetScrollY());
+  kept.SetFloat(id, ImGui::GetScrollY());
   if (io.MouseWheel == 0.0F || io.KeyCtrl || io.KeyShift || !ImGui::IsWindowHovered()) return 0.0F;
   // A list without an end to scroll to is passed over by ImGui itself.
   if (!(ImGui::GetScrollMaxY() > 0.0F)) return 0.0F;
-  const bool ended =
-      io.MouseWheel < 0.0F ? ImGui::GetScrollY() >= ImGui::GetScrollMaxY() : ImGui::GetScrollY() <= 0.0F;
+  const bool ended = io.MouseWheel < 0.0F ? before >= ImGui::GetScrollMaxY() : before <= 0.0F;
   return ended ? io.MouseWheel : 0.0F;
 }
 
