@@ -54,7 +54,7 @@ FieldUnits fieldUnits(const engine::Grid& grid, double low, double high) {
 
 ShownUnit deviationUnit(const engine::LengthUnit& unit, const ShownUnit& change, double size) {
   const double shown = size * change.per_unit;
-  if (!(size > 0.0) || (shown >= 1e-3 && shown < 5e4)) return change;
+  if (!(size > 0.0) || (shown >= 1e-3 && shown < 1e4)) return change;
   return shownUnit(unit, size, 0.05, 5e4);
 }
 
