@@ -121,10 +121,9 @@ void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units,
                                          : "0: " + std::string(tr(std::string_view(filter.sigma.when_zero))));
     });
   // With its number as soon as that is known.
-  const std::string by_noise =
-      range_of_noise
-          ? trFormat("{} by the noise", lengthText(*range_of_noise, units.change, 3))
-          : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
+  const std::string by_noise = range_of_noise
+                                   ? trFormat("{} by the noise", lengthText(*range_of_noise, units.change, 3))
+                                   : std::string(tr(std::string_view(filter.range_sigma.when_zero)));
   if (filter.range_sigma.exists())
     (void)field(
         "range sigma",

@@ -36,9 +36,8 @@ void fitFields(FitTool::Options& options) {
     constexpr std::optional<engine::Region> kOf[] = {std::nullopt, engine::Region::kAll,
                                                      engine::Region::kMarked, engine::Region::kUnmarked};
     int of = static_cast<int>(std::ranges::find(kOf, options.region) - std::begin(kOf));
-    const bool changed =
-        chooseWord("##fitted to", of,
-                   {"marked, else all", "all samples", "marked samples", "samples not marked"});
+    const bool changed = chooseWord(
+        "##fitted to", of, {"marked, else all", "all samples", "marked samples", "samples not marked"});
     if (changed) options.region = kOf[of];
     return changed;
   });

@@ -44,7 +44,8 @@ class RehearsalTest : public WindowTest {
   [[nodiscard]] std::filesystem::path cache() const { return folder.path() / "shaders"; }
 };
 
-const std::vector<std::string> kKeys{"c", "p", "d", "c", "5", "d", "c", "5", "Page_Up", "Home", "t", "Escape"};
+const std::vector<std::string> kKeys{"c", "p", "d",       "c",    "5", "d",
+                                     "c", "5", "Page_Up", "Home", "t", "Escape"};
 
 TEST_F(RehearsalTest, what_keys_ask_for_is_compiled_before) {
   showUntilRehearsed(scan);
