@@ -171,7 +171,7 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
     return {};
   if (parts.seenGrid() == nullptr || dialog) return {};
   const bool clicked = parts.plane_click.completes(event, parts.picture);
-  if (pressesDeeper(event, parts)) {
+  if (client != nullptr && pressesDeeper(event, parts)) {
     if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) client->mouse()->wheel(event.wheel);
     return {};
   }

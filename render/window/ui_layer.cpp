@@ -464,7 +464,7 @@ std::vector<Rectangle> UiLayer::changedPlaces(const ImDrawData& panels, const Be
 std::vector<Rectangle> UiLayer::draw(const vk::raii::CommandBuffer& commands, const Below& below) {
   ImDrawData& panels = *ImGui::GetDrawData();
   const bool first = !damage_.known();
-  const std::vector<Rectangle> places = changedPlaces(panels, below);
+  std::vector<Rectangle> places = changedPlaces(panels, below);
   if (places.empty()) return places;
   std::vector<vk::ImageCopy> copies;
   for (const Rectangle& place : places) {
