@@ -45,6 +45,12 @@ class Screen {
   }
   [[nodiscard]] const Samples& all() const noexcept { return all_; }
   [[nodiscard]] bool holed() const noexcept { return holed_; }
+  // Whether a sample is a hole in either state.
+  [[nodiscard]] bool holeAt(const glm::ivec2& sample) const {
+    const glm::ivec2 s = glm::min(sample, q_.placing.true_size - 1);
+    return std::isnan(q_.reader.heightAt(s.x, s.y)) ||
+           (before_ != nullptr && std::isnan(before_->heightAt(s.x, s.y)));
+  }
   // Samples of a patch, its upper and right rim included.
   [[nodiscard]] Samples square(const gpu::Patch& patch) const {
     const glm::ivec2 first(patch.place.x, patch.place.y);
@@ -110,6 +116,37 @@ Samples changedIn(const engine::TileChange& change) {
           tile + glm::ivec2(span.last_column, span.last_row)};
 }
 
+// Of the samples at whose vertices heights are read from `read`: every `stride`-th, and the last ones of the field.
+Samples verticesIn(const Samples& read, int stride, const Samples& all) {
+  const auto up = [stride](int s) { return (s + stride - 1) / stride * stride; };
+  const Samples in = read.cut(all);
+  if (in.empty()) return in;
+  Samples v{{up(in.first.x), up(in.first.y)}, in.last / stride * stride};
+  for (int axis = 0; axis < 2; ++axis)
+    if (in.last[axis] == all.last[axis]) {
+      v.last[axis] = all.last[axis];
+      v.first[axis] = std::min(v.first[axis], all.last[axis]);
+    }
+  return v;
+}
+
+// The same where there are holes: a vertex over one searches a stride around it, on the field's last column and row an eighth of
+// one farther.
+Samples verticesSearching(const Samples& changed, int stride, const Screen& screen) {
+  constexpr int kFine = 8;  // below it, looking for holes costs more than it saves
+  const Samples near = verticesIn(changed.grown(stride + stride / 8), stride, screen.all());
+  if (stride < kFine || near.empty()) return near;
+  Samples all = verticesIn(changed, stride, screen.all());
+  const auto next = [stride](int s, int last) { return s == last ? last + 1 : std::min(s + stride, last); };
+  for (int y = near.first.y; y <= near.last.y; y = next(y, near.last.y))
+    for (int x = near.first.x; x <= near.last.x; x = next(x, near.last.x))
+      if (const glm::ivec2 s{x, y}; screen.holeAt(s)) {
+        if (all.empty()) all = {s, s};
+        all = {glm::min(all.first, s), glm::max(all.last, s)};
+      }
+  return all;
+}
+
 // Position, level, and whether it may hold holes: a patch drawn by another pipeline may differ in the last
 // bit.
 using Key = std::array<int, 4>;
@@ -141,16 +178,22 @@ Rectangle damageOf(const DamageQuery& query) {
     join(damage, screen.pixels(screen.square({{x, y, level, level}}), reachOf(level)));
 
   for (const engine::TileChange& tile : query.tiles) {
-    const Samples changed = changedIn(tile);
+    Samples changed = changedIn(tile);
     if (changed.empty()) continue;
+    // A field of one column or row is drawn two wide: its samples are read twice.
+    for (int axis = 0; axis < 2; ++axis)
+      if (changed.last[axis] == q.placing.true_size[axis] - 1) changed.last[axis] = screen.all().last[axis];
     for (const gpu::Patch& patch : query.chosen_after->patches) {
-      const int level = patch.place.z, stride = 1 << level;
-      // A vertex has cells of a stride around it; the vertex of a hole searches one stride farther. A colour
-      // reads its cell and some samples beyond on each side, among those that colours come from.
-      const int cells = (screen.holed() ? 2 : 1) * stride;
-      const Samples part =
-          changed.grown(std::max(cells, q.shade_reach * q.shade_step)).cut(screen.square(patch));
-      join(damage, screen.pixels(part, std::max(reachOf(level), stride)));
+      const int level = patch.place.z, stride = 1 << level, heights = std::max(reachOf(level), stride);
+      const Samples square = screen.square(patch);
+      // A colour reads its cell and some samples beyond on each side, among those that colours come from.
+      const Samples coloured = changed.grown(q.shade_reach * q.shade_step).cut(square);
+      join(damage, screen.pixels(coloured, heights));
+      // A vertex has cells of a stride around it. Where a patch is coarse - a plain one, or any seen from above - most
+      // strokes pass between its vertices.
+      const Samples vertices = screen.holed() ? verticesSearching(changed, stride, screen)
+                                              : verticesIn(changed, stride, screen.all());
+      if (!vertices.empty()) join(damage, screen.pixels(vertices.grown(stride).cut(square), heights));
     }
   }
   if (empty(damage)) return {};

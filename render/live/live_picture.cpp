@@ -274,7 +274,8 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                     canContinue(*previous, current);
   std::vector<PatchChoice> parts;
   if (stats.continued) {
-    parts = cutToDamage(*previous, current, chosen.queries(), panels);
+    parts = cutToDamage(*previous, current, chosen.queries(),
+                        stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
     stats.redrawn = redrawnShare(panels);
   }
   stats.select_ms = selecting.ms();

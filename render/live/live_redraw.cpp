@@ -1,5 +1,6 @@
 #include "render/live/live_redraw.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "engine/field/difference.h"
@@ -53,7 +54,8 @@ bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
 }
 
 std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
-                                     std::span<const PatchQuery> queries, std::vector<LivePanel>& panels) {
+                                     std::span<const PatchQuery> queries, Pages pages,
+                                     std::vector<LivePanel>& panels) {
   std::vector<PatchChoice> parts(panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) {
     if (!onlyFieldDiffers(before.panels[i], now.panels[i])) {
@@ -64,6 +66,9 @@ std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame&
         engine::changedTiles(before.panels[i].field, now.panels[i].field);
     DamageQuery q;
     q.now = queries[i];
+    // Colours come from any coarser level until those are there.
+    if (pages == Pages::kWaitedFor)
+      q.now.shade_step = std::max(q.now.shade_step, 1 << LiveTexture::shift(LiveTexture::kLevels - 1));
     q.before = before.panels[i].field.reader();
     q.tiles = tiles;
     q.chosen_before = &before.panels[i].choice;

@@ -39,11 +39,14 @@ struct DrawnFrame {
 /// Whether a frame shows what the one before does.
 [[nodiscard]] bool showTheSame(const DrawnFrame& before, const DrawnFrame& now);
 
+/// Whether pages that the frame reads are on the device: where some are not, their samples are drawn from coarser ones.
+enum class Pages { kThere, kWaitedFor };
+
 /// Sets the part of each panel that is drawn again - the difference by damageOf, or the whole panel where
 /// more changed than samples and patches - and clips the panels' choices to it: to the returned ones, which
 /// must outlive the panels.
 [[nodiscard]] std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
-                                                   std::span<const PatchQuery> queries,
+                                                   std::span<const PatchQuery> queries, Pages pages,
                                                    std::vector<LivePanel>& panels);
 
 /// Sets LivePanel::redraw to the rows [first, last) of each panel's part of the picture, and clips the panels' choices to them, as

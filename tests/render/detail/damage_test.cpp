@@ -189,6 +189,35 @@ TEST(Damage, NothingIsDrawnAnewWhereNothingChangedAndLittleUnderABrush) {
   EXPECT_EQ(twins.shoot(input), 1.0);
 }
 
+// From above heights move no pixel: patches are as coarse as can be, and a stroke lies between their vertices.
+TEST(Damage, LittleIsDrawnAnewUnderABrushBetweenTheVerticesOfCoarsePatches) {
+  for (const Holes holes : {Holes::kNone, Holes::kSome}) {
+    SCOPED_TRACE(static_cast<int>(holes));
+    Twins twins;
+    const engine::Version start = part(1000, 700, holes);
+    engine::LiveField live(start, engine::Growth::kAllowed);
+    Shown shown;
+    shown.versions = {start};
+    ASSERT_TRUE(twins.picture().update(shown));
+    FrameInput input = smallInput();
+    input.view.elevation_deg = 90;
+    input.view.azimuth_deg = 0;
+    input.range = ValueRange{-4, 9};
+    EXPECT_EQ(twins.shoot(input), 1.0);
+    const auto edited = [&](int column, int row) {
+      for (int i = 0; i < 9; ++i) EXPECT_TRUE(live.setHeight(column + i % 3, row + i / 3, 4.0F));
+      shown.versions = {live.snapshot()};
+      EXPECT_TRUE(twins.picture().update(shown));
+      return twins.shoot(input);
+    };
+    for (const auto& [column, row] : {std::pair{700, 600}, {333, 111}, {905, 350}})
+      EXPECT_LT(edited(column, row), 0.02) << column << " " << row;
+    // Vertices of every patch, and those of the last column and row, whatever the stride.
+    for (const auto& [column, row] : {std::pair{511, 511}, {255, 383}, {997, 200}, {400, 697}, {997, 697}})
+      EXPECT_GT(edited(column, row), 0.0) << column << " " << row;
+  }
+}
+
 TEST(Damage, PanelsBesideEachOtherAndSplitAreDrawnInPartsEachForItself) {
   for (const Arrangement arrangement : {Arrangement::kSideBySide, Arrangement::kSplit}) {
     Twins twins;
