@@ -64,9 +64,10 @@ inline constexpr double kDamageMarginPx = 3.0;
 /// From so many changed tiles on (a filter's result, not a stroke) everything is drawn again: the differing
 /// rectangle of each tile and its place on the screen are not computed.
 inline constexpr std::size_t kManyTiles = 256;
-/// Tiles whose detail (render/detail/detail.h) a frame measures at most, for each version: about 4 ms on two
-/// cores.
-inline constexpr std::size_t kMeasuredPerFrame = 256;
+/// Tiles whose detail (render/detail/detail.h) a frame measures at most, for each version: so many at once, 1 to 3 ms on two cores,
+/// and more of them only within this time, which a busy machine soon uses up.
+inline constexpr std::size_t kMeasuredPerFrame = 256, kMeasuredAtOnce = 64;
+inline constexpr double kMeasuringPerFrameMs = 4.0;
 
 // Computing.
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/window/plane_map.h"
+#include "app/window/preview_change.h"
 #include "app/work/visible_part.h"
 #include "engine/base/stopwatch.h"
 #include "render/plan/overlay.h"
@@ -31,12 +32,6 @@ bool looksAlike(const render::FrameInput& a, const render::FrameInput& b) {
          a.arrangement == b.arrangement && a.decoration == b.decoration &&
          a.light_azimuth_deg == b.light_azimuth_deg && a.light_elevation_deg == b.light_elevation_deg &&
          a.stereo.mode == b.stereo.mode;
-}
-
-// Whether both are the same but for what is previewed beside the field.
-bool previewsDiffer(const render::Shown& a, const render::Shown& b) {
-  return a.versions.size() > 1 && b.versions.size() > 1 &&
-         !std::equal(a.versions.begin() + 1, a.versions.end(), b.versions.begin() + 1, b.versions.end());
 }
 
 bool same(const render::Shown& a, const render::Shown& b) {

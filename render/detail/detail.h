@@ -53,7 +53,8 @@ class DetailMeasure {
 
   /// A field of which nothing is known yet. Cost: 0.03 bytes per sample are written.
   void begin(const engine::FieldReader& reader);
-  /// What depends on the samples of these tiles (column, row) is unknown from now on. Requires begin().
+  /// What depends on the samples of these tiles (column, row) is unknown from now on; everything, where they are half of all.
+  /// Requires begin().
   void invalidate(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
   /// Measures up to `most` tiles of those that are unknown, the last invalidated ones first; returns their
   /// number. About 40 us of processor time each.

@@ -256,6 +256,16 @@ engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
   return another ? Change::kAnother : inverted ? Change::kInverted : Change::kChanged;
 }
 
+// What a frame measures of one version: some tiles, and more of them while there is time.
+std::size_t LiveFields::measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader) {
+  const engine::Stopwatch watch;
+  std::size_t measured = 0;
+  do measured += measure.measureSome(reader, kMeasuredAtOnce);
+  while (measure.unknown() > 0 && measured + kMeasuredAtOnce <= kMeasuredPerFrame &&
+         watch.ms() < kMeasuringPerFrameMs);
+  return measured;
+}
+
 void LiveFields::uploadPending(UploadStatistics& all) {
   const engine::Stopwatch watch;
   UploadStatistics count;
@@ -266,7 +276,7 @@ void LiveFields::uploadPending(UploadStatistics& all) {
                             options_.upload_bytes_per_frame, count, moved);
     const engine::FieldReader reader = f.texture.version().reader();
     if (!moved.empty()) f.measure.invalidate(reader, moved);
-    count.measured_tiles += static_cast<std::int64_t>(f.measure.measureSome(reader, kMeasuredPerFrame));
+    count.measured_tiles += static_cast<std::int64_t>(measureInFrame(f.measure, reader));
     count.unmeasured_tiles += static_cast<std::int64_t>(f.measure.unknown());
   }
   moved.clear();
@@ -286,12 +296,11 @@ void LiveFields::uploadPending(UploadStatistics& all) {
 }
 
 std::int64_t LiveFields::measureFor(double ms) {
-  constexpr std::size_t kAtOnce = 64;  // tiles: 1 to 3 ms
   const engine::Stopwatch watch;
   std::int64_t left = 0;
   for (Field& f : fields_) {
     const engine::FieldReader reader = f.texture.version().reader();
-    while (f.measure.unknown() > 0 && watch.ms() < ms) (void)f.measure.measureSome(reader, kAtOnce);
+    while (f.measure.unknown() > 0 && watch.ms() < ms) (void)f.measure.measureSome(reader, kMeasuredAtOnce);
     left += static_cast<std::int64_t>(f.measure.unknown());
   }
   return left;

@@ -111,7 +111,10 @@ TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
   };
   ASSERT_TRUE(picture->update(before));
   const auto [first_frames, first] = framesToRest();
-  EXPECT_EQ(first_frames, static_cast<int>((kTiles + kMost - 1) / kMost));
+  // A busy machine's frame measures less.
+  constexpr std::int64_t kLeast = kMeasuredAtOnce;
+  EXPECT_GE(first_frames, static_cast<int>((kTiles + kMost - 1) / kMost));
+  EXPECT_LE(first_frames, static_cast<int>((kTiles + kLeast - 1) / kLeast));
 
   // A filter changes every sample.
   engine::LiveField live(before, engine::Growth::kAllowed);
