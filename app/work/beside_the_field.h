@@ -46,6 +46,8 @@ class BesideTheField {
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy(); }
   [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
+  /// What the work is at, as its JobControl says.
+  [[nodiscard]] const char* stage() const noexcept { return working_.stage(); }
   /// The last result; null before, and of another document.
   [[nodiscard]] const Work* get() const noexcept { return work_ ? &*work_ : nullptr; }
   [[nodiscard]] Work* get() noexcept { return work_ ? &*work_ : nullptr; }

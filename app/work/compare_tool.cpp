@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/texts/texts.h"
 #include "app/work/estimate_text.h"
 #include "app/work/less_distances.h"
 #include "app/work/read_units.h"
@@ -23,9 +27,14 @@ namespace fettle::app {
 namespace {
 
 // None: the other stays where it is.
-std::optional<engine::AlignOptions> alignOptionsOf(const CompareTool::Options& what) {
+std::optional<engine::AlignOptions> alignOptionsOf(const CompareTool::Options& what,
+                                                   const std::string& path) {
   if (!what.moves) return std::nullopt;
   engine::AlignOptions how;
+  how.words = {
+      .first = tr("this scan"),
+      .second = std::filesystem::path(path).filename().string(),
+      .wider = trFormat("a turn by more than {:.3g} degrees is not looked for here", how.most_rotation_deg)};
   how.moves = *what.moves;
   how.region = what.region;
   return how;
@@ -75,19 +84,25 @@ std::vector<std::string> linesOf(const CompareTool::Compared& compared) {
 void CompareTool::compareWith(const LoopClient& client, std::string path, const ScanOptions& reading) {
   reading_ = reading;
   following_ = false;
-  work_.begin([field = client.newest(), path = std::move(path), reading = reading_,
-               what = options](engine::JobControl& job) {
-    return isNominalFile(path) ? withMesh(field, path, what, job) : withScan(field, path, reading, what, job);
+  path_ = std::move(path);
+  read_ = std::make_shared<std::atomic<bool>>(false);
+  work_.begin([field = client.newest(), path = path_, reading = reading_, what = options,
+               read = read_](engine::JobControl& job) {
+    return isNominalFile(path) ? withMesh(field, path, what, job)
+                               : withScan(field, path, reading, what, *read, job);
   });
 }
 
 engine::Result<CompareTool::Work> CompareTool::withScan(const engine::Version& field, const std::string& path,
                                                         const ScanOptions& reading, const Options& what,
-                                                        engine::JobControl& job) {
+                                                        std::atomic<bool>& read, engine::JobControl& job) {
   const auto import = importOptions(reading);
   if (!import) return tl::unexpected(import.error());
   const auto other = engine::importField(path, *import, job);
   if (!other) return tl::unexpected(other.error());
+  // Until the next stage the bar is at its beginning again.
+  job.begin("comparing", 0);
+  read.store(true, std::memory_order_relaxed);  // it is only shown
   // Both as they were measured: one may be seen without a form that the other still has.
   const auto samples = engine::withoutLayer(field, job);
   if (!samples) return tl::unexpected(samples.error());
@@ -98,7 +113,7 @@ engine::Result<CompareTool::Work> CompareTool::withScan(const engine::Version& f
   work.compared.path = path;
   work.compared.restored = field.formOver() != nullptr || other->field.formOver() != nullptr;
   engine::RigidMotion motion;
-  if (const auto how = alignOptionsOf(what)) {
+  if (const auto how = alignOptionsOf(what, path)) {
     const auto found = engine::alignFields(*samples, *others, *how, job);
     if (!found) return tl::unexpected(found.error());
     motion = found->motion;
@@ -124,7 +139,7 @@ engine::Result<CompareTool::Work> CompareTool::withMesh(const engine::Version& f
                                                         const Options& what, engine::JobControl& job) {
   const auto samples = engine::withoutLayer(field, job);
   if (!samples) return tl::unexpected(samples.error());
-  const auto found = compareWithNominal(*samples, path, what.nominal, alignOptionsOf(what), job);
+  const auto found = compareWithNominal(*samples, path, what.nominal, alignOptionsOf(what, path), job);
   if (!found) return tl::unexpected(found.error());
   auto moved = lessDistances(*samples, found->deviation.field, job);
   if (!moved) return tl::unexpected(moved.error());
@@ -171,6 +186,16 @@ void CompareTool::followForm(const LoopClient& client) {
     if (!engine::sameHeights(work.samples, *samples)) work.field = before;
     return work;
   });
+}
+
+std::string CompareTool::doing() const {
+  if (following_) return tr("comparing");
+  const std::string_view stage = work_.stage();
+  // A session is read in several stages. Before the first one a file is opened.
+  const bool reads = isNominalFile(path_) ? stage.empty() || stage == "reading"
+                                          : read_ && !read_->load(std::memory_order_relaxed);
+  if (reads) return trFormat("reading {}", std::filesystem::path(path_).filename().string());
+  return stage == "aligning" ? tr("aligning") : tr("comparing");
 }
 
 bool CompareTool::poll(const LoopClient& client, std::vector<Notice>& notices) {

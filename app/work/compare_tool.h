@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +58,8 @@ class CompareTool {
 
   [[nodiscard]] bool busy() const noexcept { return work_.busy(); }
   [[nodiscard]] WorkProgress progress() const { return work_.progress(); }
+  /// What it is at: reading the file that takes long first, or comparing.
+  [[nodiscard]] std::string doing() const;
   /// Null before, and of another document.
   [[nodiscard]] const Compared* compared() const noexcept {
     return work_.get() != nullptr ? &work_.get()->compared : nullptr;
@@ -77,12 +81,14 @@ class CompareTool {
   };
   [[nodiscard]] static engine::Result<Work> withScan(const engine::Version& field, const std::string& path,
                                                      const ScanOptions& reading, const Options& what,
-                                                     engine::JobControl& job);
+                                                     std::atomic<bool>& read, engine::JobControl& job);
   [[nodiscard]] static engine::Result<Work> withMesh(const engine::Version& field, const std::string& path,
                                                      const Options& what, engine::JobControl& job);
   [[nodiscard]] static engine::Status see(Work& work, const engine::Version& field, engine::JobControl& job);
   void followForm(const LoopClient& client);
 
+  std::string path_;                         // that is compared, or was
+  std::shared_ptr<std::atomic<bool>> read_;  // whether that scan has been read
   ScanOptions reading_;
   std::vector<std::string> lines_;
   bool following_ = false;  // what works is followForm()

@@ -398,8 +398,9 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
                               JobControl& job) {
   for (const Version* field : {&first, &second})
     if (field->reader().bounds().empty())
-      return inputError("a field without a height cannot be aligned", field == &first ? "A" : "B");
-  if (!anyIn(first.reader(), options.region)) return nothingIn(options.region, "A");
+      return inputError("a field without a height cannot be aligned",
+                        field == &first ? options.words.first : options.words.second);
+  if (!anyIn(first.reader(), options.region)) return nothingIn(options.region, options.words.first);
   const Grid &grid = first.grid(), &other = second.grid();
   // Heights less a height of each: what is small beside it keeps its digits.
   const auto of_first = heightsAround(first, options.region, job),
@@ -438,14 +439,14 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
     whole = level->points().size();
     const double map_seconds = watch.seconds();
     if (whole < 12)
-      return inputError(fmt::format("{} heights of A are whole after a Gaussian window of {:.3g} mm, which "
+      return inputError(fmt::format("{} heights of {} are whole after a Gaussian window of {:.3g} mm, which "
                                     "reaches over no border and "
                                     "no hole: too few to align by",
-                                    whole, sigma),
-                        "A",
+                                    whole, options.words.first, sigma),
+                        options.words.first,
                         options.region == Region::kAll
                             ? "give a scan that is some 20 samples wide and high, or fill its holes"
-                            : "let a larger part of A count, or all of it");
+                            : "let a larger part of it count, or all of it");
     const bool last = k + 1 == sides.size();
     if (last && options.search && options.moves.shift) {
       auto found = repeatsOf(*maps, job);
@@ -489,8 +490,10 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   constexpr double kLeastOverlap = 0.05;
   const double overlap = static_cast<double>(best.common) / static_cast<double>(whole);
   if (best.common < 12 || overlap < kLeastOverlap)
-    return inputError("A and B have too little in common to be aligned", "B",
-                      "are they scans of one part? --rotation allows a wider search");
+    return inputError(fmt::format("{} and {} have too little in common to be aligned", options.words.first,
+                                  options.words.second),
+                      options.words.second,
+                      fmt::format("are they scans of one part? {}", options.words.wider));
 
   std::vector<Vector6> rows;
   const std::vector<BlockSum> blocks = blockSums(*level, best, frame, rows);
@@ -499,9 +502,9 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
       !moves.empty())
     return inputError(fmt::format("the surface does not decide {}", moves), "alignment",
                       options.moves.tilt || options.moves.rotation || options.moves.shift
-                          ? "allow fewer motions; where B is turned further than was searched, --rotation "
-                            "180; or are A and B scans of different parts?"
-                          : "are A and B scans of different parts?");
+                          ? fmt::format("allow fewer motions; {}; or are they scans of different parts?",
+                                        options.words.wider)
+                          : "are they scans of different parts?");
   Matrix6 cross = Matrix6::Zero(), spread = Matrix6::Zero();
   Alignment result;
   double squares = 0.0, scores = 0.0, used = 0.0;

@@ -35,6 +35,13 @@ struct AlignStage {
   double refine_seconds = 0.0;  ///< of all starts
 };
 
+/// What errors call the two fields, and how they say that a turn may be searched for more widely: the words of `fettle align A B`
+/// unless whoever shows them has others.
+struct AlignWords {
+  std::string first = "A", second = "B";
+  std::string wider = "--rotation allows a wider search";
+};
+
 struct AlignOptions {
   AlignMoves moves;
   Region region = Region::kAll;     ///< the samples of the first field that count
@@ -44,6 +51,7 @@ struct AlignOptions {
   bool search = true;
   std::vector<AlignStage>* stages =
       nullptr;  ///< where what each resolution took is added; lives during the call
+  AlignWords words = {};
 };
 
 /// A rigid motion that brings a second field onto a first, in millimetres of the first's field coordinates: a point of the

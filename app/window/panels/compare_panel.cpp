@@ -80,7 +80,7 @@ void comparePanel(const PanelContext& context, CompareTool& compare, WindowPictu
   ImGui::EndDisabled();
   beginPlace("##compare outcome", compare.busy() || compared != nullptr ? kComparedLines : kUncomparedLines);
   if (compare.busy()) {
-    if (cancelledBar(compare.progress(), "aligning", "Cancel##compare")) compare.cancel();
+    if (cancelledBar(compare.progress(), compare.doing().c_str(), "Cancel##compare")) compare.cancel();
   } else if (compared != nullptr) {
     if (compare.outdated()) writeWrapped("the field has changed since: Again");
     writeWrapped(std::filesystem::path(compared->path).filename().string());

@@ -104,6 +104,46 @@ TEST_F(CompareToolTest, a_form_that_is_taken_out_counts_as_it_was_measured) {
   EXPECT_LT(mostSeen(), 1e-3);
 }
 
+TEST_F(CompareToolTest, what_cannot_be_aligned_is_named_as_the_window_names_it) {
+  // Waves of another length and direction: no place fits.
+  std::mt19937 random(7);
+  std::normal_distribution<double> height(0.0, 1.0);
+  const engine::Version unlike = tests::fieldOf(
+      kComparedWide, kComparedHigh, [&](int, int) { return height(random); }, 0.1, 0.1);
+  engine::JobControl job;
+  const std::string path = folder.file("unlike.tif");
+  ASSERT_TRUE(engine::exportField(unlike, path, {}, job));
+  tool.compareWith(bench.client(), path, {});
+  ASSERT_TRUE(rest());
+  ASSERT_EQ(bench.notices().size(), 1U);
+  const Notice& notice = bench.notices().front();
+  const std::string said = notice.what + "|" + notice.remedy;
+  EXPECT_EQ(said.find(" A "), std::string::npos) << said;
+  EXPECT_EQ(said.find(" B"), std::string::npos) << said;
+  EXPECT_EQ(said.find("--"), std::string::npos) << said;
+  EXPECT_NE(said.find("a turn by more than 10 degrees is not looked for here"), std::string::npos) << said;
+}
+
+TEST_F(CompareToolTest, a_file_is_said_to_be_read_before_it_is_compared) {
+  // So large that it is not read when compareWith() has returned.
+  const engine::Version large = tests::fieldOf(
+      3000, 2000, [](int c, int r) { return slopedWaves(c, r); }, 0.1, 0.1);
+  engine::JobControl job;
+  const std::string path = folder.file("large.tif");
+  ASSERT_TRUE(engine::exportField(large, path, {}, job));
+  tool.options.moves = std::nullopt;
+  tool.compareWith(bench.client(), path, {});
+  EXPECT_EQ(tool.doing(), "reading large.tif");
+  std::string last;
+  ASSERT_TRUE(bench.until([&] {
+    (void)tool.poll(bench.client(), bench.noticesToFill());
+    if (tool.busy()) last = tool.doing();
+    return !tool.busy();
+  }));
+  EXPECT_EQ(last, "comparing");
+  ASSERT_NE(tool.compared(), nullptr);
+}
+
 TEST_F(CompareToolTest, the_other_scan_follows_a_form_that_goes_and_comes) {
   tool.options.moves = std::nullopt;
   tool.compareWith(bench.client(), other, {});
