@@ -14,6 +14,11 @@ namespace {
 
 const ReadAs kDegrees{"degrees", 1.0};
 
+// What lies between two cursors is read to five digits, as the heights of the plot that they are set on.
+std::string shownBetween(const Report& of, const ReadAs& unit) {
+  return of.is_null() ? "-" : fmt::format("{:.5g} {}", of.get<double>() / unit.size + 0.0, unit.name);
+}
+
 // "0.3 to 0.9 mm"
 std::string shownStretch(const Report& stretch, const ReadAs& unit) {
   return fmt::format("{:.6g} to {}", stretch[0].get<double>() / unit.size, shownLength(stretch[1], unit));
@@ -61,9 +66,11 @@ std::vector<SectionLine> sectionLines(const Report& of, const SectionUnits& unit
   const auto row = [&](const char* name, std::string text) { lines.push_back({name, std::move(text)}); };
   if (of.contains("cursors")) {
     const Report& c = of["cursors"];
-    row("cursors", fmt::format("dx {}, dz {}, slope {} degrees, distance {}", shownLength(c["dx_mm"], along),
-                               shownEstimate(c, "dz", "mm", height), shownNumber(c["slope_deg"]),
-                               shownLength(c["distance_mm"], along)));
+    const std::string dz =
+        c["dz_error_mm"].is_null() ? shownBetween(c["dz_mm"], height) : shownEstimate(c, "dz", "mm", height);
+    row("cursors",
+        fmt::format("dx {}, dz {}, slope {}, distance {}", shownBetween(c["dx_mm"], along), dz,
+                    shownBetween(c["slope_deg"], kDegrees), shownBetween(c["distance_mm"], along)));
   }
   if (of.contains("line")) {
     const Report& line = of["line"];

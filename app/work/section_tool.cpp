@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/texts/texts.h"
 #include "app/work/section_noise.h"
 
 namespace fettle::app {
@@ -27,7 +28,7 @@ std::vector<SectionLine> linesOf(const SectionWants& wants, const engine::Sectio
     if (!wantsFigure(wants, key)) continue;
     auto figure = sectionFigure(key, wants, section, noise, marks);
     if (!figure) {
-      lines.push_back({std::string(key), figure.error().what});
+      lines.push_back({std::string(key), trFormat("not stated: {}", figure.error().what)});
       continue;
     }
     Report one;

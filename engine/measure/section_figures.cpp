@@ -432,8 +432,8 @@ Result<CursorFigures> cursorFigures(const Section& section, double first_mm, dou
     for (const auto& [i, weight] : {std::pair(low, 1.0 - part), std::pair(low + 1, part)}) {
       if (weight == 0.0) continue;
       if (std::isnan(section.height[i]))
-        return inputError(fmt::format("there is no height at {:.6g} mm", at[k]), "section",
-                          "set the cursor beside the hole");
+        return inputError(k == 0 ? "the first cursor is over a hole" : "the second cursor is over a hole",
+                          "section", "set it beside the hole");
       height[k] += weight * section.height[i];
       weights[i] += k == 0 ? -weight : weight;
     }
