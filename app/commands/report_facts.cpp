@@ -9,8 +9,10 @@
 
 #include "app/commands/scan_files.h"
 #include "app/work/layer_over.h"
+#include "app/work/read_units.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/inspect/noise_model.h"
+#include "render/plan/number_text.h"
 
 namespace fettle::app {
 
@@ -32,14 +34,16 @@ engine::Status compareStates(ReportDraft& draft) {
 
 engine::Status addScanFacts(ReportDraft& draft) {
   const engine::Grid& grid = draft.imported.field.grid();
+  const ReadAs across = unitRead(render::fieldUnits(grid, 0.0, 1.0).length);
   ReportPage::Table about{"Scan", "", {"", ""}, {}};
   about.rows = {
       {"Samples", fmt::format("{} x {}", grid.width, grid.height)},
-      {"Spacing", fmt::format("{:.6g} x {:.6g} {}", grid.spacing_x, grid.spacing_y, grid.lateral_unit.name)},
-      {"Size", fmt::format("{:.6g} x {:.6g} {}", (grid.width - 1) * grid.spacing_x,
-                           (grid.height - 1) * grid.spacing_y, grid.lateral_unit.name)},
-      {"Lower left corner",
-       fmt::format("{:.10g}, {:.10g} {}", grid.origin_x, grid.origin_y, grid.lateral_unit.name)},
+      {"Spacing", fmt::format("{:.6g} x {:.6g} {}", grid.spacing_x / across.size,
+                              grid.spacing_y / across.size, across.name)},
+      {"Size", fmt::format("{:.6g} x {:.6g} {}", (grid.width - 1) * grid.spacing_x / across.size,
+                           (grid.height - 1) * grid.spacing_y / across.size, across.name)},
+      {"Lower left corner", fmt::format("{:.10g}, {:.10g} {}", grid.origin_x / across.size,
+                                        grid.origin_y / across.size, across.name)},
   };
   if (draft.imported.field.lines() != nullptr)
     about.rows.push_back({"Edge lines", fmt::format("{}", draft.imported.field.lines()->size())});

@@ -16,6 +16,7 @@
 #include "app/work/layer_over.h"
 #include "app/work/surface_numbers.h"
 #include "engine/marks/chosen_marks.h"
+#include "render/plan/number_text.h"
 
 namespace fettle::app {
 
@@ -117,7 +118,8 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
       tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                           reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());
   }
-  const std::vector<ArealLine> lines = arealLines(reports);
+  const std::vector<ArealLine> lines =
+      arealLines(reports, unitRead(render::fieldUnits(draft.imported.field.grid(), 0.0, 1.0).length));
   addScale(draft.report, draft.options.scale);
   std::string scale = scaleText(draft.report, "; ");
   if (const std::string layer = layerText(layerOver(draft.imported.field)); !layer.empty())

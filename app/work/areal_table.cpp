@@ -366,15 +366,14 @@ void printAreal(const Report& report) {
   }
 }
 
-std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
+std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across) {
   const Report& first = reports.front();
   const ReadAs height = readHeightsAs(first);
-  const ReadAs length = readAcrossAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
   std::vector<ArealLine> lines;
   for (const ArealGroup& group : kArealGroups) {
     for (const ArealRow& row : kArealRows) {
       if (std::string_view(row.group) != group.word || !first.contains(row.key)) continue;
-      const Shown shown = shownAs(row.quantity, height, length);
+      const Shown shown = shownAs(row.quantity, height, across);
       ArealLine line{group.heading, row.name, shown.unit, textWith(row, first), {}, {}};
       for (const Report& report : reports) {
         line.values.push_back(
@@ -387,7 +386,7 @@ std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
       lines.push_back(std::move(line));
     }
     if (!isFunctional(group) || !first.contains("sdc")) continue;
-    const Shown shown = shownAs(Quantity::kHeight, height, length);
+    const Shown shown = shownAs(Quantity::kHeight, height, across);
     ArealLine line{group.heading, "Sdc", shown.unit, sdcText(first["sdc"]), {}, {}};
     for (const Report& report : reports) {
       const Report& between = report["sdc"]["height"];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/report.h"
+#include "app/work/read_units.h"
 #include "engine/field/grid.h"
 #include "engine/measure/areal.h"
 #include "engine/uncertainty/noise_trial.h"
@@ -49,8 +50,9 @@ struct ArealLine {
   std::vector<std::string> values;   ///< one for each report: a figure, or the reason why none is stated
   std::vector<std::string> without;  ///< without noise, "12.3 +- 0.2"; empty where it is not stated
 };
-/// The parameters that the reports of addAreal and addChosen have, in the units in which those of the first read at ease.
-[[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports);
+/// The parameters that the reports of addAreal and addChosen have: heights in the unit in which those of the first read at ease,
+/// lengths across the field in that of everything beside them, `across`.
+[[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across);
 
 /// The same lines without values and units: of parameters that are still to be measured, with Sdc or without.
 enum class WithSdc : std::uint8_t { kNo, kYes };

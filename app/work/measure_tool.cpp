@@ -194,9 +194,9 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
 
 }  // namespace
 
-void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen) {
+void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across) {
   asked_ = options;
-  work_.begin([field = client.newest(), scan = client.original(), seen,
+  work_.begin([field = client.newest(), scan = client.original(), seen, across,
                what = options](engine::JobControl& job) -> engine::Result<Work> {
     Work work{field, {}};
     work.figures.options = what;
@@ -230,7 +230,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     work.figures.samples = state->report["samples"].get<std::int64_t>();
     reports.push_back(std::move(state->report));
     work.figures.curves.push_back(std::move(state->curves));
-    work.figures.lines = arealLines(reports);
+    work.figures.lines = arealLines(reports, across);
     return work;
   });
 }

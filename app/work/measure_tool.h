@@ -6,6 +6,7 @@
 
 #include "app/work/areal_table.h"
 #include "app/work/beside_the_field.h"
+#include "app/work/read_units.h"
 #include "app/work/surface_numbers.h"
 #include "engine/field/sample_rect.h"
 
@@ -47,7 +48,7 @@ class MeasureTool {
   };
 
   /// Measures `options` on the newest field; `seen`: the rectangle that is visible. One that is empty is refused by a notice of poll().
-  void measure(const LoopClient& client, const engine::SampleRect& seen);
+  void measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across);
   void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
   [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices) {

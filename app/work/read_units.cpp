@@ -33,6 +33,10 @@ ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
   return readLengthAs(least_mm / unit_mm, unit_mm, unit);
 }
 
+ReadAs unitRead(const render::ShownUnit& shown) {
+  return {shown.name == "\u00b5m" ? "um" : shown.name, 1.0 / shown.per_unit};
+}
+
 ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit) {
   return onScreen(readLengthAs(length, unit_mm, unit));
 }

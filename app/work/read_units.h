@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "render/plan/number_text.h"
+
 namespace fettle::app {
 
 /// A unit in which a length is read at ease: its name in ASCII, and its size in the unit that the length is kept in.
@@ -19,6 +21,9 @@ struct ReadAs {
 /// The unit for lengths along a surface whose samples are `spacing` apart: of metric ones mm, as drawings state them, m where
 /// samples are 10 mm apart and more, um where they are less than 100 nm apart.
 [[nodiscard]] ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit);
+
+/// A unit of render::fieldUnits(), its name in ASCII.
+[[nodiscard]] ReadAs unitRead(const render::ShownUnit& shown);
 
 /// As readLengthAs() for the window, whose lengths read "\u00b5m".
 [[nodiscard]] ReadAs readOnScreenAs(double length, double unit_mm, const std::string& unit);

@@ -55,9 +55,8 @@ struct ShownFeatures {
   double area;
   std::string volume;
 };
-ShownFeatures shownFeatures(const Report& report) {
-  const FeatureUnits units = featureUnits(report);
-  const ReadAs height = onScreen(units.height), length = onScreen(units.length);
+ShownFeatures shownFeatures(const Report& report, const render::ShownUnit& across) {
+  const ReadAs height = onScreen(featureUnits(report).height), length = onScreen(unitRead(across));
   const std::string volume = height.name == length.name
                                  ? length.name + "\u00b3"
                                  : fmt::format("{}\u00b2 {}", length.name, height.name);
@@ -97,9 +96,9 @@ void featureTable(const Report& rows, const ShownFeatures& units) {
   ImGui::EndTable();
 }
 
-void outcome(const FeatureTool& features) {
+void outcome(const PanelContext& context, const FeatureTool& features) {
   const Report& report = *features.found();
-  const ShownFeatures units = shownFeatures(report);
+  const ShownFeatures units = shownFeatures(report, context.units.length);
   if (features.outdated()) writeWrapped("the field has changed since: Find");
   writeWrapped(trFormat("{} {} at least {:.4g} {} high", report["count"].get<std::size_t>(),
                         tr(std::string_view(report["kind"].get_ref<const std::string&>())),
@@ -148,7 +147,7 @@ void featurePanel(const PanelContext& context, FeatureTool& features, WindowPict
   if (features.busy()) {
     if (cancelledBar(features.progress(), "finding", "Cancel##features")) features.cancel();
   } else if (features.found() != nullptr) {
-    outcome(features);
+    outcome(context, features);
   } else {
     writeIn(render::PanelColour::kMuted,
             "Hills or dales by watersheds, as ISO 25178-2 counts them: where each is, how high, how large.");

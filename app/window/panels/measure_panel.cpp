@@ -278,7 +278,8 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   measureFields(measure.options);
   ImGui::BeginDisabled(measure.busy());
   if (pressButton("Measure now", "Surface texture of the field as it is now, and of the scan beside it."))
-    measure.measure(context.client, picture.seenRect(context.client.field().grid()));
+    measure.measure(context.client, picture.seenRect(context.client.field().grid()),
+                    unitRead(context.units.length));
   ImGui::EndDisabled();
   sameLineIfFits("own ratios", ItemKind::kTick);
   tickBox(

@@ -28,7 +28,7 @@ TEST(ArealTable, ARoundedDirectionIsBelow180Degrees) {
     addAreal(report, measured, {}, grid);
     report["noise"] = {
         {"figures", Report::array({{{"parameter", "std"}, {"without", 179.96}, {"error", 0.3}}})}};
-    const auto lines = arealLines({report});
+    const auto lines = arealLines({report}, {"mm", 1.0});
     const auto found = std::ranges::find(lines, "Std", &ArealLine::name);
     ASSERT_NE(found, lines.end());
     EXPECT_EQ(found->values.front(), "0");
@@ -36,6 +36,25 @@ TEST(ArealTable, ARoundedDirectionIsBelow180Degrees) {
     EXPECT_NE(arealRows("s.tif", report).find("s.tif,spatial,Std,0,degrees,,179.96,0.3"), std::string::npos)
         << arealRows("s.tif", report);
   }
+}
+
+// Beside a scale bar, coordinates and sizes in nm a length in um is a second unit of one quantity.
+TEST(ArealTable, LengthsAcrossAreInTheUnitOfTheWindow) {
+  engine::Grid grid;
+  grid.width = grid.height = 128;
+  grid.spacing_x = grid.spacing_y = 4e-9;
+  grid.lateral_unit = grid.height_unit = {"m", 1000.0};
+  engine::ArealParameters measured;
+  measured.samples = 100;
+  measured.sq = 2e-8;
+  measured.spatial.sal = 2.5e-5;  // mm
+  Report report;
+  addAreal(report, measured, {}, grid);
+  const auto lines = arealLines({report}, unitRead({"nm", 1e9}));
+  const auto found = std::ranges::find(lines, "Sal", &ArealLine::name);
+  ASSERT_NE(found, lines.end());
+  EXPECT_EQ(found->unit, "nm");
+  EXPECT_EQ(found->values.front(), "25");
 }
 
 // What is not stated with noise is not stated without either, for the reason that it has.
