@@ -77,7 +77,13 @@ Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule, co
                 warnings);
   if (imported.field.reader().bounds().empty())
     warnings.emplace_back("there is no height: every sample is no-data; check the file and --no-data");
-  imported.lone_values = doubtLoneValues(imported.field, rule, warnings);
+  HeightRule doubted = rule;
+  if (rule.user_no_data && tally.said == 0) {
+    warnings.push_back(
+        fmt::format("no sample has the no-data value {}: check --no-data", *rule.user_no_data));
+    doubted.user_no_data.reset();  // it has explained nothing
+  }
+  imported.lone_values = doubtLoneValues(imported.field, doubted, warnings);
   imported.format = std::move(format);
   imported.warnings = std::move(warnings);
   return imported;

@@ -15,7 +15,9 @@ namespace fettle::engine {
 
 /// Counts from converting numbers to heights; tallies of strips are merged, in any order.
 struct HeightTally {
-  std::int64_t holes = 0;     ///< by no-data value or NaN
+  std::int64_t holes = 0;  ///< by no-data value or NaN
+  std::int64_t said =
+      0;  ///< of these with HeightRule::user_no_data; a reader that leaves them out before counts one
   std::int64_t infinite = 0;  ///< infinities, also those caused only by rounding to float
   double rounding = 0.0;      ///< largest |float height - double height|
   /// Of the heights whose rounding was looked at, before it.
@@ -30,6 +32,7 @@ struct HeightTally {
   }
   void merge(const HeightTally& other) noexcept {
     holes += other.holes;
+    said += other.said;
     infinite += other.infinite;
     rounding = std::fmax(rounding, other.rounding);
     least = std::fmin(least, other.least);
@@ -108,6 +111,7 @@ struct HeightRule {
       if (hole(numbers[i])) {
         heights[i] = std::numeric_limits<float>::quiet_NaN();
         ++tally.holes;
+        tally.said += static_cast<std::int64_t>(user_no_data && same(numbers[i], *user_no_data));
         continue;
       }
       double height = static_cast<double>(numbers[i]);

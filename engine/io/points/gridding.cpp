@@ -155,6 +155,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
     rule.convert(row.data(), heights.data(), width, tally);
     builder->writeHeights(0, r, grid.width, 1, heights.data(), grid.width);
   }
+  tally.said = 1;         // they were left out as points
   tally.decimals = true;  // decimal numbers, or floats originally
   job.advance();
   if (job.cancelled()) return cancelled();

@@ -48,6 +48,27 @@ TEST(UndeclaredHoles, ThoseOfAPngThatFettleWroteAreHolesWhenItIsReadBack) {
   }
 }
 
+// A number that is mistyped explains nothing: what looks like holes is named as without it.
+TEST(UndeclaredHoles, ANumberThatNoSampleHasIsSaidAndExplainsNoOther) {
+  const TempFolder folder;
+  ASSERT_TRUE(save(makeField(gridOf(100, 100), with500(2.5F)), folder.file("lone.tif")));
+  ImportOptions options;
+  options.no_data = 2.5;
+  JobControl job;
+  const auto right = importField(folder.file("lone.tif"), options, job);
+  ASSERT_TRUE(right) << right.error().line();
+  EXPECT_EQ(summarize(right->field).no_data, 500);
+  EXPECT_TRUE(right->lone_values.empty());
+  EXPECT_FALSE(warned(right->warnings, "no sample has"));
+  options.no_data = 0.02;
+  const auto wrong = importField(folder.file("lone.tif"), options, job);
+  ASSERT_TRUE(wrong) << wrong.error().line();
+  EXPECT_EQ(summarize(wrong->field).no_data, 0);
+  EXPECT_TRUE(warned(wrong->warnings, "no sample has the no-data value 0.02: check --no-data"));
+  ASSERT_EQ(wrong->lone_values.size(), 1U);
+  EXPECT_EQ(wrong->lone_values.front().number, 2.5F);
+}
+
 TEST(UndeclaredHoles, APngWithoutHolesHasNoneThoughAHeightIsCountedAs0) {
   const TempFolder folder;
   Grid grid = gridOf(100, 100);
