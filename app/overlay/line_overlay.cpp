@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 namespace fettle::app {
 
 namespace {
@@ -38,6 +41,29 @@ glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at) {
 std::optional<glm::dvec3> aboveSamples(const engine::FieldReader& reader, glm::dvec2 at) {
   const std::optional<double> height_mm = heightAbove(reader, at);
   return height_mm ? std::optional(placeAt(reader.grid(), at, *height_mm)) : std::nullopt;
+}
+
+glm::dvec3 middleOnSurface(const engine::FieldReader& reader, glm::dvec2 low, glm::dvec2 high) {
+  const glm::dvec2 middle = 0.5 * (low + high);
+  if (const auto above = aboveSamples(reader, middle)) return *above;
+  constexpr int kSteps = 32;
+  const engine::Grid& grid = reader.grid();
+  double nearest = std::numeric_limits<double>::infinity();
+  const engine::HeightBounds bounds = reader.bounds();
+  double height =
+      bounds.empty() ? 0.0 : 0.5 * (static_cast<double>(bounds.min) + static_cast<double>(bounds.max));
+  for (int r = 0; r <= kSteps; ++r)
+    for (int c = 0; c <= kSteps; ++c) {
+      const glm::dvec2 at = glm::mix(low, high, glm::dvec2(c, r) / static_cast<double>(kSteps));
+      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < grid.width && at.y < grid.height)) continue;
+      const float z = reader.heightAt(static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y));
+      const glm::dvec2 off = (at - middle) * glm::dvec2(grid.spacingXMm(), grid.spacingYMm());
+      const double distance = glm::dot(off, off);
+      if (std::isnan(z) || distance >= nearest) continue;
+      nearest = distance;
+      height = static_cast<double>(z);
+    }
+  return placeAt(grid, middle, height * grid.height_unit.mm);
 }
 
 void addMeaning(const render::LineMeaning& meaning, std::vector<render::LineMeaning>& meanings) {

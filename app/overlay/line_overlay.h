@@ -19,6 +19,10 @@ namespace fettle::app {
 /// The same, but nothing over a hole: what is drawn at height 0 there is far from a surface whose heights are not about 0.
 [[nodiscard]] std::optional<glm::dvec3> aboveSamples(const engine::FieldReader& reader, glm::dvec2 at);
 
+/// The middle of a rectangle [samples] at the height of the surface: of its sample with a height that is nearest to the middle, looked
+/// for at 33 x 33 places; where it has none, halfway between the lowest and the highest of the field.
+[[nodiscard]] glm::dvec3 middleOnSurface(const engine::FieldReader& reader, glm::dvec2 low, glm::dvec2 high);
+
 /// The edge lines of a field in the picture: thin lines over a band of twice their standard deviation to either side;
 /// steps, creases, what is not located and the chosen line each in a colour. They lie on the upper side of the surface
 /// and are hidden by what is in front of them.

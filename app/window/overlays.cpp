@@ -67,7 +67,7 @@ render::View viewOfPlace(const render::View& view, const render::Framing& framin
   const glm::dvec2 spacing(reader.grid().spacingXMm(), reader.grid().spacingYMm());
   const glm::dvec2 extent_mm = spacing * glm::max(high - low, glm::dvec2(kLeastSeen));
   render::View there = view;
-  Navigation::show(there, framing, framing.sceneOf(aboveSurface(reader, 0.5 * (low + high))),
+  Navigation::show(there, framing, framing.sceneOf(middleOnSurface(reader, low, high)),
                    std::max(extent_mm.x, extent_mm.y));
   return there;
 }

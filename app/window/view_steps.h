@@ -77,9 +77,10 @@ inline void lastStroke(Parts& p) {
   const engine::SampleRect rect = clientOf(p).lastRect();
   const auto framing = p.picture.framing();
   if (rect.empty() || !framing) return;
-  const glm::dvec2 middle(rect.column + 0.5 * rect.columns, rect.row + 0.5 * rect.rows);
+  const glm::dvec2 low(rect.column, rect.row), high = low + glm::dvec2(rect.columns, rect.rows);
   render::View view = p.view;
-  Navigation::centreOn(view, *framing, framing->sceneOf(aboveSurface(clientOf(p).field().reader(), middle)));
+  Navigation::centreOn(view, *framing,
+                       framing->sceneOf(middleOnSurface(clientOf(p).field().reader(), low, high)));
   p.flyTo(view);
 }
 template <int azimuth, int elevation>

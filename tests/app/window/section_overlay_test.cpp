@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/overlay/line_overlay.h"
 #include "app/window/overlays.h"
 #include "app/work/section_tool.h"
 #include "tests/haptic/support/fields.h"
@@ -23,6 +24,16 @@ render::Overlays overlaysOf(const engine::Version& field, double from_x, double 
   render::Overlays overlays;
   SectionOverlay().append(field, section, 0.5, overlays);
   return overlays;
+}
+
+// A view that is centred there looks at the surface, whose heights need not be about 0.
+TEST(SectionOverlay, the_middle_of_what_lies_around_a_hole_is_as_high_as_the_surface) {
+  const engine::Version field = fieldWithGap(20, 40);
+  const glm::dvec3 middle = middleOnSurface(field.reader(), {10.0, 5.0}, {50.0, 15.0});
+  EXPECT_EQ(middle.x, 30.0);
+  EXPECT_EQ(middle.y, 10.0);
+  EXPECT_EQ(middle.z, 200.0);
+  EXPECT_EQ(middleOnSurface(field.reader(), {25.0, 5.0}, {35.0, 15.0}).z, 200.0) << "all of it is a hole";
 }
 
 TEST(SectionOverlay, a_line_is_not_drawn_over_a_hole) {
