@@ -20,6 +20,8 @@ float roomOfNotices(Parts& parts, float side, float bottom) {
   const auto now = NoticeRoom::Clock::now();
   if (ImGui::IsAnyMouseDown() && io.MousePos.x >= io.DisplaySize.x - side)
     parts.notice_room.press(bottom - io.MousePos.y, now);
+  const bool inside = io.MousePos.x >= io.DisplaySize.x - side && io.MousePos.x < io.DisplaySize.x;
+  parts.notice_room.point(inside ? bottom - io.MousePos.y : -1.0F, inside ? io.MousePos.x : -1.0F, now);
   return parts.notice_room.follow(noticesHeight(parts.feedback.notices, side), now);
 }
 
