@@ -211,7 +211,7 @@ void addFilters(const Parts& p, Report& r) {
   r["computing_heights"] = p.heights.busy();
   r["heights_found"] = p.heights.found();
   const haptic::HeightsMaker* const previewed = p.heights.previewed();
-  r["heights_preview"] = previewed != nullptr ? Report(makerName(*previewed)) : Report();
+  r["heights_preview"] = previewed != nullptr ? Report(p.heights.previewName()) : Report();
   const auto& removal = p.removal.counts();
   r["would_remove"] = removal ? Report(removal->removed) : Report();
   r["heights_so_far"] = p.heights.soFar();

@@ -31,17 +31,27 @@ struct MakerName {
     return fmt::format("Level {}: {}{}{}", axis, kMethods[static_cast<std::size_t>(lines.method)], degree,
                        form);
   }
-  std::string operator()(const engine::RemoveOptions& remove) const {
-    constexpr const char* kOf[] = {"all samples", "marked samples", "samples not marked"};
+  std::string operator()(const engine::RemoveOptions& chosen) const {
+    constexpr const char* kOf[] = {"all samples", "marked samples", "unmarked samples"};
+    const engine::RemoveOptions remove = field->reader().sign() < 0.0F ? engine::upsideDown(chosen) : chosen;
+    const engine::LengthUnit& unit = field->grid().height_unit;
     const bool low = std::isfinite(remove.low), high = std::isfinite(remove.high);
+    const ReadAs as = readLengthAs(
+        std::max(low ? std::abs(remove.low) : 0.0, high ? std::abs(remove.high) : 0.0), unit.mm, unit.name);
+    const auto height = [&as](double limit) { return fmt::format("{:.6g} {}", limit / as.size, as.name); };
     const bool between = remove.heights == engine::RemoveOptions::Heights::kBetween;
-    // Of a field that is seen upside down below is above.
-    const char* by = !low && !high ? ""
-                     : between     ? ": between two heights"
-                     : low && high ? ": outside two heights"
-                                   : ": beyond a height";
+    std::string by;
+    if (low && high)
+      by = between ? fmt::format(" between {} and {}", height(remove.low), height(remove.high))
+                   : fmt::format(" below {} and above {}", height(remove.low), height(remove.high));
+    else if (low)
+      by = (between ? " from " : " below ") + height(remove.low) + (between ? " up" : "");
+    else if (high)
+      by = (between ? " up to " : " above ") + height(remove.high);
     return fmt::format("{} {}{}", engine::kRemoveStep, kOf[static_cast<std::size_t>(remove.region)], by);
   }
+
+  const engine::Version* field;
 };
 
 std::string removedText(const engine::RemoveCounts& counts, bool done) {
@@ -103,8 +113,8 @@ std::string foundIn(const haptic::ComputedHeights& heights, const haptic::Height
 
 }  // namespace
 
-std::string makerName(const haptic::HeightsMaker& maker) {
-  return std::visit(MakerName(), maker);
+std::string makerName(const haptic::HeightsMaker& maker, const engine::Version& field) {
+  return std::visit(MakerName{&field}, maker);
 }
 
 std::string earlyState(const engine::EarlyPicture& picture) {
@@ -209,11 +219,17 @@ void HeightTool::forgetFound() noexcept {
   found_.clear();
   made_from_.reset();
   made_ = false;
+  changed_nothing_ = false;
 }
 
 bool HeightTool::forgetUndone(const LoopClient& client) {
   if (!made_from_) return false;
   const bool is_before = client.newest() == *made_from_;
+  // There is no step to undo: it is of that state, and says nothing of another one.
+  if (changed_nothing_ && !is_before) {
+    forgetFound();
+    return true;
+  }
   made_ |= !is_before;  // the loop takes it in some ticks later
   if (!is_before || !made_) return false;
   forgetFound();
@@ -323,12 +339,15 @@ bool HeightTool::poll(LoopClient& client, std::vector<Notice>& notices) {
     changed = true;
     forgetFound();
     found_ = foundIn(done_->heights, wanted_.maker, done_->base, done_->holes, step);
-    if (step) made_from_ = done_->base;
+    if (step) {
+      made_from_ = done_->base;
+      changed_nothing_ = done_->base == done_->heights.field;
+    }
     if (!step) {
       paces_[wanted_.maker.index()].see(PreviewPace::Clock::now());
       preview_ = Preview{wanted_.maker, *std::move(done_)};
     } else if (!(done_->base == done_->heights.field) &&
-               !client.changeHeights(done_->base, done_->heights.field, makerName(wanted_.maker),
+               !client.changeHeights(done_->base, done_->heights.field, makerName(wanted_.maker, done_->base),
                                      wanted_.maker)) {
       asked_ = wanted_;
     }
@@ -362,6 +381,10 @@ void HeightTool::start(LoopClient& client) {
   });
 }
 
+std::string HeightTool::previewName() const {
+  return preview_ ? makerName(preview_->maker, preview_->work.base) : std::string();
+}
+
 std::string HeightTool::soFar() const {
   if (!early_) return {};
   return moved() ? tr("to come in view") : earlyState(early_->picture);
@@ -369,8 +392,10 @@ std::string HeightTool::soFar() const {
 
 std::optional<PreviewPicture> HeightTool::picture() const {
   if (early_)
-    return PreviewPicture{early_->picture.field, fmt::format("{}: {}", makerName(wanted_.maker), soFar())};
-  if (preview_) return PreviewPicture{preview_->work.heights.field, makerName(preview_->maker)};
+    return PreviewPicture{early_->picture.field,
+                          fmt::format("{}: {}", makerName(wanted_.maker, base_), soFar())};
+  if (preview_)
+    return PreviewPicture{preview_->work.heights.field, makerName(preview_->maker, preview_->work.base)};
   return std::nullopt;
 }
 

@@ -76,6 +76,8 @@ class HeightTool {
   [[nodiscard]] const haptic::HeightsMaker* previewed() const noexcept {
     return preview_ ? &preview_->maker : nullptr;
   }
+  /// Its name, as that of the step; empty without one.
+  [[nodiscard]] std::string previewName() const;
   [[nodiscard]] bool previews(const haptic::HeightsMaker& maker) const {
     return preview_ && preview_->maker == maker;
   }
@@ -149,6 +151,7 @@ class HeightTool {
   std::string found_;
   std::optional<engine::Version> made_from_;  // by the step that was found; nothing: it was none
   bool made_ = false;                         // and the step is there
+  bool changed_nothing_ = false;              // so that there is no step
   static constexpr std::size_t kKinds = std::variant_size_v<haptic::HeightsMaker>;
   std::array<PreviewPace, kKinds> paces_;
   std::array<RestingFields<haptic::HeightsMaker>, kKinds> fields_;
@@ -159,8 +162,10 @@ class HeightTool {
   Background<bool> moving_;  // works out what came into view, beside the whole
 };
 
-/// "Fill holes: least curvature", "Level rows: median, form stays", "Remove marked samples": the step in the list of steps.
-[[nodiscard]] std::string makerName(const haptic::HeightsMaker& maker);
+/// "Fill holes: least curvature", "Level rows: median, form stays", "Remove unmarked samples below 0.2 mm": the step in the list of
+/// steps.
+/// `field`: that it is made from, with its unit and the way up that its heights are read.
+[[nodiscard]] std::string makerName(const haptic::HeightsMaker& maker, const engine::Version& field);
 
 /// "approximate, off by 12 um rms, 20 % exact", "40 % so far", "exact in view".
 [[nodiscard]] std::string earlyState(const engine::EarlyPicture& picture);

@@ -158,8 +158,8 @@ TEST(RemoveCommand, WhatTheWindowRemovedAndFilledCountsAsFilled) {
     if (by_commands)
       step(engine::kByCommands, engine::StepKind::kImport, removed->field);
     else
-      step(app::makerName(high), engine::StepKind::kFilter, removed->field);
-    step(app::makerName(fill), engine::StepKind::kFilter, filled->field);
+      step(app::makerName(high, imported->field), engine::StepKind::kFilter, removed->field);
+    step(app::makerName(fill, imported->field), engine::StepKind::kFilter, filled->field);
     // A later step: the removal is none of the last two.
     step("Invert", engine::StepKind::kInvert, filled->field.inverted());
     ASSERT_TRUE(engine::saveSession(session, file, job));

@@ -111,6 +111,45 @@ TEST_F(HeightPreview, BecomesTheStepAsItIs) {
   }
 }
 
+// "0 of N samples removed" is of the field as it was then: there is no step with which it would go.
+TEST_F(HeightPreview, WhatFoundNothingToDoIsForgottenWithAnotherState) {
+  mark(30);
+  until([&] { return client_->upright() == client_->history().current() && steps() == 1; });
+  heights_.remove.heights = engine::RemoveOptions::Heights::kOutside;
+  heights_.remove.high = 1e9;
+  heights_.removeSamples();
+  untilRest();
+  EXPECT_TRUE(heights_.found().starts_with("0 of ")) << heights_.found();
+  EXPECT_EQ(steps(), 1);
+  poll();
+  EXPECT_FALSE(heights_.found().empty()) << "nothing has changed";
+  client_->undo();
+  until([&] { return client_->upright() == client_->history().current() && steps() == 0; });
+  until([&] { return heights_.found().empty(); });
+}
+
+TEST_F(HeightPreview, ARemovalIsNamedByItsLimitsAsTheyAreTyped) {
+  using Heights = engine::RemoveOptions::Heights;
+  const std::string unit = scan_.grid().height_unit.name;
+  ASSERT_EQ(unit, "mm");
+  engine::RemoveOptions remove;
+  EXPECT_EQ(app::makerName(remove, scan_), "Remove unmarked samples");
+  remove.region = engine::Region::kAll;
+  remove.heights = Heights::kOutside;
+  remove.high = 2.5;
+  EXPECT_EQ(app::makerName(remove, scan_), "Remove all samples above 2.5 mm");
+  // Upside down the same samples are chosen by the other limit; the panel shows them upright, and so does the name.
+  EXPECT_EQ(app::makerName(engine::upsideDown(remove), scan_.inverted()), "Remove all samples above 2.5 mm");
+  remove.low = 0.02;
+  EXPECT_EQ(app::makerName(remove, scan_), "Remove all samples below 0.02 mm and above 2.5 mm");
+  remove.region = engine::Region::kMarked;
+  remove.heights = Heights::kBetween;
+  EXPECT_EQ(app::makerName(remove, scan_), "Remove marked samples between 0.02 mm and 2.5 mm");
+  remove.low = -0.0004;
+  remove.high = 0.0002;
+  EXPECT_EQ(app::makerName(remove, scan_), "Remove marked samples between -400 nm and 200 nm");
+}
+
 TEST_F(HeightPreview, OfOtherOptionsIsNotTheStep) {
   previewAll(heights_.fill);
   untilRest();

@@ -322,7 +322,8 @@ TEST_F(WindowTest, samples_are_removed_by_height_and_by_mark) {
   EXPECT_TRUE(user.reads("would go"));
   EXPECT_EQ(program->now()["steps"], 0);
   const State shown = user.click("Preview");
-  EXPECT_EQ(shown["heights_preview"], "Remove samples not marked: beyond a height")
+  EXPECT_EQ(shown["heights_preview"],
+            fmt::format("Remove unmarked samples below {:.6g} mm", std::stod(typed)))
       << shown["notices"].dump();
   user.at({20, 790});
   const Screen holes = user.changed("without them, beside the scan", alone);
