@@ -78,6 +78,10 @@ FETTLE_CONST kSpecOnDemand = 7;
 // cell are read in one look-up.
 FETTLE_CONST kSpecGather = 8;
 FETTLE_CONST kSpecPerspective = 9;  // distances of points from the viewer differ
+// Of the hatch of samples that are not compared: out of kHatchStripes parts of its period one is dark, with 1 / kHatchShade of the
+// grey.
+FETTLE_CONST kHatchStripes = 4;
+FETTLE_CONST kHatchShade = 4;
 // Normals are those of the plane through the samples in the footprint of a ray (footprint.glsl).
 FETTLE_CONST kSpecFootprint = 10;
 // Light that is hidden by what stands around; brighter ridges and darker hollows (surroundings.glsl).
@@ -135,7 +139,7 @@ struct PanelUniforms {
   vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); -
   vec4 light;       // 352: unit vector to the light; share of light without direction
   vec4 marks_tint;  // 368: linear red, green, blue; opacity, -1: an outline alone
-  vec4 no_data;     // 384: linear red, green, blue
+  vec4 no_data;     // 384: linear red, green, blue; period of the hatch of what is not compared [px]
   vec4 wall;        // 400: linear red, green, blue
   vec4 ground;      // 416: linear red, green, blue: background
   ivec4 size;       // 432: virtual columns, rows; true columns, rows

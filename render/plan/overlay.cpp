@@ -174,6 +174,17 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Decoratio
   }
 }
 
+// The stripes of shading.glsl, over a square of the grey that they are on.
+void hatch(Pen& pen, double left, double top, double side, const glm::vec3& grey, double scale) {
+  const double period = hatchPeriod(scale), dark = period / gpu::kHatchStripes;
+  const glm::vec3 stripe = grey / static_cast<float>(gpu::kHatchShade);
+  for (double row = 0.0; row < side; ++row)
+    for (double at = -std::fmod(left + top + row, period); at < side; at += period) {
+      const double from = std::max(0.0, at), to = std::min(side, at + dark);
+      if (to > from) pen.box(left + from, top + row, to - from, 1.0, stripe);
+    }
+}
+
 // A line of a round length, its label, the vertical exaggeration, and what the special colours mean.
 void bottomLine(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
                 const Palette& palette, std::vector<std::string>& warnings) {
@@ -222,7 +233,12 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Decorati
     (void)add(what, palette.ink);
   };
   if (f.no_data) swatch(palette.no_data, "no data");
-  if (!f.without.empty()) swatch(palette.no_data, f.without);
+  if (!f.without.empty()) {
+    const double at = x;
+    swatch(palette.no_data, f.without);
+    if (x > at)
+      hatch(pen, at, middle - std::floor(std::round(13 * s) / 2), std::round(13 * s), palette.no_data, s);
+  }
   if (f.marks) swatch(palette.marks, "marked");
   if (f.suggested) swatch(palette.suggested, "suggested");
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +21,11 @@ struct Palette {
   glm::vec3 ground, ink, faint_ink, no_data, wall, marks, suggested;
 };
 [[nodiscard]] Palette paletteOf(Theme theme, ColourMap map);
+
+/// How far stripes of the hatch lie apart that samples without a colour have, along x and along y [pixels].
+[[nodiscard]] inline double hatchPeriod(double scale) noexcept {
+  return std::max(6.0, std::round(8.0 * scale));
+}
 
 /// Positions of the parts in a picture of a given size; pixels.
 struct Layout {

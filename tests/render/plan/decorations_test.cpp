@@ -25,6 +25,10 @@ class Decorated {
     warnings.clear();
     return decorationQuads(layout(), view_, content, palette_, glyphs_, warnings);
   }
+  [[nodiscard]] std::vector<gpu::Quad> quadsOf(const Palette& palette) {
+    warnings.clear();
+    return decorationQuads(layout(), view_, content, palette, glyphs_, warnings);
+  }
   [[nodiscard]] Layout layout() const { return layOut(view_, Decoration::kFull, 1, Titles::kAbove); }
   [[nodiscard]] const Palette& palette() const { return palette_; }
   void setWidth(int width) { view_.width = width; }
@@ -102,6 +106,28 @@ TEST(Legend, NamesEachSpecialColourThatThePictureHasAndNoOther) {
       for (const char* word : {"no data", "marked", "suggested"})
         EXPECT_EQ(warning.find(word), std::string::npos) << width << ": " << warning;
     EXPECT_LE(boxes, 3);
+  }
+}
+
+// Both are grey: without colours and in both themes stripes tell them apart, dark on the light grey of theirs.
+TEST(Legend, WhatIsNotComparedIsHatchedAndAHoleIsNot) {
+  for (const Theme theme : {Theme::kDark, Theme::kLight}) {
+    Decorated picture;
+    const Palette palette = paletteOf(theme, ColourMap::kDiverging);
+    const glm::vec3 stripe = palette.no_data / static_cast<float>(gpu::kHatchShade);
+    const auto boxes = [&](const glm::vec3& colour) {
+      const std::vector<gpu::Quad> quads = picture.quadsOf(palette);
+      return std::ranges::count_if(quads, [&](const gpu::Quad& q) { return hasColour(q, colour); });
+    };
+    picture.content.no_data = true;
+    EXPECT_EQ(boxes(palette.no_data), 1);
+    EXPECT_EQ(boxes(stripe), 0);
+    picture.content.without = "not fitted";
+    EXPECT_EQ(boxes(palette.no_data), 2);
+    EXPECT_GT(boxes(stripe), 8);
+    // A quarter of the light: a contrast of more than 2 to 1, in luminance as WCAG states it.
+    const auto contrast = [](const glm::vec3& a, const glm::vec3& b) { return (a.y + 0.05) / (b.y + 0.05); };
+    EXPECT_GT(contrast(palette.no_data, stripe), 1.8);
   }
 }
 
