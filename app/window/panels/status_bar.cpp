@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <initializer_list>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -13,6 +15,18 @@ namespace {
 
 void text(const std::string& what) {
   ImGui::TextUnformatted(screenText(what).c_str());
+}
+
+// The first of these that the line has room for, behind it what the cursor is on where that fits, too.
+void textThatFits(std::initializer_list<const char*> says, const std::string& place) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  const auto fits = [room](const std::string& line) {
+    return ImGui::CalcTextSize(screenText(line).c_str()).x <= room;
+  };
+  for (const std::string& behind : {place, std::string()})
+    for (const char* each : says)
+      if (std::string line = each + behind; fits(line)) return text(line);
+  text(*(says.end() - 1));
 }
 
 // Returns whether the user cancelled.
@@ -100,13 +114,19 @@ void content(Parts& parts) {
     if (statusWork(parts.opening.progress(), 240.0F, textOf("opening"))) parts.opening.cancel();
   } else if (lasso.active()) {
     // It stays on for long: what is under the cursor is said as well.
-    const char* const how =
-        lasso.shape() == Lasso::Shape::kBox
-            ? tr("box after box: drag, or corners with arrows and Space; Enter marks, with Ctrl unmarks; Esc "
-                 "or another tool ends it")
-            : tr("line after line: draw, or corners by click or arrows and Space; Enter or right button "
-                 "marks, with Ctrl unmarks; Esc or another tool ends it");
-    text(how + placeText(parts));
+    // Large letters leave room for less.
+    if (lasso.shape() == Lasso::Shape::kBox)
+      textThatFits({tr("box after box: drag, or corners with arrows and Space; Enter marks, with Ctrl "
+                       "unmarks; Esc or another tool ends it"),
+                    tr("box after box: Enter marks, with Ctrl unmarks; Esc ends it"),
+                    tr("Enter marks, with Ctrl unmarks; Esc ends it")},
+                   placeText(parts));
+    else
+      textThatFits({tr("line after line: draw, or corners by click or arrows and Space; Enter or right "
+                       "button marks, with Ctrl unmarks; Esc or another tool ends it"),
+                    tr("line after line: Enter marks, with Ctrl unmarks; Esc ends it"),
+                    tr("Enter marks, with Ctrl unmarks; Esc ends it")},
+                   placeText(parts));
   } else if (parts.marking.edit.busy()) {
     if (statusWork(parts.marking.edit.progress(), 240.0F, parts.marking.edit.what().c_str()))
       parts.marking.edit.cancel();
