@@ -25,8 +25,7 @@ struct Entry {
 int chooser(const char* id, const std::string& now, const std::vector<Entry>& entries, const char* off_title,
             const char* cost_title, bool& opened) {
   int chosen = -1;
-  opened =
-      ImGui::BeginCombo(id, std::string(tr(std::string_view(now))).c_str(), ImGuiComboFlags_HeightLargest);
+  opened = beginList(id, std::string(tr(std::string_view(now))).c_str(), ImGuiComboFlags_HeightLargest);
   if (!opened) return chosen;
   std::string widest;
   for (const Entry& entry : entries)

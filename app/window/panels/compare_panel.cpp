@@ -19,8 +19,7 @@ constexpr int kComparedLines = 15, kUncomparedLines = 3;
 void meshFields(const PanelContext& context, NominalChoice& nominal) {
   (void)field("mesh in", "The unit of the numbers of an .stl; only one that Fettle wrote says it.", [&] {
     constexpr const char* kAsStated = textOf("as it says, else mm");
-    if (!ImGui::BeginCombo("##mesh unit",
-                           nominal.unit.empty() ? tr(kAsStated) : screenText(nominal.unit).c_str()))
+    if (!beginList("##mesh unit", nominal.unit.empty() ? tr(kAsStated) : screenText(nominal.unit).c_str()))
       return false;
     if (ImGui::Selectable(labelOf(kAsStated), nominal.unit.empty())) nominal.unit.clear();
     for (const std::string& unit : engine::lengthUnitNames())

@@ -25,7 +25,7 @@ void materialFields(render::FormShading& form) {
           "material",
           "What the surface looks like to be made of. A material is lit from beside you, however the view is "
           "turned, and shows form better than colours do.",
-          [&] { return ImGui::BeginCombo("##material", std::string(tr(chosen.word)).c_str()); })) {
+          [&] { return beginList("##material", std::string(tr(chosen.word)).c_str()); })) {
     for (const render::MaterialRow& row : render::materials()) {
       const bool is = row.material == form.material;
       if (ImGui::Selectable(fmt::format("{}: {}", tr(row.word), tr(row.shows)).c_str(), is))
@@ -64,7 +64,7 @@ std::string scaleText(double scale) {
 void uiScaleField(double& scale) {
   static constexpr double kScales[] = {0.0, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
   if (field("text size", "Of all texts, panels and marks of the window; kept for the next start.",
-            [&] { return ImGui::BeginCombo("##ui scale", scaleText(scale).c_str()); })) {
+            [&] { return beginList("##ui scale", scaleText(scale).c_str()); })) {
     for (const double each : kScales)
       if (ImGui::Selectable(scaleText(each).c_str(), each == scale)) scale = each;
     ImGui::EndCombo();

@@ -33,7 +33,7 @@ void wordField(const PanelContext& context, const haptic::SceneWord& word) {
   haptic::Scene scene = context.client.scene();
   const std::size_t now = word.of(scene);
   fieldName(word.name.data(), word.says);
-  if (ImGui::BeginCombo(fmt::format("##{} {}", word.table, word.key).c_str(), tr(word.words[now].data()))) {
+  if (beginList(fmt::format("##{} {}", word.table, word.key).c_str(), tr(word.words[now].data()))) {
     for (std::size_t i = 0; i < word.words.size(); ++i)
       if (ImGui::Selectable(labelOf(word.words[i].data()), i == now) && i != now) {
         word.set(scene, i);

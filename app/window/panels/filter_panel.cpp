@@ -40,7 +40,7 @@ void kindField(const PanelContext& context, FilterPreview& filters, const Height
   const engine::FilterSpec& spec = filters.spec;
   fieldName("filter", engine::filterOf(spec.kind).says);
   const bool open =
-      ImGui::BeginCombo("##filter", tr(engine::filterOf(spec.kind).title), ImGuiComboFlags_HeightLargest);
+      beginList("##filter", tr(engine::filterOf(spec.kind).title), ImGuiComboFlags_HeightLargest);
   if (!open) {
     explain(engine::filterOf(spec.kind).says);
     return;
@@ -89,7 +89,7 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     constexpr const char* kSays =
         textOf("What is moved over the surface: a ball rolls over it, a disk and a square stay level.");
     fieldName("element", kSays);
-    if (!ImGui::BeginCombo("##element",
+    if (!beginList("##element",
                            tr(engine::kElementWords[static_cast<std::size_t>(spec.element)].data()))) {
       explain(kSays);
     } else {

@@ -24,7 +24,7 @@ void fitFields(FitTool::Options& options) {
               [&] {
                 const std::string now =
                     options.shape ? std::string(tr(engine::infoOf(*options.shape).word)) : tr("the simplest");
-                if (!ImGui::BeginCombo("##fitted shape", now.c_str())) return false;
+                if (!beginList("##fitted shape", now.c_str())) return false;
                 if (ImGui::Selectable(labelOf("the simplest"), !options.shape)) options.shape.reset();
                 for (const engine::ShapeInfo& info : engine::shapeInfos())
                   if (ImGui::Selectable(labelOf(std::string(info.word).c_str()), options.shape == info.kind))
@@ -73,7 +73,7 @@ void pairFields(FitTool& fit) {
       return trFormat("region {}: {}", fitted[i].number,
                       tr(engine::infoOf(fitted[i].chosen.fit.shape.kind).word));
     };
-    if (!ImGui::BeginCombo(id, name(now).c_str())) return false;
+    if (!beginList(id, name(now).c_str())) return false;
     bool changed = false;
     for (std::size_t i = 0; i < fitted.size(); ++i)
       if (i != other && ImGui::Selectable(name(i).c_str(), i == now)) {

@@ -29,7 +29,7 @@ void formKindField(const PanelContext& context, FormTool& form, PlanePicking& po
   const std::string now = by_points ? tr(kByPoints) : shortTitle(engine::infoOf(options.kind));
   (void)field("form", "The shape of the part that is taken out, so that colours show what deviates from it.",
               [&] {
-                if (!ImGui::BeginCombo("##form", now.c_str())) return false;
+                if (!beginList("##form", now.c_str())) return false;
                 for (const engine::FormInfo& info : engine::formInfos()) {
                   if (ImGui::Selectable(shortTitle(info).c_str(), !by_points && info.kind == options.kind)) {
                     options.kind = info.kind;

@@ -80,8 +80,8 @@ std::optional<std::string> deviceField(const LoopClient& client, DeviceLister& d
   std::optional<std::string> chosen;
   beginFields();
   fieldName("device", kSays);
-  if (ImGui::BeginCombo("##device", (profile.gives_force ? name : trFormat("{}, no force", name)).c_str(),
-                        ImGuiComboFlags_HeightLargest)) {
+  if (beginList("##device", (profile.gives_force ? name : trFormat("{}, no force", name)).c_str(),
+                ImGuiComboFlags_HeightLargest)) {
     if (ImGui::IsWindowAppearing()) devices.list(client.deviceWords());
     for (const DeviceChoice& each : devices.all()) {
       const std::string text = each.problem.empty() ? std::string(tr(std::string_view(each.title)))
@@ -146,7 +146,7 @@ std::optional<double> rateField(double now_hz) {
   constexpr const char* kSays = textOf(
       "How often a second the force is computed: more feels harder surfaces, if the machine keeps up.");
   fieldName("rate", kSays);
-  if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) {
+  if (!beginList("##rate", rateText(now_hz).c_str())) {
     explain(kSays);
     return chosen;
   }

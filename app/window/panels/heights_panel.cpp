@@ -58,7 +58,7 @@ void linesFields(engine::LineOptions& lines) {
     if (lines.method == kRows[i].method && lines.degree == kRows[i].degree) chosen = i;
   beginFields();
   (void)field("lines by", kRows[chosen].says, [&] {
-    if (!ImGui::BeginCombo("##lines by", tr(kRows[chosen].name))) return false;
+    if (!beginList("##lines by", tr(kRows[chosen].name))) return false;
     for (const Row& row : kRows) {
       if (ImGui::Selectable(labelOf(row.name), &row == &kRows[chosen])) {
         lines.method = row.method;

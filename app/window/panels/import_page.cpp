@@ -49,8 +49,8 @@ void choice(std::string_view option, std::string& value,
   const auto now =
       std::find_if(words.begin(), words.end(), [&](const auto& word) { return word.first == value; });
   ImGui::SetNextItemWidth(-1.0F);
-  const bool opened = ImGui::BeginCombo((std::string("##") + std::string(option)).c_str(),
-                                        now != words.end() ? now->second.c_str() : value.c_str());
+  const bool opened = beginList((std::string("##") + std::string(option)).c_str(),
+                                now != words.end() ? now->second.c_str() : value.c_str());
   if (!opened) {
     explainOption(option);
     return;

@@ -73,10 +73,19 @@ void leaveSecondPress(ListPress& press) {
   io.MouseClickedCount[ImGuiMouseButton_Left] = 0;
 }
 
+// Tab without a field that is typed into asks for the first stop of the window, though a header, a button or a list has the focus:
+// it goes on from there (tabGoesOn).
+void tabFromTheFocus() {
+  ImGuiContext& g = *ImGui::GetCurrentContext();
+  const bool asks = g.NavMoveScoringItems && (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) != 0;
+  if (asks && g.NavTabbingDir == 0 && g.NavId != 0) g.NavTabbingDir = 1;
+}
+
 }  // namespace
 
 PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
+  tabFromTheFocus();
   leaveSecondPress(parts.list_press);
   usePanelTheme(parts.settings.panels_theme);
   const std::optional<std::int64_t> pointed_before = std::exchange(parts.pointed_step, std::nullopt);

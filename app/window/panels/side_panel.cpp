@@ -26,6 +26,7 @@ void section(Parts& parts, const char* name, bool open_at_first, const Panel& pa
   // In each frame: an action opens a panel by its setting, too.
   ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first);
   const bool open = ImGui::CollapsingHeader(labelOf(name));
+  tabGoesOn();
   settings.panels[name] = open;
   if (!open) return;
   ImGui::PushID(name);

@@ -71,7 +71,7 @@ void falloffField(const PanelContext& context) {
   const std::string says =
       trFormat("How smoothing falls from the middle of the brush to its rim: {}.", tr(now.hint));
   fieldName("falloff", says);
-  const bool opened = ImGui::BeginCombo("##falloff", std::string(tr(now.word)).c_str());
+  const bool opened = beginList("##falloff", std::string(tr(now.word)).c_str());
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   if (!opened) {
     const float arrow = ImGui::GetFrameHeight();

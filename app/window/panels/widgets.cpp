@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <fmt/printf.h>
+#include <imgui_internal.h>  // stops of Tab
 #include <imgui_stdlib.h>
 
 #include "app/texts/texts.h"
@@ -189,21 +190,55 @@ bool pressButton(const char* name, std::string_view says) {
 
 namespace {
 
+// Of what was just laid out and is no stop of Tab.
+bool stopless(bool pressed) {
+  tabGoesOn();
+  return pressed;
+}
+
 // A label that is wider than the room behind its box goes on in the line below: another language needs more of it.
 bool boxWithLabel(const char* name, bool& on) {
   const std::string_view label = labelOf(name), shown = label.substr(0, label.find("##"));
   const float room =
       ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x;
   if (shown.empty() || ImGui::CalcTextSize(shown.data(), shown.data() + shown.size()).x <= room)
-    return ImGui::Checkbox(label.data(), &on);
+    return stopless(ImGui::Checkbox(label.data(), &on));
   const std::size_t id = label.find("###");
   const std::string lines =
       inLines(std::string(shown), room) +
       (id == std::string_view::npos ? "###" + std::string(name) : std::string(label.substr(id)));
-  return ImGui::Checkbox(lines.c_str(), &on);
+  return stopless(ImGui::Checkbox(lines.c_str(), &on));
 }
 
 }  // namespace
+
+void tabGoesOn() {
+  ImGuiContext& g = *ImGui::GetCurrentContext();
+  const bool asks = g.NavMoveScoringItems && (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) != 0;
+  if (!asks || g.NavId == 0 || g.LastItemData.ID != g.NavId ||
+      (g.LastItemData.InFlags & ImGuiItemFlags_Inputable) != 0)
+    return;
+  if (g.NavTabbingDir > 0) {
+    g.NavTabbingCounter = 1;  // the next stop
+  } else if (g.NavTabbingDir < 0 && g.NavMoveResultLocal.ID != 0) {
+    g.NavMoveScoringItems = false;  // the last stop before
+    g.NavAnyRequest = g.NavInitRequest;
+  }
+}
+
+bool beginList(const char* id, const char* now, ImGuiComboFlags flags) {
+  ImGuiContext& g = *ImGui::GetCurrentContext();
+  const ImGuiItemFlags before = g.CurrentItemFlags;
+  // Without navigation the keys that open a list do other work.
+  if ((g.IO.ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0)
+    g.CurrentItemFlags |= ImGuiItemFlags_Inputable;
+  const ImGuiID self = ImGui::GetID(id);
+  const bool open = ImGui::BeginCombo(id, now, flags);
+  g.CurrentItemFlags = before;
+  // Where it has the focus is seen: no cursor blinks in it.
+  if (g.NavActivateInputId == self) g.NavDisableHighlight = false;
+  return open;
+}
 
 bool tickBox(const char* name, bool& on, std::string_view says) {
   const bool changed = boxWithLabel(name, on);
@@ -213,7 +248,7 @@ bool tickBox(const char* name, bool& on, std::string_view says) {
 
 bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words) {
   const char* const now = *(words.begin() + std::clamp(chosen, 0, static_cast<int>(words.size()) - 1));
-  if (!ImGui::BeginCombo(id, screenText(tr(now)).c_str())) return false;
+  if (!beginList(id, screenText(tr(now)).c_str())) return false;
   bool changed = false;
   int i = 0;
   for (const char* word : words) {

@@ -73,6 +73,12 @@ void actionTick(const char* name, bool ticked, Action action, const Act& act);
 /// A button, a tick box and a list of words, each with its tip; true when it was pressed or changed.
 bool pressButton(const char* name, std::string_view says);
 bool tickBox(const char* name, bool& on, std::string_view says);
+/// BeginCombo() that Tab comes by, where the keyboard is in the panels or in a dialog: of ImGui's own fields only those that are
+/// typed into are stops of Tab.
+[[nodiscard]] bool beginList(const char* id, const char* now, ImGuiComboFlags flags = 0);
+/// Behind an item that is no stop of Tab but may have the focus, as a header or a button: Tab goes on from there, and not from the
+/// first field of the window.
+void tabGoesOn();
 /// `chosen`: the place of a word in the list, from 0. The tip is that of the field() that it is in.
 bool chooseWord(const char* id, int& chosen, std::initializer_list<const char*> words);
 /// chooseWord() of the samples that count: 0: all, 1: marked, 2: not marked.

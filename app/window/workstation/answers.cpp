@@ -55,10 +55,12 @@ void Workstation::carryOut(Answer answer) {
     case Kind::kCompare:
       p.compare.compareWith(*p.document.client(), question.path, options_.reading);
       p.settings.panels["Compare"] = true;
+      p.enter_panel = "Compare";
       break;
     case Kind::kJoin:
       p.join.add({question.path, p.readingOf(question.path)});
       p.settings.panels["Join"] = true;
+      p.enter_panel = "Join";
       break;
     case Kind::kSaveAs:
     case Kind::kExport:
