@@ -170,6 +170,8 @@ inline void navigate(Parts& p) {
     p.measure.cancel();
   else if (p.suggester.busy())
     p.suggester.cancel();
+  else if (p.line_suggester.busy())
+    p.line_suggester.cancel();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
     p.filters.cancel(clientOf(p));
   else if (p.full_screen && !p.stylus.on())

@@ -154,6 +154,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   bookmarks.clear();
   filters.finish(*document.client());
   suggester.clear();
+  line_suggester.clear();
   form.clear();
   form.options.through.reset();
   plane_points.stop();

@@ -42,6 +42,7 @@
 #include "app/work/form_tool.h"
 #include "app/work/height_tool.h"
 #include "app/work/join_tool.h"
+#include "app/work/line_suggester.h"
 #include "app/work/measure_tool.h"
 #include "app/work/plane_picking.h"
 #include "app/work/recent_files.h"
@@ -100,6 +101,7 @@ struct Parts {
   PictureClick plane_click;  ///< that sets a point
   FilterPreview filters;
   FilterSuggester suggester;
+  LineSuggester line_suggester;
   FormTool form;
   PlanePicking plane_points;  ///< of its choice
   HeightTool heights;

@@ -91,6 +91,7 @@ std::optional<std::string> ToolResults::take(Parts& p) {
     p.heights.follow(seen);
   }
   changed |= p.suggester.poll(client, notices);
+  changed |= p.line_suggester.poll(client, notices);
   changed |= p.removal.poll(client);
   changed |= p.devices.poll();
   changed |= p.measure.poll(client, notices);

@@ -210,6 +210,8 @@ void addFilters(const Parts& p, Report& r) {
   r["plane_point"] = p.plane_points.next() ? Report(*p.plane_points.next() + 1) : Report();
   r["computing_heights"] = p.heights.busy();
   r["heights_found"] = p.heights.found();
+  r["lines_suggested"] = p.line_suggester.says();
+  r["lines_by"] = lineWayName(p.heights.lines.method, p.heights.lines.degree);
   const haptic::HeightsMaker* const previewed = p.heights.previewed();
   r["heights_preview"] = previewed != nullptr ? Report(p.heights.previewName()) : Report();
   const auto& removal = p.removal.counts();
@@ -343,7 +345,7 @@ Report waitedFor(const Parts& p, const Input& input) {
   waits("the mouse's stylus", mouse != nullptr && mouse->busy());
   waits("a filter", p.filters.computing() || p.filters.applying() || p.filters.awaitsRest());
   waits("the noise", p.filters.measuresNoise());
-  waits("a suggestion", p.suggester.busy());
+  waits("a suggestion", p.suggester.busy() || p.line_suggester.busy());
   waits("devices", p.devices.busy());
   waits("a form", p.form.busy());
   waits("heights", p.heights.busy() || p.heights.awaitsRest());

@@ -102,6 +102,32 @@ void linesFields(engine::LineOptions& lines) {
   endFields();
 }
 
+constexpr int kSuggestedLines = 6;
+
+// What was measured, as a place of its own: what is below stays where it is.
+void lineSuggestion(HeightTool& heights, LineSuggester& suggester) {
+  beginPlace("##lines suggested", kSuggestedLines);
+  if (suggester.busy()) {
+    if (cancelledBar(suggester.progress(), "trying ways to level", "Cancel##lines")) suggester.cancel();
+  } else if (!suggester.says().empty()) {
+    if (suggester.outdated())
+      writeIn(render::PanelColour::kWarning, "the scan has changed since: Suggest again");
+    if (const auto& way = suggester.suggested();
+        way && (way->method != heights.lines.method || way->degree != heights.lines.degree)) {
+      if (pressButton("Take it##lines",
+                      "Levels by the way that is suggested; the rest of the fields stays.")) {
+        heights.lines.method = way->method;
+        heights.lines.degree = way->degree;
+      }
+    }
+    writeWrapped(suggester.says());
+  } else {
+    writeIn(render::PanelColour::kMuted,
+            "Suggest tries all ways on samples of each line, and says how far lines lie apart by each.");
+  }
+  endPlace();
+}
+
 constexpr HeightButtons kFillButtons{Action::kFillPreview, Action::kFillHoles, textOf("Fill holes")};
 constexpr HeightButtons kLevelButtons{Action::kLevelPreview, Action::kLevelLines, textOf("Level lines")};
 
@@ -135,7 +161,7 @@ void heightOutcome(HeightTool& heights, bool here) {
   endPlace();
 }
 
-void heightsPanel(const PanelContext& context, HeightTool& heights) {
+void heightsPanel(const PanelContext& context, HeightTool& heights, LineSuggester& suggester) {
   const engine::Grid& grid = context.client.field().grid();
   const render::ShownUnit length = ofMillimetres(context.units.length, grid.lateral_unit.mm);
   int method = heights.fill.method == engine::FillMethod::kCurvature ? 0 : 1;
@@ -154,6 +180,12 @@ void heightsPanel(const PanelContext& context, HeightTool& heights) {
   ImGui::Separator();
   linesFields(heights.lines);
   heightButtons(context, heights, heights.lines, kLevelButtons);
+  sameLineIfFits("Suggest");
+  ImGui::BeginDisabled(suggester.busy());
+  if (pressButton("Suggest##lines", "Measures which way leaves neighbouring lines closest together."))
+    suggester.search(context.client, heights.lines);
+  ImGui::EndDisabled();
+  lineSuggestion(heights, suggester);
   heightOutcome(heights, heights.wasLast(heights.fill) || heights.wasLast(heights.lines));
 }
 

@@ -39,7 +39,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, const Heig
 /// The form that lies over the field, and the one that is to.
 void formPanel(const PanelContext& context, FormTool& form, PlanePicking& points);
 /// Holes that are filled, lines that are levelled.
-void heightsPanel(const PanelContext& context, HeightTool& heights);
+void heightsPanel(const PanelContext& context, HeightTool& heights, LineSuggester& suggester);
 /// Samples that become holes; `picture`: whose colours have limits.
 void removePanel(const PanelContext& context, HeightTool& heights, RemovalCount& count,
                  const WindowPicture& picture);

@@ -60,7 +60,8 @@ LoopRequests sidePanel(Parts& parts, const Act& act, float& width) {
           [&] { filterPanel(context, parts.filters, parts.heights, settings.display); });
   section(parts, "Remove samples", false,
           [&] { removePanel(context, parts.heights, parts.removal, parts.picture); });
-  section(parts, "Holes and lines", false, [&] { heightsPanel(context, parts.heights); });
+  section(parts, "Holes and lines", false,
+          [&] { heightsPanel(context, parts.heights, parts.line_suggester); });
   section(parts, "Form", false, [&] { formPanel(context, parts.form, parts.plane_points); });
   section(parts, "Steps", true, [&] { historyPanel(context, parts.marking.edit, parts.pointed_step); });
   section(parts, "Change since the scan", true, [&] { changePanel(context, parts.change); });

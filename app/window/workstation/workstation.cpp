@@ -33,8 +33,8 @@ std::string settingsPath(const char* file) {
 bool working(const Parts& p) {
   return p.files.busy() || p.marking.busy() || p.costs.busy() || p.opening.busy() ||
          p.saving.busy(p.document) || p.results.busy() || p.filters.computing() || p.filters.awaitsRest() ||
-         p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.devices.busy() ||
-         p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
+         p.filters.measuresNoise() || p.filters.applying() || p.suggester.busy() || p.line_suggester.busy() ||
+         p.devices.busy() || p.form.busy() || p.measure.busy() || p.section.busy() || p.heights.busy() ||
          p.heights.awaitsRest() || p.removal.busy() || p.colours.busy() || p.compare.busy() || p.fit.busy() ||
          p.features.busy() || p.transform.busy() || p.join.busy() ||
          (p.document.isOpen() &&

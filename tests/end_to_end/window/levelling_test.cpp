@@ -28,6 +28,19 @@ TEST_F(WindowTest, a_preview_of_levelled_lines_says_that_they_lie_further_apart)
   (void)user.key("ctrl+r");
   EXPECT_NE(found().find("times as far apart now: try matching or difference"), std::string::npos) << found();
   (void)user.look("by the median");
+  // Which way suits is measured, and taken by a click.
+  const State measured = user.click("Suggest");
+  (void)user.look("suggested");
+  const std::string suggested = measured["lines_suggested"];
+  EXPECT_NE(suggested.find("median "), std::string::npos) << "the figures of all: " << suggested;
+  EXPECT_EQ(suggested.find("suggested: median"), std::string::npos) << suggested;
+  EXPECT_EQ(measured["lines_by"], "median") << "until it is taken";
+  if (suggested.starts_with("suggested: ")) {
+    const std::string by = user.click("Take it")["lines_by"];
+    EXPECT_TRUE(suggested.starts_with("suggested: " + by + ":")) << by << ", " << suggested;
+    (void)user.click(by);
+    (void)user.click("median");
+  }
   (void)user.click("median");
   (void)user.click("difference");
   program->until("the preview follows", [](const State& s) {
