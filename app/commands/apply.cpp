@@ -110,6 +110,10 @@ engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& j
   if (engine::hasRange(spec.kind)) done["range_sigma"] = ready->range_sigma;
   addWeightless(done, engine::filterOf(spec.kind), filtered->report,
                 fmt::format("{}: step {}", shownInput(at.task.in), at.step()));
+  if (auto status = addUnjudged(done, at.field, *ready,
+                                fmt::format("{}: step {}", shownInput(at.task.in), at.step()), job);
+      !status)
+    return tl::unexpected(status.error());
   warnOfCutoff(*ready, at.field.grid(), fmt::format("{}: step {}", shownInput(at.task.in), at.step()));
   addKept(done, kept->get(), spec.passes);
   at.steps.push_back(std::move(done));

@@ -211,6 +211,8 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"max_change", filtered->report.max_change},
                  {"rms_change", filtered->report.rms_change}});
   addWeightless(report, filter, filtered->report, shownInput(task.in));
+  if (auto status = addUnjudged(report, field, spec, shownInput(task.in), job); !status)
+    return tl::unexpected(status.error());
   warnOfCutoff(spec, field.grid(), shownInput(task.in));
   warnOfBroughtBack(spec, filtered->report, field.grid(), shownInput(task.in));
   report.update(

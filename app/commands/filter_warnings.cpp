@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "engine/filter/unjudged.h"
 
 namespace fettle::app {
 
@@ -11,6 +12,20 @@ void addWeightless(Report& report, const engine::Filter& filter, const engine::F
   if (!filter.robust) return;
   report["weightless"] = done.weightless;
   if (const std::string warning = engine::warningOf(done); !warning.empty()) warn(of + ": " + warning);
+}
+
+engine::Status addUnjudged(Report& report, const engine::Version& field, const engine::FilterSpec& spec,
+                           const std::string& of, const engine::JobControl& job) {
+  if (spec.kind != engine::FilterKind::kOutliers) return {};
+  const auto unjudged = engine::countUnjudged(field, spec, job);
+  if (!unjudged) return engine::cancelled();
+  report["unjudged"] = *unjudged;
+  if (*unjudged > 0)
+    warn(fmt::format(
+        "{}: {} samples have too few others around them to be judged, and stay: between holes and "
+        "at ragged rims; a larger --window or fettle remove takes them",
+        of, *unjudged));
+  return {};
 }
 
 void warnOfCutoff(const engine::FilterSpec& spec, const engine::Grid& grid, const std::string& of) {

@@ -7,6 +7,7 @@
 
 #include "app/texts/texts.h"
 #include "engine/filter/noise_range.h"
+#include "engine/filter/unjudged.h"
 
 namespace fettle::app {
 namespace {
@@ -75,7 +76,11 @@ void FilterPreview::compute(LoopClient& client, Keep keep, const engine::FieldVi
                       ready](engine::JobControl& job) -> engine::Result<Variant> {
     auto done = filtering->run(ready, job);
     if (!done) return tl::unexpected(done.error());
-    return Variant{asked, done->spec, base, std::move(done->filtered), id};
+    const auto unjudged = done->spec.kind == engine::FilterKind::kOutliers
+                              ? engine::countUnjudged(base, done->spec, job)
+                              : std::int64_t{0};
+    if (!unjudged) return engine::cancelled();
+    return Variant{asked, done->spec, base, std::move(done->filtered), id, *unjudged};
   });
 }
 

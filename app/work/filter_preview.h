@@ -37,6 +37,7 @@ class FilterPreview {
     engine::Version base;      ///< as felt when it was computed
     engine::Filtered result;
     std::uint64_t base_id = 0;  ///< the base's in the journal (LoopClient::noteFilterBase)
+    std::int64_t unjudged = 0;  ///< of outliers: engine::countUnjudged
   };
 
   /// Edited by the panel. A range sigma of 0 means one for the noise of the scan as it was opened (engine::withMeasuredRange),

@@ -89,8 +89,7 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     constexpr const char* kSays =
         textOf("What is moved over the surface: a ball rolls over it, a disk and a square stay level.");
     fieldName("element", kSays);
-    if (!beginList("##element",
-                           tr(engine::kElementWords[static_cast<std::size_t>(spec.element)].data()))) {
+    if (!beginList("##element", tr(engine::kElementWords[static_cast<std::size_t>(spec.element)].data()))) {
       explain(kSays);
     } else {
       for (std::size_t i = 0; i < engine::kElementWords.size(); ++i)
@@ -192,7 +191,9 @@ void previewList(bool anything_marked, const engine::LengthUnit& height, const r
                              (v.spec.max_change && v.result.report.max_change > *v.spec.max_change
                                   ? ";\n" + std::string(tr("the limit counts from the scan as it was opened"))
                                   : std::string());
-    const std::string warning = engine::warningOf(v.result.report);
+    const std::string warning =
+        v.unjudged > 0 ? trFormat("{} have too few others around them to be judged, and stay", v.unjudged)
+                       : engine::warningOf(v.result.report);
     ImGui::TextUnformatted(
         screenText(fmt::format("{}\n{}{}{}", filterName(v.spec), came, warning.empty() ? "" : ";\n", warning))
             .c_str());
