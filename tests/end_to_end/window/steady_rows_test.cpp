@@ -109,7 +109,13 @@ TEST_F(SteadyRows, buttons_stay_whatever_fields_a_filter_has) {
   expectSilence(*program);
 }
 
-TEST_F(SteadyRows, no_row_moves_while_forms_and_heights_are_previewed) {
+// Four panels below each other.
+class SteadyForms : public SteadyRows {
+ protected:
+  SteadyForms() : SteadyRows(1420) {}
+};
+
+TEST_F(SteadyForms, no_row_moves_while_forms_and_heights_are_previewed) {
   const auto program = start({scan});
   User user(display, *program, "steady others");
   (void)opened(*program);
