@@ -54,6 +54,8 @@ inline constexpr std::int64_t kFrameVertices = 65536;
 inline constexpr std::int64_t kFewestFrameVertices = 4096, kMostFrameVertices = std::int64_t{1} << 28;
 /// Of Sharpness::kRest: frames that draw a picture with four rays per pixel, so that none of them takes long.
 inline constexpr int kRestBands = 12;
+/// Of FrameInput::Redraw::kInBands: a million vertices take 90 ms on two cores.
+inline constexpr int kDetailBands = 8;
 /// Screen error of a frame and of a picture that is drawn once [px].
 inline constexpr double kFrameErrorPx = 1.0, kStillErrorPx = 0.25;
 /// How far seams overlap the patches that they join [rays]: as much as rounding may separate them.
@@ -65,9 +67,9 @@ inline constexpr double kDamageMarginPx = 3.0;
 /// rectangle of each tile and its place on the screen are not computed.
 inline constexpr std::size_t kManyTiles = 256;
 /// Tiles whose detail (render/detail/detail.h) a frame measures at most, for each version: so many at once, 1 to 3 ms on two cores,
-/// and more of them only within this time, which a busy machine soon uses up.
+/// and more of them while there is time (LiveOptions::measuring_ms): a window's has this much.
 inline constexpr std::size_t kMeasuredPerFrame = 256, kMeasuredAtOnce = 64;
-inline constexpr double kMeasuringPerFrameMs = 4.0;
+inline constexpr double kWindowMeasuringMs = 4.0;
 
 // Computing.
 

@@ -14,8 +14,7 @@ namespace fettle::app {
 ///   chosen --- nothing changed for kQuiet --> begins: panel 1, panel 2, ... --> fine
 ///      ^---------------- the picture changes as a whole ------------------------'
 ///
-/// One panel per frame: so a slow frame costs only as much as that of a single picture, and input is
-/// processed between two of them. After that only edited parts are drawn again. Panels that cannot be drawn
+/// One panel after the other, each in bands of rows: so no frame takes long, and input is processed between two of them. After that only edited parts are drawn again. Panels that cannot be drawn
 /// independently (a picture for two eyes) are refined in one frame.
 class Refinement {
  public:
@@ -27,6 +26,8 @@ class Refinement {
   [[nodiscard]] bool due(Clock::time_point now) const noexcept {
     return state_ == State::kBegins || (state_ == State::kChosen && now - whole_ >= kQuiet);
   }
+  /// Whether a frame with the vertices() asked for last makes the picture finer, in bands.
+  [[nodiscard]] bool inBands() const noexcept { return state_ == State::kBegins; }
   /// Whether some refinement is left.
   [[nodiscard]] bool pending() const noexcept { return state_ != State::kFine; }
 
@@ -58,6 +59,7 @@ class Refinement {
     bool continued = true;      ///< it reused the frame before
     bool tiles_coming = false;  ///< changed samples are not uploaded yet
     bool pages_coming = false;  ///< finer samples that this frame requested are not uploaded yet
+    int bands_left = 0;         ///< frames that must follow until all of the panel is finer
   };
   void drawn(const Drawn& frame, Clock::time_point now) noexcept {
     const bool coming = frame.tiles_coming || (frame.pages_coming && state_ == State::kChosen);
@@ -68,7 +70,7 @@ class Refinement {
         // Another change, or panels that are always drawn together.
         at_once_ = true;
         restart(now);
-      } else if (!frame.pages_coming && (at_once_ || ++fine_ == panels_)) {
+      } else if (!frame.pages_coming && frame.bands_left == 0 && (at_once_ || ++fine_ == panels_)) {
         state_ = State::kFine;
         at_once_ = false;
       }

@@ -42,7 +42,9 @@ bool same(const render::Shown& a, const render::Shown& b) {
 }  // namespace
 
 engine::Status WindowPicture::make() {
-  auto live = render::LivePicture::create(window_.context(), render::Window::pictureFormat());
+  render::LiveOptions options;
+  options.measuring_ms = render::kWindowMeasuringMs;
+  auto live = render::LivePicture::create(window_.context(), render::Window::pictureFormat(), options);
   if (!live) return tl::unexpected(live.error());
   lose();
   live_ = std::move(*live);
@@ -151,6 +153,9 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
+  const bool in_bands =
+      draws == Draws::kRefined && refinement_.inBands() && input.sharpness == render::Sharpness::kFull;
+  if (in_bands) input.redraw = render::FrameInput::Redraw::kInBands;
   const bool rests = draws == Draws::kRefined && smooth_at_rest_ && !refinement_.pending() &&
                      input.sharpness == render::Sharpness::kFull &&
                      at_rest_.rests(PictureAtRest::Clock::now());
@@ -178,7 +183,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   } else if (!sharp_wanted && (input.sharpness == render::Sharpness::kHalf ||
                                input.sharpness == render::Sharpness::kQuarter)) {
     measured_ = Measured::kMoving;
-  } else if (!rests && figures_.continued && figures_.redrawn < 1.0) {
+  } else if (!rests && !in_bands && figures_.continued && figures_.redrawn < 1.0) {
     measured_ = Measured::kStroke;
   }
   if (input.sharpness != render::Sharpness::kHalf) sharp_later_.drawnSharply();

@@ -257,12 +257,12 @@ engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
 }
 
 // What a frame measures of one version: some tiles, and more of them while there is time.
-std::size_t LiveFields::measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader) {
+std::size_t LiveFields::measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader) const {
   const engine::Stopwatch watch;
   std::size_t measured = 0;
   do measured += measure.measureSome(reader, kMeasuredAtOnce);
   while (measure.unknown() > 0 && measured + kMeasuredAtOnce <= kMeasuredPerFrame &&
-         watch.ms() < kMeasuringPerFrameMs);
+         watch.ms() < options_.measuring_ms);
   return measured;
 }
 

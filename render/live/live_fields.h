@@ -65,7 +65,7 @@ class LiveFields {
   [[nodiscard]] std::uint64_t poolBudget(const Shown& next) const;
   void arrangePool(const Shown& next);
   void uploadAll(LiveTexture& texture);
-  static std::size_t measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader);
+  std::size_t measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader) const;
   [[nodiscard]] engine::Result<LiveTexture::Freshness> setVersion(LiveTexture& texture, const Shown& next,
                                                                   const engine::Version& version,
                                                                   MarksOverlay marks,

@@ -1,7 +1,9 @@
 #include "render/live/live_picture.h"
 
 #include <algorithm>
+#include <climits>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -105,7 +107,9 @@ struct LivePicture::Impl {
   PatchTreeCache patch_tree_cache;
   Canvas canvas;
   std::optional<SeenFrame> seen;
-  std::optional<DrawnFrame> drawn;  // what the layers of `frame` show
+  // What the layers of `frame` show: one of both, or neither.
+  std::optional<DrawnFrame> drawn;
+  std::optional<BandedFrame> banded;
   // The picture with four rays per pixel that is drawn at Sharpness::kRest: what it shows, and how many of its bands are drawn.
   struct Rest {
     DrawnFrame shown;
@@ -136,6 +140,13 @@ struct LivePicture::Impl {
   void uploadPages(LivePanels& chosen, FrameInput::Pages pages, FrameStatistics& stats);
   std::vector<gpu::Quad> decorationsOf(const FrameInput& input, const PicturePlan& plan,
                                        std::vector<std::string>& warnings);
+  struct Reused {
+    std::vector<PatchChoice> parts;
+    std::optional<BandedFrame> banded;  ///< once the frame is submitted
+  };
+  Reused reuse(FrameInput::Redraw redraw, const DrawnFrame& current, LivePanels& chosen,
+               FrameStatistics& stats);
+  static std::vector<PatchChoice> nextBand(BandedFrame& next, LivePanels& chosen);
   DrawnFrame drawnFrameOf(const std::vector<LivePanel>& panels, const PicturePlan& plan,
                           const std::vector<gpu::Quad>& decorations);
 };
@@ -267,17 +278,9 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
       !stereo && !head && !input.part &&
       (input.sharpness == Sharpness::kFull || input.sharpness == Sharpness::kRest) &&
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
-  std::optional<DrawnFrame> previous;
-  previous.swap(drawn);  // the content of the layers is undefined until this frame is submitted
-  stats.continued = reusable && input.redraw == FrameInput::Redraw::kChanged && previous &&
-                    frame.holds(target.extent) && (decorations.empty() || frame.holds(glyphs)) &&
-                    canContinue(*previous, current);
-  std::vector<PatchChoice> parts;
-  if (stats.continued) {
-    parts = cutToDamage(*previous, current, chosen.queries(),
-                        stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
-    stats.redrawn = redrawnShare(panels);
-  }
+  const bool holds = reusable && input.redraw != FrameInput::Redraw::kAll && frame.holds(target.extent) &&
+                     (decorations.empty() || frame.holds(glyphs));
+  Reused reused = reuse(holds ? input.redraw : FrameInput::Redraw::kAll, current, chosen, stats);
   stats.select_ms = selecting.ms();
 
   if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
@@ -298,7 +301,8 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
-  if (reusable) drawn = std::move(current);
+  banded = std::move(reused.banded);
+  if (reusable && !banded) drawn = std::move(current);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.contour_step = plan.contour_step;
@@ -308,6 +312,58 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   if (input.part) return;
   seen = SeenFrame{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
   for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
+}
+
+// Sets what is drawn of each panel, over what the layers show already where they can be used. The panels' choices point to what is
+// returned. What the layers show is unknown from here until the frame is submitted.
+LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, const DrawnFrame& current,
+                                                   LivePanels& chosen, FrameStatistics& stats) {
+  const std::optional<DrawnFrame> whole = std::exchange(drawn, std::nullopt);
+  std::optional<BandedFrame> begun = std::exchange(banded, std::nullopt);
+  const DrawnFrame* const before = begun ? &begun->goal : whole ? &*whole : nullptr;
+  const bool in_bands = redraw == FrameInput::Redraw::kInBands;
+  // Layers that show a frame in part are of use for its other bands alone.
+  if (redraw == FrameInput::Redraw::kAll || before == nullptr || (begun && !in_bands)) return {};
+  std::vector<LivePanel>& panels = chosen.panels();
+  const bool same = showTheSame(*before, current);
+  Reused reused;
+  if (in_bands && sameButDetail(*before, current) && (begun || !same)) {
+    BandedFrame next{current, begun ? std::move(begun->differs) : std::vector<bool>(panels.size()),
+                     begun && same ? begun->bands : 0};
+    for (std::size_t i = 0; i < panels.size(); ++i)
+      next.differs[i] = next.differs[i] || !sameDetail(before->panels[i], current.panels[i]);
+    reused.parts = nextBand(next, chosen);
+    if (next.bands < kDetailBands) reused.banded = std::move(next);
+  } else if (canContinue(*before, current)) {
+    reused.parts = cutToDamage(*before, current, chosen.queries(),
+                               stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
+    if (begun) reused.banded = BandedFrame{current, std::move(begun->differs), begun->bands};
+  } else {
+    return {};
+  }
+  stats.bands_left = reused.banded ? kDetailBands - reused.banded->bands : 0;
+  stats.continued = true;
+  stats.redrawn = redrawnShare(panels);
+  return reused;
+}
+
+// Bands begin on even rows, so that no square of two by two fragments belongs to two of them.
+std::vector<PatchChoice> LivePicture::Impl::nextBand(BandedFrame& next, LivePanels& chosen) {
+  std::vector<LivePanel>& panels = chosen.panels();
+  int first = INT_MAX, end = 0;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    if (!next.differs[i]) continue;
+    first = std::min(first, panels[i].visible.y & ~1);
+    end = std::max(end, panels[i].visible.y + panels[i].visible.height);
+  }
+  const auto row = [first, end](int band) {
+    return band == kDetailBands ? end : (first + (end - first) * band / kDetailBands) & ~1;
+  };
+  std::vector<PatchChoice> parts = cutToRows(row(next.bands), row(next.bands + 1), chosen.queries(), panels);
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    if (!next.differs[i]) panels[i].redraw = {};
+  ++next.bands;
+  return parts;
 }
 
 // The next band, if any is left and its pages are on the device; the picture with four rays per pixel once it is complete.

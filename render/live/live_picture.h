@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -144,7 +145,9 @@ struct FrameInput {
   Sharpness sharpness = Sharpness::kFull;
   /// Whether parts that cannot have changed since the last frame are reused; the picture is bit-identical
   /// either way.
-  enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;
+  /// kInBands: as kChanged, but where a frame would only show the same more finely it draws one of kDetailBands bands of rows, the
+  /// frames after it the others, and none of them takes long. An edit in between is drawn at once. Only at kFull and kRest.
+  enum class Redraw { kChanged, kInBands, kAll } redraw = Redraw::kChanged;
   /// Of a field on demand: whether the frame is drawn with the pages that are on the device, or waits for all
   /// requested pages that the memory holds.
   enum class Pages { kAvailable, kAll } pages = Pages::kAvailable;
@@ -194,6 +197,8 @@ struct FrameStatistics {
   double redrawn = 1.0;             ///< share of the plots that was drawn again, 0 .. 1
   /// Whether the frame reused the one before and drew only what differs, which may be everything.
   bool continued = false;
+  int bands_left =
+      0;  ///< of Redraw::kInBands: frames that must follow until all of the picture is as fine as this one
   /// At Sharpness::kRest: frames that must follow until the picture has four rays per pixel. 0: it has, or the device has no memory
   /// for the pages that it would need.
   int rest_left = 0;
@@ -237,6 +242,9 @@ struct LiveOptions {
   /// Longest side of one image in samples, rounded up to a tile; 0: the device's limit. Larger fields are
   /// spread over the layers of an image array. For tests of that case.
   int max_image_side = 0;
+  /// Time after which a frame measures no more tiles than kMeasuredAtOnce of each version [ms]. Without a limit the number of tiles
+  /// that frames measure does not depend on how busy the machine is.
+  double measuring_ms = std::numeric_limits<double>::infinity();
   /// Most bytes uploaded per frame while an edit or a filter result is pending; the rest follows with the
   /// next frames.
   std::int64_t upload_bytes_per_frame = kUploadBytesPerFrame;

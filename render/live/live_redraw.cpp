@@ -22,20 +22,8 @@ bool sameList(const std::vector<gpu::Patch>& a, const std::vector<gpu::Patch>& b
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(gpu::Patch)) == 0);
 }
 
-}  // namespace
-
-bool showTheSame(const DrawnFrame& before, const DrawnFrame& now) {
-  if (!canContinue(before, now)) return false;
-  for (std::size_t i = 0; i < now.panels.size(); ++i) {
-    const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
-    if (!onlyFieldDiffers(a, b) || !(a.field == b.field) || !sameList(a.choice.patches, b.choice.patches) ||
-        !sameList(a.choice.seams, b.choice.seams) || !sameList(a.choice.walls, b.choice.walls))
-      return false;
-  }
-  return true;
-}
-
-bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
+// Whether everything but the panels' surfaces is the same.
+bool sameAround(const DrawnFrame& before, const DrawnFrame& now) {
   if (before.panels.size() != now.panels.size() || before.ground != now.ground ||
       !(before.original == now.original) || !(before.accepted == now.accepted) ||
       before.decorations.size() != now.decorations.size())
@@ -44,12 +32,41 @@ bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
   if (!now.decorations.empty() && std::memcmp(before.decorations.data(), now.decorations.data(),
                                               now.decorations.size() * sizeof(gpu::Quad)) != 0)
     return false;
-  bool some = now.panels.empty();
+  for (std::size_t i = 0; i < now.panels.size(); ++i)
+    if (!(before.panels[i].plot == now.panels[i].plot) ||
+        !(before.panels[i].visible == now.panels[i].visible))
+      return false;
+  return true;
+}
+
+}  // namespace
+
+bool showTheSame(const DrawnFrame& before, const DrawnFrame& now) {
+  return sameButDetail(before, now) &&
+         std::equal(before.panels.begin(), before.panels.end(), now.panels.begin(), sameDetail);
+}
+
+bool sameButDetail(const DrawnFrame& before, const DrawnFrame& now) {
+  if (!sameAround(before, now)) return false;
   for (std::size_t i = 0; i < now.panels.size(); ++i) {
     const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
-    if (!(a.plot == b.plot) || !(a.visible == b.visible)) return false;
-    some = some || onlyFieldDiffers(a, b);
+    if (!(a.field == b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
+        std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) != 0)
+      return false;
   }
+  return true;
+}
+
+bool sameDetail(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
+  return a.pages == b.pages && sameList(a.choice.patches, b.choice.patches) &&
+         sameList(a.choice.seams, b.choice.seams) && sameList(a.choice.walls, b.choice.walls);
+}
+
+bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
+  if (!sameAround(before, now)) return false;
+  bool some = now.panels.empty();
+  for (std::size_t i = 0; i < now.panels.size(); ++i)
+    some = some || onlyFieldDiffers(before.panels[i], now.panels[i]);
   return some;
 }
 

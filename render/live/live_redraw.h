@@ -36,8 +36,21 @@ struct DrawnFrame {
 /// of the same field in the same way.
 [[nodiscard]] bool canContinue(const DrawnFrame& before, const DrawnFrame& now);
 
+/// Whether two frames differ at most in how finely they show the same: in the choice of patches, and in the pages they are drawn
+/// from.
+[[nodiscard]] bool sameButDetail(const DrawnFrame& before, const DrawnFrame& now);
+/// Whether two panels of such frames do not differ in that either.
+[[nodiscard]] bool sameDetail(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b);
+
 /// Whether a frame shows what the one before does.
 [[nodiscard]] bool showTheSame(const DrawnFrame& before, const DrawnFrame& now);
+
+/// A frame that the layers of a LiveFrame show in part: the bands that are drawn, and elsewhere the same less finely.
+struct BandedFrame {
+  DrawnFrame goal;
+  std::vector<bool> differs;  ///< of each panel: from what was shown before
+  int bands = 0;              ///< that are drawn
+};
 
 /// Whether pages that the frame reads are on the device: where some are not, their samples are drawn from coarser ones.
 enum class Pages { kThere, kWaitedFor };

@@ -60,6 +60,27 @@ TEST_F(RefinementOf64k, WaitsForWhatIsOnItsWay) {
   EXPECT_EQ(frame(816, false, true), kChosen);
 }
 
+TEST_F(RefinementOf64k, GoesOnUntilAllBandsAreDrawn) {
+  const auto at = [this](int ms) { return start + milliseconds(ms); };
+  refinement.drawn({.whole = true, .continued = false}, start);
+  EXPECT_FALSE(refinement.inBands());
+  for (int left = 3; left >= 0; --left) {
+    EXPECT_TRUE(refinement.due(at(300 - left)));
+    EXPECT_EQ(refinement.vertices(kChosen, 1, at(300 - left)).front(), Refinement::kMost);
+    EXPECT_TRUE(refinement.inBands());
+    refinement.drawn({.bands_left = left}, at(300 - left));
+  }
+  EXPECT_FALSE(refinement.pending());
+  EXPECT_FALSE(refinement.inBands());
+  // What changes the picture as a whole meanwhile is drawn with the usual number.
+  refinement.restart(at(400));
+  EXPECT_EQ(refinement.vertices(kChosen, 1, at(700)).front(), Refinement::kMost);
+  refinement.drawn({.bands_left = 3}, at(700));
+  refinement.restart(at(701));
+  EXPECT_FALSE(refinement.inBands());
+  EXPECT_EQ(refinement.vertices(kChosen, 1, at(701)).front(), kChosen);
+}
+
 TEST_F(RefinementOf64k, TakesNoLessThanWasChosen) {
   refinement.drawn({.whole = true, .continued = false}, start);
   EXPECT_EQ(refinement.vertices(2 * Refinement::kMost, 1, start + milliseconds(300)).front(),

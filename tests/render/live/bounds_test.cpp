@@ -78,6 +78,17 @@ TEST(Live, NoGroundShowsInsideTheSurfaceAtAnyMixOfStrides) {
   }
 }
 
+TEST(Live, AFrameWithoutTimeMeasuresSomeTiles) {
+  LiveOptions options;
+  options.measuring_ms = 0.0;
+  auto picture = LivePicture::create(options);
+  ASSERT_TRUE(picture) << picture.error().line();
+  ASSERT_TRUE((*picture)->update(partField(640, 640)));  // 10 x 10 tiles
+  const Shot first = shoot(**picture, bare()), second = shoot(**picture, bare());
+  EXPECT_EQ(first.stats.upload.measured_tiles, static_cast<std::int64_t>(kMeasuredAtOnce));
+  EXPECT_EQ(second.stats.upload.unmeasured_tiles, 0);
+}
+
 TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
   // 33 x 16 tiles: twice what a frame may measure.
   auto picture = makePicture();
@@ -111,10 +122,7 @@ TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
   };
   ASSERT_TRUE(picture->update(before));
   const auto [first_frames, first] = framesToRest();
-  // A busy machine's frame measures less.
-  constexpr std::int64_t kLeast = kMeasuredAtOnce;
-  EXPECT_GE(first_frames, static_cast<int>((kTiles + kMost - 1) / kMost));
-  EXPECT_LE(first_frames, static_cast<int>((kTiles + kLeast - 1) / kLeast));
+  EXPECT_EQ(first_frames, static_cast<int>((kTiles + kMost - 1) / kMost));
 
   // A filter changes every sample.
   engine::LiveField live(before, engine::Growth::kAllowed);
