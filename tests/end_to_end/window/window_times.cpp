@@ -1,6 +1,6 @@
-// window_times SCAN...: how fast the window follows a hand, printed as a table: frames while the view
+// window_times [--everything] SCAN...: how fast the window follows a hand, printed as a table: frames while the view
 // turns, edits while a brush works, keys while nothing happens, while the view turns, while a filter is computed. Each
-// scan with everything shown and with as little as possible, alone and beside two processes that spin at normal
+// scan with everything shown and (without --everything) with as little as possible, alone and beside two processes that spin at normal
 // priority, with drawing that adapts to the time it takes and with the fixed one (fettle view --steady), all in one
 // run. The 1 kHz loop runs in all of it. Before that a row of what a program that draws nothing takes to follow a hand, alone and beside
 // the two. scripts/bench-window builds and starts it.
@@ -12,6 +12,7 @@
 #include <cstdlib>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -46,8 +47,11 @@ constexpr auto kStep = 8ms;        // between two movements of the hand
 constexpr auto kTurning = 4000ms;  // of the view
 constexpr auto kStroke = 2500ms;   // each of
 constexpr int kStrokes = 3;
-constexpr int kKeys = 40;  // in each of the situations
-constexpr auto kBetweenKeys = 130ms;
+constexpr std::size_t kKeys = 40;  // in each of the situations
+// Between two keys, by turns: also while the picture is made finer, a quarter of a second after a change, and drawn with four rays
+// a pixel after that.
+constexpr std::array kPauses{130ms, 210ms, 270ms, 350ms, 450ms};
+constexpr auto kMeanPause = 282ms;
 
 enum class Shown { kLittle, kAll };
 enum class Beside { kNothing, kSpinning };
@@ -163,9 +167,9 @@ class Run {
     return 1e-6 * static_cast<double>(seen["shown_ns"].get<std::int64_t>() - at);
   }
   void pressKeys(std::vector<double>& times) {
-    for (int i = 0; i < kKeys; ++i) {
+    for (std::size_t i = 0; i < kKeys; ++i) {
       times.push_back(keyToEffect());
-      std::this_thread::sleep_for(kBetweenKeys);
+      std::this_thread::sleep_for(kPauses[i % kPauses.size()]);
     }
     settle("after keys");
   }
@@ -205,13 +209,13 @@ class Run {
     Clock::time_point due = Clock::now();
     std::optional<std::int64_t> pressed;
     bool contours = false;
-    move(kKeys * kBetweenKeys * 2, round, [&] {
+    move(kKeys * (kMeanPause + 60ms), round, [&] {
       program_.each([&](const State& s) {
         if (pressed && s["contours"] != contours) {
           row_.keys_turning.push_back(1e-6 *
                                       static_cast<double>(s["shown_ns"].get<std::int64_t>() - *pressed));
           pressed.reset();
-          due = Clock::now() + kBetweenKeys;
+          due = Clock::now() + kPauses[row_.keys_turning.size() % kPauses.size()];
         }
         contours = pressed ? contours : s["contours"].get<bool>();
       });
@@ -244,10 +248,10 @@ class Run {
       press('n');
     }
     press('p');
-    for (int i = 0; i < kKeys; ++i) {
+    for (std::size_t i = 0; i < kKeys; ++i) {
       row_.keys_computing.push_back(keyToEffect());
       if (program_.now()["filtering"] != true) press('w');  // another window: it begins again
-      std::this_thread::sleep_for(kBetweenKeys);
+      std::this_thread::sleep_for(kPauses[i % kPauses.size()]);
     }
   }
 
@@ -291,7 +295,7 @@ void printLeast(const Display& display) {
   }
 }
 
-int run(const std::vector<std::string>& scans) {
+int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds) {
   const TempFolder folder;
   const Display display(kWidth, kHeight, folder.path());
   if (!display.works()) {
@@ -306,11 +310,13 @@ int run(const std::vector<std::string>& scans) {
              "shown", "beside", "drawing", "p50,p99,most ms", "p50 ms", "p99", "edits", "p50,p99,most",
              "p50,p99,most", "p50,p99,most", "p99 ms", "p99 us");
   for (const std::string& scan : scans)
-    for (const Shown shown : {Shown::kAll, Shown::kLittle})
+    for (const Shown shown : kinds)
       for (const Beside beside : {Beside::kNothing, Beside::kSpinning})
         for (const Drawing drawing : {Drawing::kAdapts, Drawing::kSteady}) {
           const char* only = std::getenv("FETTLE_ROWS");
-          const std::string row = fmt::format("{}{}{}", shown == Shown::kAll ? "a" : "l", beside == Beside::kNothing ? "n" : "s", drawing == Drawing::kAdapts ? "a" : "s");
+          const std::string row =
+              fmt::format("{}{}{}", shown == Shown::kAll ? "a" : "l", beside == Beside::kNothing ? "n" : "s",
+                          drawing == Drawing::kAdapts ? "a" : "s");
           if (only && std::string(only).find(row) == std::string::npos) continue;
           const TempFolder home;  // without the work of the run before
           for (const char* kind : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"})
@@ -326,13 +332,16 @@ int run(const std::vector<std::string>& scans) {
 }  // namespace fettle::tests
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> scans(argv + 1, argv + argc);
+  using fettle::tests::Shown;
+  std::vector<std::string> scans(argv + 1, argv + argc);
+  std::vector<Shown> kinds{Shown::kAll};
+  if (std::erase(scans, "--everything") == 0) kinds.push_back(Shown::kLittle);
   if (scans.empty()) {
-    fmt::print(stderr, "window_times SCAN...\n");
+    fmt::print(stderr, "window_times [--everything] SCAN...\n");
     return 2;
   }
   try {
-    return fettle::tests::run(scans);
+    return fettle::tests::run(scans, kinds);
   } catch (const std::exception& error) {
     fmt::print(stderr, "window_times: {}\n", error.what());
     return 1;
