@@ -60,7 +60,10 @@ double handsUnitMm(const engine::Grid& grid) {
 
 // A hand without force: its depth replaces it. Two units deep is pressing hard, at every scale of the field.
 haptic::Scene fitted(haptic::Scene scene, double unit_mm) {
-  scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * unit_mm), 1e-6, 1000.0);
+  const double wanted = scene.force_limit_n / (2.0 * unit_mm);
+  scene.stiffness_n_per_mm = std::clamp(wanted, 1e-6, 1000.0);
+  // Beyond what a scene may state the limit follows: on cells of nanometres no stiffness would reach it.
+  if (scene.stiffness_n_per_mm != wanted) scene.force_limit_n = 2.0 * unit_mm * scene.stiffness_n_per_mm;
   return scene;
 }
 

@@ -74,7 +74,9 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
       << State{{"panels", State{{"Steps", false}, {"Status", false}, {"Filters", false}}}};
   const auto program = start({waves, "--unit", "m"});
   User user(display, *program, scale.name);
-  (void)opened(*program);
+  const State shown = opened(*program);
+  // A cell deep is half as hard as there is, however large a cell is.
+  EXPECT_TRUE(says(shown, "(50 %")) << written(shown);
   // Where the cursor is, without any tool.
   user.at({400, 400});
   const std::regex place(scale.height);
@@ -118,6 +120,30 @@ TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
   const double taken = user.enter("keep within", scale.typed)["max_change"];
   EXPECT_NEAR(taken, scale.most_m, 1e-12 * scale.most_m);
   (void)user.look("typed");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+// Texture is one of heights, in Change as in Measure, however finely changes are read.
+TEST_F(WindowTest, texture_reads_in_one_unit_in_each_panel) {
+  const std::string waves = folder.file("waves.asc");
+  writeWaves(waves, 2e-4, 3e-2, 0.0);
+  std::ofstream(folder.path() / "fettle" / "window.json")
+      << State{{"panels", State{{"Tool", false}, {"Steps", false}, {"Filters", false}, {"Measure", true}}}};
+  const auto program = start({waves, "--unit", "m"});
+  User user(display, *program, "texture");
+  (void)opened(*program);
+  (void)user.click("Measure now");
+  const State measured = program->until("texture", [](const State& s) {
+    return s["settled"] == true && !s["parameters"].is_null() && says(s, "mm, ");
+  });
+  (void)user.look("both");
+  static const std::regex kChange("Sq before, now ([0-9.]+) (nm|\u00b5m|mm|m), ");
+  std::smatch found;
+  const std::string all = written(measured);
+  ASSERT_TRUE(std::regex_search(all, found, kChange)) << all;
+  EXPECT_EQ(found[2], "mm") << all;
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
