@@ -197,7 +197,10 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Decorati
   double x = plot.x;
 
   const double longest = 0.22 * plot.width / f.pixels_per_mm / f.lateral_unit.mm;  // [lateral_unit]
-  const ShownUnit unit = shownUnit(f.lateral_unit, longest, 0.5, 2e3);
+  // In the unit of the other lengths as long as that needs no more than two decimals.
+  const double shown = longest * f.length_unit.per_unit;
+  const ShownUnit unit =
+      shown >= 0.01 && shown < 1e5 ? f.length_unit : shownUnit(f.lateral_unit, longest, 0.5, 2e3);
   const double length = roundDown125(longest * unit.per_unit);
   const double bar = length / unit.per_unit * f.lateral_unit.mm * f.pixels_per_mm;
   const std::string label =

@@ -60,7 +60,8 @@ struct DecorationContent {
   std::string note;                   ///< small, under the bar; may be empty
   ShownUnit height_unit;              ///< in which the colours' numbers are written
   engine::LengthUnit lateral_unit;
-  double pixels_per_mm = 1.0;  ///< of the first panel's camera
+  ShownUnit length_unit{"mm"};  ///< of the scale bar, as lengths across the field are written elsewhere
+  double pixels_per_mm = 1.0;   ///< of the first panel's camera
   double exaggeration = 1.0;
   bool approximate_scale = false;  ///< perspective: the scale bar holds at the middle only
   bool marks = false, suggested = false, no_data = false;  ///< legend entries

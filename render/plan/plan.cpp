@@ -259,6 +259,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   f.quantity = quantity == Quantity::kHeight ? "height" : spec.difference.name;
   f.height_unit = unitOfColours(quantity, fields.front().grid(), heights.robust, plan.range);
   f.lateral_unit = fields.front().grid().lateral_unit;
+  f.length_unit = fieldUnits(fields.front().grid(), heights.robust.low, heights.robust.high).length;
   f.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   f.exaggeration = plan.exaggeration;
   f.approximate_scale = spec.view.projection == Projection::kPerspective;

@@ -78,6 +78,24 @@ TEST(ScaleBar, IsAsManyPixelsLongAsTheLengthThatItNames) {
   }
 }
 
+TEST(ScaleBar, IsReadInTheUnitOfTheOtherLengthsWhileThatIsReadable) {
+  Decorated picture;
+  const auto letters_as = [&](const ShownUnit& unit) {
+    picture.content.length_unit = unit;
+    std::vector<gpu::Quad> quads = picture.quads();
+    std::erase_if(quads, [](const gpu::Quad& q) { return q.fill.x != gpu::kFillGlyph; });
+    return quads;
+  };
+  const auto differ = [](const std::vector<gpu::Quad>& a, const std::vector<gpu::Quad>& b) {
+    return !std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+  };
+  const ShownUnit mm{"mm", 1.0}, um{"\u00b5m", 1e3};
+  picture.content.pixels_per_mm = 400.0;  // "0.5 mm", "500 \u00b5m"
+  EXPECT_TRUE(differ(letters_as(mm), letters_as(um)));
+  picture.content.pixels_per_mm = 4e4;  // 5 \u00b5m either way
+  EXPECT_FALSE(differ(letters_as(mm), letters_as(um)));
+}
+
 TEST(Legend, NamesEachSpecialColourThatThePictureHasAndNoOther) {
   Decorated picture;
   const auto shown = [&](const glm::vec3& colour) {

@@ -324,6 +324,18 @@ TEST(ColourMaps, AToleranceIsTheMiddleColourAndStepsAreOneColourEach) {
   EXPECT_EQ(std::unique(steps.begin(), steps.end()) - steps.begin(), kColourSteps);
 }
 
+TEST(Plan, TheScaleBarHasTheUnitOfLengthsAcrossTheField) {
+  engine::Grid grid = gridOf(64, 64);
+  grid.spacing_x = grid.spacing_y = 0.004;
+  const std::vector<engine::Version> fields{fieldOf(grid, [](int c, int) { return c; })};
+  const PictureSpec spec;
+  const auto plan =
+      planPicture(spec, fields, spansOf(fields, {}), layOut(spec.view, spec.decoration, 1, Titles::kNone));
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->decorations.length_unit.name, fieldUnits(grid, 0.0, 63.0).length.name);
+  EXPECT_EQ(plan->decorations.length_unit.name, "mm");
+}
+
 TEST(Plan, ContourLinesAreAsFarApartAsAskedOrAtTheStepsOfTheBar) {
   const std::vector<engine::Version> fields{fieldOf(gridOf(64, 64), [](int c, int) { return c; })};
   PictureSpec spec;
