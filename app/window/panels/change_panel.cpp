@@ -66,7 +66,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
   const auto& live = change.live();
   const render::ShownUnit unit =
       render::deviationUnit(context.client.field().grid().height_unit, context.units.change,
-                            live ? std::max(live->max_abs, live->sq_original) : 0.0);
+                            live ? live->max_abs : 0.0);
   // All rows from the first frame on: figures come into them, and what is below stays where it is.
   constexpr const char* kYet = "...";
   figure("largest", live ? lengthText(live->max_abs, unit) : kYet);
@@ -74,8 +74,9 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
   // Exact figures of the whole field follow after the stroke.
   const engine::Deviation* const exact = live ? change.exact(context.client.upright()) : nullptr;
   figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : kYet);
-  const auto pair = [&unit](double before, double now) {
-    return fmt::format("{}, {}", lengthText(before, unit), lengthText(now, unit));
+  // Of heights, as the panel Measure and the colour bar have them.
+  const auto pair = [&heights = context.units.height](double before, double now) {
+    return fmt::format("{}, {}", lengthText(before, heights), lengthText(now, heights));
   };
   figure("Sq before, now", live ? pair(live->sq_original, live->sq) : kYet);
   figure("Sa before, now", exact != nullptr ? pair(exact->sa_a, exact->sa_b)
