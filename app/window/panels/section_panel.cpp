@@ -91,7 +91,11 @@ void profilePlot(SectionTool& tool) {
                                               colourOf(PanelColour::kField));
     const ImVec2 below = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos(ImVec2(corner.x + 0.5F * font, corner.y + 0.5F * font));
-    ImGui::TextUnformatted(tool.busy() ? tr("taking the section") : tr("no height along this line"));
+    const auto chosen = tool.chosen();
+    const bool one_end = chosen && tool.sections().at(*chosen).lengthMm() == 0.0;
+    ImGui::TextUnformatted(tool.busy() ? tr("taking the section")
+                           : one_end   ? tr("point at its other end: Q or Shift+Q")
+                                       : tr("no height along this line"));
     ImGui::SetCursorScreenPos(below);
     return;
   }

@@ -216,6 +216,7 @@ TEST_F(WindowTest, a_section_follows_line_field_and_cursors) {
   user.at({220, 332});
   const Screen before = user.look("without");
   (void)user.key("q");
+  EXPECT_TRUE(user.reads("point at its other end")) << "one end is no line without heights";
   user.at({560, 332});
   (void)user.key("shift+q");
   const State taken = program->until("a section", [](const State& s) {
