@@ -175,8 +175,20 @@ void followSorting(FileBrowser& browser) {
   specs->SpecsDirty = false;
 }
 
+// The columns beside the names that a list has room for: with large letters or in a narrow window the date goes first, then the
+// size, and not the names.
+struct FileColumns {
+  bool size = true, changed = true;
+};
+constexpr float kNameLetters = 22.0F, kSizeLetters = 9.0F, kDateLetters = 17.0F;
+
+FileColumns columnsIn(float width, float letter) {
+  return {.size = width >= (kNameLetters + kSizeLetters) * letter,
+          .changed = width >= (kNameLetters + kSizeLetters + kDateLetters) * letter};
+}
+
 // One entry; true when it was double-clicked.
-bool row(std::size_t i, Question& question, FileBrowser& browser) {
+bool row(std::size_t i, Question& question, FileBrowser& browser, const FileColumns& columns) {
   const FolderEntry& entry = browser.entry(i);
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -187,10 +199,11 @@ bool row(std::size_t i, Question& question, FileBrowser& browser) {
                             ImGuiSelectableFlags_AllowDoubleClick);
   if (clicked) choose(i, question, browser);
   const bool twice = clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-  ImGui::TableNextColumn();
-  if (!entry.folder) ImGui::TextUnformatted(bytesText(static_cast<double>(entry.bytes)).c_str());
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(dateText(entry.changed_s).c_str());
+  const std::string size = entry.folder ? "" : bytesText(static_cast<double>(entry.bytes));
+  const std::string changed = dateText(entry.changed_s);
+  if (!columns.changed && ImGui::IsItemHovered()) valueTip(fmt::format("{}\n{}  {}", label, size, changed));
+  if (ImGui::TableNextColumn()) ImGui::TextUnformatted(size.c_str());
+  if (ImGui::TableNextColumn()) ImGui::TextUnformatted(changed.c_str());
   return twice;
 }
 
@@ -205,11 +218,14 @@ bool fileTable(Question& question, Files& files, ImVec2 size, bool scroll) {
     ImGui::TableSetupColumn(tr(name), flags, width, static_cast<ImGuiID>(order));
   };
   const float letter = ImGui::GetFontSize() * 0.55F;
+  const FileColumns columns = columnsIn(size.x, letter);
+  const auto beside = [](bool shown) {
+    return ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending |
+           (shown ? ImGuiTableColumnFlags_None : ImGuiTableColumnFlags_Disabled);
+  };
   column(textOf("name"), FolderOrder::kName, ImGuiTableColumnFlags_WidthStretch, 0.0F);
-  column(textOf("size"), FolderOrder::kSize,
-         ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 9.0F * letter);
-  column(textOf("changed"), FolderOrder::kChanged,
-         ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 17.0F * letter);
+  column(textOf("size"), FolderOrder::kSize, beside(columns.size), kSizeLetters * letter);
+  column(textOf("changed"), FolderOrder::kChanged, beside(columns.changed), kDateLetters * letter);
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   followSorting(browser);
@@ -220,7 +236,7 @@ bool fileTable(Question& question, Files& files, ImVec2 size, bool scroll) {
   if (scroll && chosen >= 0) clipper.ForceDisplayRangeByIndices(chosen, chosen + 1);
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      twice = row(static_cast<std::size_t>(i), question, browser) || twice;
+      twice = row(static_cast<std::size_t>(i), question, browser, columns) || twice;
       if (scroll && i == chosen) ImGui::SetScrollHereY(0.5F);
     }
   ImGui::EndTable();
@@ -243,7 +259,7 @@ void preview(const Question& question, Parts& parts, ImVec2 size) {
         if (shown.picture->empty()) ImGui::TextDisabled("%s", tr("too large for a quick look"));
         for (const std::string& text :
              {sizeText(*shown.picture), extentText(*shown.picture), heightsText(*shown.picture)})
-          if (!text.empty()) ImGui::TextUnformatted(text.c_str());
+          if (!text.empty()) writeWrapped(text);
         // The fields that the guesses name are on the page.
         if (question.kind == Kind::kOpen && anyGuess(shown.picture->warnings))
           ImGui::TextUnformatted(tr("guessed; set by \"Read as ...\":"));

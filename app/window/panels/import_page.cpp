@@ -21,6 +21,8 @@ using Choice = Answer::Choice;
 using render::Key;
 using render::PanelColour;
 
+constexpr const char* kDoesNotSay =
+    textOf("It does not say all about its numbers. Say what you know; Enter opens it as it is read below.");
 constexpr float kPicture = 340.0F, kFieldsWidth = 380.0F, kFoundHeight = 190.0F;  // at scale 1 [pixels]
 
 // Said where the cursor is on a field or on its name.
@@ -198,12 +200,12 @@ struct PageSizes {
   float found = 0.0F;
 };
 
-PageSizes pageSizes(float scale, bool with_reason) {
+// `reason`: the height of the text below the name [pixels].
+PageSizes pageSizes(float scale, float reason) {
   const ImGuiStyle& style = ImGui::GetStyle();
   const float wide = ImGui::GetContentRegionAvail().x;
   // Title, name of the file, what the cursor is on, buttons, and the edges of all.
-  const float rows = 4.0F * ImGui::GetFrameHeightWithSpacing() + 4.0F * style.WindowPadding.y +
-                     (with_reason ? ImGui::GetTextLineHeightWithSpacing() : 0.0F);
+  const float rows = 4.0F * ImGui::GetFrameHeightWithSpacing() + 4.0F * style.WindowPadding.y + reason;
   const float high = std::max(ImGui::GetIO().DisplaySize.y - rows, 8.0F * ImGui::GetFrameHeight());
   PageSizes sizes;
   sizes.picture.x = std::min(kPicture * scale, 0.45F * wide);
@@ -223,14 +225,13 @@ std::optional<Choice> importPage(Question& question, Parts& parts) {
   if (ImGui::IsWindowAppearing())
     files.begin(question.path, question.reading.value_or(ScanOptions()), question.guessed.get());
   ImGui::TextUnformatted(std::filesystem::path(question.path).filename().c_str());
-  if (question.guessed != nullptr)
-    ImGui::TextUnformatted(
-        tr("It does not say all about its numbers. Say what you know; Enter opens it as it is read below."));
+  const float below_name = ImGui::GetCursorPosY();
+  if (question.guessed != nullptr) writeWrapped(kDoesNotSay);
+  const PageSizes sizes = pageSizes(scale, ImGui::GetCursorPosY() - below_name);
   const auto typed_so_far = files.form.read();
   if (typed_so_far) files.reading = *typed_so_far;
   const ThumbnailShelf::Shown shown = files.shelf.find(question.path, files.reading);
   if (shown.picture != nullptr) files.noteFound(question.path, *shown.picture);
-  const PageSizes sizes = pageSizes(scale, question.guessed != nullptr);
   const ImVec2& size = sizes.picture;
   ImGui::BeginGroup();
   std::optional<PictureCursor> cursor;

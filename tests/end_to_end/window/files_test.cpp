@@ -88,6 +88,41 @@ TEST_F(WindowTest, the_page_of_a_scan_to_be_read_is_whole_with_large_letters) {
   quit(user);
 }
 
+TEST_F(WindowTest, a_scan_is_found_and_what_is_asked_about_it_is_read_with_large_letters) {
+  const std::string counts = writeCounts(folder.file("a_plate_of_counts.asc"));
+  const auto program = start({scan, "--ui-scale", "2"});
+  User user(display, *program, "large dialog");
+  (void)opened(*program);
+  (void)user.press("ctrl+o");
+  program->until("the dialog", opens);
+  user.type(folder.path().string() + "/");
+  const auto whole = [](const State& s, const std::string& what) {
+    return std::ranges::any_of(s["texts"], [&](const State& text) {
+      return text["text"].get<std::string>().find(what) != std::string::npos && text["cut"] == false;
+    });
+  };
+  const State listed =
+      program->until("the names of files", [](const State& s) { return opens(s) && says(s, "a_plate"); });
+  (void)user.look("names");
+  // The column of the dates has gone, and not the names.
+  EXPECT_TRUE(whole(listed, "a_plate_of_counts.asc")) << listed["texts"].dump();
+  EXPECT_TRUE(says(listed, "name"));
+  EXPECT_FALSE(says(listed, "changed"));
+  user.write("a_plate_of_counts.asc");
+  program->until("its path", [&](const State& s) { return s["dialog_path"] == counts && opens(s); });
+  (void)user.press("Return");
+  const State page = program->until(
+      "what is asked", [](const State& s) { return s["dialog"] == "import" && s["settled"] == true; });
+  (void)user.look("asked");
+  EXPECT_TRUE(whole(page, "It does not say all about its numbers.")) << page["texts"].dump();
+  EXPECT_TRUE(whole(page, "read below.")) << page["texts"].dump();
+  EXPECT_TRUE(whole(page, "Open (Enter)"));
+  (void)user.press("Escape");
+  program->until("the dialog again", opens);
+  (void)user.key("Escape");
+  quit(user);
+}
+
 TEST_F(WindowTest, a_scan_without_units_is_read_as_a_person_says_and_read_anew) {
   const std::string counts = writeCounts(folder.file("counts.asc"));
   const auto program = start({});
