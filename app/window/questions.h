@@ -11,6 +11,8 @@
 
 #include "app/files/scan_thumbnail.h"
 #include "app/texts/texts.h"
+#include "app/window/actions.h"
+#include "app/work/filter_list.h"
 #include "app/work/loop_client.h"
 #include "app/work/scan_reading.h"
 #include "render/window/window.h"
@@ -56,7 +58,11 @@ struct Question {
   std::optional<ScanOptions> reading = {};  ///< kImport, kRecover: of the scan, as Afterwards::reading
   /// kImport: the scan was read, something had to be guessed, and it waits to be confirmed; its picture.
   std::shared_ptr<const ScanThumbnail> guessed = {};
-  std::string sought = {};   ///< kShortcuts: as typed so far
+  std::string sought = {};  ///< kShortcuts: as typed so far
+  /// kShortcuts: what was chosen there, an action, a panel by its name, or a filter.
+  std::optional<Action> wanted = {};
+  std::string panel = {};
+  std::optional<engine::FilterKind> filter = {};
   bool stop_asking = false;  ///< kUnsaved, kUnsavedScene: ticked so far
   Notice said =
       {};  ///< kMessage; kOpen, kCompare, kJoin, kOpenScene: why the file of the path could not be read

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -146,8 +147,46 @@ void howToClean() {
   writeWrapped("Screen readers cannot read this window; every function is on the command line, too.");
 }
 
+// A line of the list of keys that does what it says when it is chosen, by a click, by Space where the keyboard is on it, or by
+// Enter in the search, which takes the first one that can be done. True when it was.
+class ChoosableLines {
+ public:
+  enum class Can : std::uint8_t { kNow, kNotNow, kByItsKeyAlone };
+  explicit ChoosableLines(bool takes_first) : takes_first_(takes_first) {}
+  // `keys`: of an action, in a column of their own `column` wide [pixels].
+  [[nodiscard]] bool line(const std::string& keys, float column, const std::string& text, Can can) {
+    ImGui::PushID(count_++);
+    const std::string lines = inLines(text, ImGui::GetContentRegionAvail().x - column);
+    const ImVec2 corner = ImGui::GetCursorPos();
+    const ImVec2 size(0.0F, ImGui::CalcTextSize(lines.c_str()).y);
+    ImGui::BeginDisabled(can == Can::kNotNow);
+    bool chosen = false;
+    if (can == Can::kByItsKeyAlone)
+      ImGui::Dummy(size);
+    else
+      chosen = ImGui::Selectable("##line", false, ImGuiSelectableFlags_DontClosePopups, size);
+    const ImVec2 below = ImGui::GetCursorPos();
+    if (!keys.empty()) {
+      ImGui::SetCursorPos(corner);
+      ImGui::TextUnformatted(keys.c_str());
+    }
+    ImGui::SetCursorPos(ImVec2(corner.x + column, corner.y));
+    ImGui::TextUnformatted(lines.c_str());
+    ImGui::SetCursorPos(below);
+    ImGui::EndDisabled();
+    ImGui::PopID();
+    if (can == Can::kNow) chosen = std::exchange(takes_first_, false) || chosen;
+    return chosen;
+  }
+
+ private:
+  bool takes_first_ = false;
+  int count_ = 0;
+};
+
 // The filters that the search is about; whether there is any.
-bool filtersAbout(const std::string& sought) {
+bool filtersAbout(const std::string& sought, ChoosableLines::Can can, ChoosableLines& lines,
+                  Question& question) {
   bool found = false;
   for (const engine::Filter& filter : engine::filters()) {
     const std::string_view title = tr(filter.title), says = tr(filter.says);
@@ -156,7 +195,9 @@ bool filtersAbout(const std::string& sought) {
       ImGui::Separator();
       ImGui::TextUnformatted(tr("Filters, in the list of the panel Filters"));
     }
-    writeWrapped(fmt::format("  {}: {}", title, says));
+    if (!lines.line("", ImGui::GetFontSize(), fmt::format("{}: {}", title, says), can)) continue;
+    question.filter = filter.kind;
+    question.panel = "Filters";
   }
   return found;
 }
@@ -190,7 +231,8 @@ constexpr PanelUse kPanelUses[] = {
 };
 
 // The panels that the search is about; whether there is any.
-bool panelsAbout(const std::string& sought) {
+bool panelsAbout(const std::string& sought, ChoosableLines::Can can, ChoosableLines& lines,
+                 Question& question) {
   bool found = false;
   for (const PanelUse& panel : kPanelUses) {
     const std::string line = fmt::format("{}: {}", tr(panel.name), tr(panel.says));
@@ -199,21 +241,30 @@ bool panelsAbout(const std::string& sought) {
       ImGui::Separator();
       ImGui::TextUnformatted(tr("Panels, at the right"));
     }
-    writeWrapped("  " + line);
+    if (lines.line("", ImGui::GetFontSize(), line, can)) question.panel = panel.name;
   }
   return found;
 }
 
-std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, float scale) {
+std::optional<Choice> shortcutsDialog(Question& question, const Parts& parts, Questions& questions,
+                                      float scale) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(420.0F * scale);
-  ImGui::InputTextWithHint("##sought", tr("search: a word, or a key"), &question.sought);
+  // The button beside it stays whole with large letters, too.
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float button = ImGui::CalcTextSize(tr("Close (Esc)")).x + 2.0F * style.FramePadding.x;
+  ImGui::SetNextItemWidth(
+      std::min(420.0F * scale, ImGui::GetContentRegionAvail().x - button - style.ItemSpacing.x));
+  const bool entered =
+      ImGui::InputTextWithHint("##sought", tr("search: a word, or a key; Enter does the first, a click any"),
+                               &question.sought, ImGuiInputTextFlags_EnterReturnsTrue);
+  if (entered) ImGui::SetKeyboardFocusHere(-1);  // where there is nothing to do another word is typed
   ImGui::SameLine();
   const bool left = dialogButton("Close (Esc)", questions, Key::kEscape);
   std::string sought = lower(question.sought);
   if (sought.size() > 3 && sought.back() == 's' && sought[sought.size() - 2] != 's')
     sought.pop_back();  // "units" are there as "unit"
   if (sought.empty()) howToClean();
+  ChoosableLines lines(entered && !sought.empty());
   std::string_view section;
   for (const ActionRow& row : actions()) {
     // What one would use it for is sought as well, as "spike".
@@ -230,14 +281,23 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
     std::string keys = keyText(row.key, row.modifiers);
     if (row.other_key != Key::kNone)
       keys = trFormat("{} or {}", keys, keyText(row.other_key, row.modifiersOfOther()));
-    ImGui::Text("  %-24s", keys.c_str());
-    ImGui::SameLine(220.0F * scale);
-    writeWrapped(std::string(tr(row.name)));
+    // What is in no menu goes with a key that is held, or with the place of the cursor.
+    using enum ChoosableLines::Can;
+    const bool able = row.enabled != nullptr ? row.enabled(parts) : ready(row, parts);
+    const bool by_key = row.menu.group == 0 || row.action == Action::kShortcuts;
+    if (lines.line("  " + keys, 212.0F * scale, std::string(tr(row.name)),
+                   !able    ? kNotNow
+                   : by_key ? kByItsKeyAlone
+                            : kNow))
+      question.wanted = row.action;
   }
   if (!sought.empty()) {
-    const bool filter = filtersAbout(sought), panel = panelsAbout(sought);
+    const auto can = parts.document.isOpen() ? ChoosableLines::Can::kNow : ChoosableLines::Can::kNotNow;
+    const bool filter = filtersAbout(sought, can, lines, question),
+               panel = panelsAbout(sought, can, lines, question);
     if (section.empty() && !filter && !panel)
       writeWrapped("Nothing is found: try another word, or empty the field for the whole list.");
+    if (question.wanted || !question.panel.empty()) return Choice::kConfirm;
     return left ? std::optional(Choice::kBack) : std::nullopt;
   }
   ImGui::Separator();
@@ -247,6 +307,7 @@ std::optional<Choice> shortcutsDialog(Question& question, Questions& questions, 
       "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
       "  Alt + left button        turn the view\n"
       "  Ctrl + Shift + left      drag an edge line or a section; a click chooses one where no tool is on"));
+  if (question.wanted) return Choice::kConfirm;
   return left ? std::optional(Choice::kBack) : std::nullopt;
 }
 
@@ -301,7 +362,7 @@ std::optional<Choice> layOut(Question& question, Parts& parts) {
     case Kind::kDevice:
       return devicePage(parts);
     case Kind::kShortcuts:
-      return shortcutsDialog(question, questions, scale);
+      return shortcutsDialog(question, parts, questions, scale);
     case Kind::kMessage:
       break;
   }

@@ -99,6 +99,13 @@ void Workstation::carryOut(Answer answer) {
       if (confirmed) setUpDevice(p.device_setup);
       break;
     case Kind::kShortcuts:
+      if (question.wanted) app::carryOut(*question.wanted, p);
+      if (question.filter) p.filters.chooseKind(*question.filter, p.document.client()->field().grid());
+      if (!question.panel.empty()) {
+        p.settings.side_panel = p.settings.panels[question.panel] = true;
+        p.enter_panel = question.panel;
+      }
+      break;
     case Kind::kMessage:
       break;
   }

@@ -1,6 +1,7 @@
 // Wrong turns that a person took who saw the window for the first time.
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -170,6 +171,49 @@ TEST_F(FirstUseTest, the_list_of_keys_begins_with_how_to_clean_a_scan_and_is_sea
   (void)user.look("found in panels");
   (void)user.press("Escape");
   program->until("closed", [](const State& s) { return s["dialog"] == "none"; });
+  quit(user);
+}
+
+TEST_F(FirstUseTest, what_the_list_of_keys_has_found_is_done_by_enter_or_a_click) {
+  const auto program = start({scan, "--ui-scale", "1.5"});
+  User user(display, *program, "found");
+  const State before = opened(*program);
+  EXPECT_EQ(before["contours"], false);
+  const auto listed = [](const State& s) { return s["dialog"] == "shortcuts" && s["settled"] == true; };
+  const auto seek = [&](const std::string& word, const std::string& there) {
+    (void)user.press("F1");
+    program->until("the list", listed);
+    user.write(word);
+    return program->until(word, [&](const State& s) { return listed(s) && hasWords(s, there); });
+  };
+  const auto after = [&](const std::string& what, const std::function<bool(const State&)>& is) {
+    return program->until(what, [&](const State& s) { return s["dialog"] == "none" && is(s); });
+  };
+  (void)seek("contour l", "Contour lines");
+  (void)user.press("Return");
+  (void)after("contours", [](const State& s) { return s["contours"] == true; });
+  // Nothing is found: the search goes on.
+  (void)seek("qqxx", "Nothing is found");
+  (void)user.press("Return");
+  EXPECT_EQ(user.rest()["dialog"], "shortcuts");
+  EXPECT_EQ(program->now()["text_field"], true);
+  (void)user.press("Escape");
+  (void)after("closed", [](const State&) { return true; });
+  (void)seek("colour map", "Next colour map");
+  (void)user.look("a line to click");
+  user.tap("Next colour map");
+  (void)after("another map", [&](const State& s) { return s["colour_map"] != before["colour_map"]; });
+  // A panel, also where all are hidden.
+  (void)user.key("Tab");
+  (void)seek("stitch", "Join: ");
+  (void)user.press("Return");
+  const State panel = after("its panel", [](const State& s) { return hasWords(s, "Join"); });
+  EXPECT_NE(std::ranges::find(panel["panels"], State("Join")), panel["panels"].end()) << panel["panels"];
+  // A filter, which is in its panel then.
+  (void)seek("gaussian", "Gaussian: ");
+  (void)user.press("Return");
+  (void)after("the filter",
+              [](const State& s) { return s["filter"].dump().find("aussian") != std::string::npos; });
   quit(user);
 }
 
