@@ -193,7 +193,7 @@ void drawField(Parts& parts, const DrawOptions& options) {
   parts.line_drag.append(client.field(), input.overlays);
   const engine::History& history = client.history();
   if (const auto step = parts.pointed_step; step && *step > history.first() && *step <= history.last())
-    appendStepArea(client.field(), history.info(*step).rect, input.overlays);
+    appendStepArea(client.field(), history, *step, input.overlays);
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();

@@ -12,6 +12,7 @@
 #include "app/texts/texts.h"
 #include "app/window/navigation.h"
 #include "app/window/scene_edits.h"
+#include "engine/field/difference.h"
 
 namespace fettle::app {
 
@@ -117,9 +118,18 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
     addMeaning(inWords(meaningOfPlace(places.state(k), places.present() == k)), overlays.meanings);
 }
 
-void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
+void appendStepArea(const engine::Version& field, const engine::History& history, std::int64_t step,
                     render::Overlays& overlays) {
   constexpr int kPieces = 48;  // of each side
+  constexpr std::size_t kMostTiles =
+      512;  // whose samples are looked at in a frame; of more the tiles will do
+  const engine::Version &before = history.state(step - 1), &after = history.state(step);
+  engine::SampleRect changed = history.info(step).rect;
+  // Of a step of samples and marks alone: the tiles of a stroke reach far beyond it.
+  if (before.lines() == after.lines() && before.formOver() == after.formOver() &&
+      before.reader().sign() == after.reader().sign())
+    if (const auto samples = engine::changedSamples(before, after, kMostTiles); samples && !samples->empty())
+      changed = {samples->column - 1, samples->row - 1, samples->columns + 2, samples->rows + 2};
   const engine::FieldReader reader = field.reader();
   const glm::dvec2 last(reader.width() - 1, reader.height() - 1);
   const glm::dvec2 low = glm::clamp(glm::dvec2(changed.column, changed.row), glm::dvec2(0.0), last);

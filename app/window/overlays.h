@@ -38,7 +38,7 @@ class PlaceOverlay {
 };
 
 /// The outline of what a step changed, on the surface.
-void appendStepArea(const engine::Version& field, const engine::SampleRect& changed,
+void appendStepArea(const engine::Version& field, const engine::History& history, std::int64_t step,
                     render::Overlays& overlays);
 
 /// Points of a plane on the surface [mm in field coordinates], with a line from each to the next.

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/field/live_field.h"
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
@@ -24,6 +27,11 @@ struct TileChange {
 /// Whether two versions of one grid have the same heights, bit by bit, whatever their marks, lines and sign. Reads the
 /// tiles alone that they do not share.
 [[nodiscard]] bool sameHeights(const Version& before, const Version& after);
+
+/// The smallest rectangle of the samples whose heights, bit by bit, or marks differ in two versions of one grid; empty where none
+/// does. Nothing where more than `most_tiles` tiles differ: time is proportional to them, some microseconds each.
+[[nodiscard]] std::optional<SampleRect> changedSamples(const Version& before, const Version& after,
+                                                       std::size_t most_tiles);
 
 /// Swaps the tiles of `changes` to their `before` state (undo) or to their `after` state (redo), in place.
 /// False, with the rest unchanged, when a node could not be allocated (see LiveField).

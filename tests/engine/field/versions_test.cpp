@@ -234,6 +234,21 @@ TEST(Versions, HaveTheSameHeightsWhateverTheirMarksLinesAndSign) {
   EXPECT_FALSE(sameHeights(before, live.snapshot()));
 }
 
+TEST(Versions, KnowTheSamplesInWhichTheyDifferWhileFewTilesDo) {
+  const Version before = toVersion(somePlain(500, 300, 5));
+  EXPECT_EQ(changedSamples(before, before, 0), SampleRect{});
+  LiveField live(before, Growth::kAllowed);
+  ASSERT_TRUE(live.setHeight(63, 70, 12345.0F));
+  EXPECT_EQ(changedSamples(before, live.snapshot(), 1), (SampleRect{63, 70, 1, 1}));
+  // The same height again is no change, though its tile is another one.
+  ASSERT_TRUE(live.setHeight(10, 10, before.reader().heightAt(10, 10)));
+  EXPECT_EQ(changedSamples(before, live.snapshot(), 2), (SampleRect{63, 70, 1, 1}));
+  ASSERT_TRUE(live.setMark(499, 299, !before.reader().markedAt(499, 299)));
+  EXPECT_EQ(changedSamples(before, live.snapshot(), 3), (SampleRect{63, 70, 437, 230}));
+  EXPECT_EQ(changedSamples(live.snapshot(), before, 3), (SampleRect{63, 70, 437, 230}));
+  EXPECT_FALSE(changedSamples(before, live.snapshot(), 1));
+}
+
 TEST(Versions, DroppingVersionsGivesEveryTileBack) {
   std::shared_ptr<FieldMemory> memory;
   {
