@@ -64,16 +64,19 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const render::Shown
 
 void changePanel(const PanelContext& context, const ChangeFigures& change) {
   const auto& live = change.live();
-  const render::ShownUnit unit =
-      render::deviationUnit(context.client.field().grid().height_unit, context.units.change,
-                            live ? live->max_abs : 0.0);
+  const render::ShownUnit unit = render::deviationUnit(context.client.field().grid().height_unit,
+                                                       context.units.change, live ? live->max_abs : 0.0);
   // All rows from the first frame on: figures come into them, and what is below stays where it is.
   constexpr const char* kYet = "...";
   figure("largest", live ? lengthText(live->max_abs, unit) : kYet);
   figure("rms", live ? lengthText(live->rms, unit) : kYet);
   // Exact figures of the whole field follow after the stroke.
   const engine::Deviation* const exact = live ? change.exact(context.client.upright()) : nullptr;
-  figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : kYet);
+  // Of a field that nothing was done to there is nothing to measure.
+  const bool untouched = live && live->max_abs == 0.0;
+  figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit)
+                        : untouched      ? lengthText(0.0, unit)
+                                         : kYet);
   // Of heights, as the panel Measure and the colour bar have them.
   const auto pair = [&heights = context.units.height](double before, double now) {
     return fmt::format("{}, {}", lengthText(before, heights), lengthText(now, heights));

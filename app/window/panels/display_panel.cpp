@@ -138,11 +138,12 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
       "light from",
       "Where the light comes from, counted from the picture's right over its top. A material has light of "
       "its own.",
-      [&] { return slider("##azimuth", display.light_azimuth_deg, 0.0F, 360.0F, trPrintf("%.0f deg")); });
+      [&] { return slider("##azimuth", display.light_azimuth_deg, 0.0F, 360.0F, trPrintf("%.0f\u00b0")); });
   (void)field(
       "light above",
-      "How high the light stands: low light shows faint slopes. A material has light of its own.",
-      [&] { return slider("##elevation", display.light_elevation_deg, 5.0F, 90.0F, trPrintf("%.0f deg")); });
+      "How high the light stands: low light shows faint slopes. A material has light of its own.", [&] {
+        return slider("##elevation", display.light_elevation_deg, 5.0F, 90.0F, trPrintf("%.0f\u00b0"));
+      });
   shareSlider("hidden light", "##occlusion", display.form.occlusion,
               "How much of the light a place loses at most to what stands around it.");
   shareSlider("hollows", "##cavity", display.form.cavity,

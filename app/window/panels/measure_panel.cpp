@@ -139,7 +139,7 @@ void arealTable(const MeasureTool& measure, bool noise, WithSdc sdc) {
           valueTip(trFormat("without noise {}", line.without[i]));
       }
     }
-    cell(line.unit);
+    cell(line.unit == "degrees" ? "\u00b0" : line.unit);
     if (!noise) continue;
     ImGui::TableNextRow();
     cell("");

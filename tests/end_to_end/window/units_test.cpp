@@ -144,6 +144,11 @@ TEST_F(WindowTest, texture_reads_in_one_unit_in_each_panel) {
   const std::string all = written(measured);
   ASSERT_TRUE(std::regex_search(all, found, kChange)) << all;
   EXPECT_EQ(found[2], "mm") << all;
+  EXPECT_TRUE(says(measured, "99 % within 0 \u00b5m")) << "it is known without measuring: " << all;
+  EXPECT_TRUE(user.readsScrolled("Std"));
+  (void)user.wheel(-2);
+  EXPECT_TRUE(user.reads("\u00b0"));
+  EXPECT_FALSE(user.reads("degrees"));
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);

@@ -77,7 +77,7 @@ TEST_F(WindowTest, a_dropped_scan_is_looked_at_from_all_sides) {
   (void)user.same("the first map again", above);
   // The light, by its slider, in a panel that is closed at first.
   for (const char* header : {"Filters", "Display"}) (void)user.click(header);
-  const State turned = user.click("135 deg");
+  const State turned = user.click("135\u00b0");
   EXPECT_NE(turned["light"][0], 135);
   (void)user.changed("light from elsewhere", above, 2000);
 
