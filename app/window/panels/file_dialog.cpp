@@ -438,7 +438,13 @@ std::optional<Choice> fileDialog(Question& question, Parts& parts) {
   const ResultFile* const result = resultFileOf(question.kind);
   const std::string path_before = question.path;
   if (appears) {
-    if (question.path.empty()) question.path = firstFolder(parts.recent);
+    // A path of the command line is one from the folder that the program was started in, and what is typed here one from the
+    // folder that is listed.
+    std::error_code error;
+    if (question.path.empty())
+      question.path = firstFolder(parts.recent);
+    else if (const fs::path whole = fs::absolute(question.path, error); !error)
+      question.path = whole.lexically_normal().string();
     files.begin(question.path, parts.recent.paths(), isScene(question) ? FilesOf::kScenes : FilesOf::kScans);
   }
   // Also after a name that is none: another one is typed in its place.

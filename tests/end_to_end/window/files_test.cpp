@@ -336,6 +336,26 @@ TEST_F(WindowTest, the_format_of_what_is_exported_is_chosen_from_a_list) {
   quit(user);
 }
 
+TEST_F(WindowTest, a_scan_of_a_relative_path_is_exported_beside_itself) {
+  const fs::path before = fs::current_path();
+  fs::create_directories(folder.path() / "parts");
+  fs::copy_file(scan, folder.path() / "parts" / "one.tif");
+  fs::current_path(folder.path());
+  const auto program = start({"parts/one.tif"});
+  User user(display, *program, "relative");
+  (void)opened(*program);
+  fs::current_path(before);
+  (void)user.press("ctrl+e");
+  const State asked = program->until(
+      "where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  const std::string beside = folder.file("parts/one_fettled.tif");
+  EXPECT_EQ(asked["dialog_path"], beside);
+  (void)user.press("Return");
+  program->until("written", [&](const State& s) { return s["status"] == "written: " + beside; });
+  EXPECT_TRUE(fs::exists(beside));
+  quit(user);
+}
+
 TEST_F(WindowTest, a_mesh_for_cad_is_in_mm_unless_the_unit_of_the_scan_is_chosen) {
   const std::string in_um = folder.file("um.tif"), by_command = folder.file("command.stl");
   engine::JobControl job;
