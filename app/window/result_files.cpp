@@ -129,7 +129,9 @@ void confirmResult(Question question, Parts& parts) {
   if (auto status = checkPlaces({{question.path, format.kind}},
                                 {keeper.scanPath(), keeper.path(), parts.document.path()});
       !status) {
-    parts.feedback.message(status.error().line(), "");
+    // Back to the dialog in which it was chosen.
+    parts.feedback.questions.ask(
+        {.kind = question.kind, .path = std::move(question.path), .said = {status.error().line(), ""}});
     return;
   }
   ReplacedFiles files = replacedFiles({question.path}, keeper.scanPath());

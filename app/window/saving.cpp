@@ -123,6 +123,15 @@ void Saving::askToWrite(Question from, Typed typed, ActiveDocument& document, Fe
                      tr("name another file for a copy"));
     return;
   }
+  if (const auto status = checkPlaces({{from.path, OutputKind::kField}}, {});
+      !status && typed == Typed::kYes) {
+    // Back to the dialog in which it was chosen.
+    feedback.questions.ask({.kind = from.kind,
+                            .path = std::move(from.path),
+                            .afterwards = std::move(from.afterwards),
+                            .said = {status.error().line(), ""}});
+    return;
+  }
   ReplacedFiles files = replacedFiles(outputsOf(from.path, keeping, document), keeper.scanPath());
   if (files.texts.empty()) {
     start(from.path, keeping, std::move(from.afterwards), document, feedback);

@@ -457,6 +457,21 @@ TEST_F(WindowTest, a_dialog_stays_with_what_is_wrong_with_its_file) {
   (void)user.look("a broken one");
   (void)user.press("Escape");
   program->until("the scan", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
+  // Nor is what was typed lost where nothing can be written.
+  (void)user.press("ctrl+e");
+  program->until("where to",
+                 [](const State& s) { return s["dialog"] == "export" && s["text_field"] == true; });
+  const std::string nowhere = folder.file("nowhere/out.tif"), out = folder.file("out.tif");
+  user.type(nowhere);
+  (void)user.press("Return");
+  const State refused_place = program->until("no such folder", [](const State& s) {
+    return s["dialog"] == "export" && s["settled"] == true && says(s, "there is no such folder");
+  });
+  EXPECT_EQ(refused_place["dialog_path"], nowhere);
+  (void)user.look("no such folder");
+  user.type(out);
+  (void)user.press("Return");
+  program->until("written", [&](const State& s) { return s["status"] == "written: " + out; });
   // Neither is another scan taken that is none.
   for (const auto& [key, dialog] : {std::pair("alt+b", "compare"), {"alt+j", "join"}}) {
     (void)user.press(key);

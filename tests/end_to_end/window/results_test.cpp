@@ -120,6 +120,16 @@ TEST_F(ResultFiles, sections_are_written_as_the_command_writes_them) {
     EXPECT_EQ(user.rest()["dialog"], "export sections");
     EXPECT_TRUE(user.reads("choose a format"));
     (void)user.key("Escape");
+    // So does one in a folder that is none.
+    (void)user.press("ctrl+shift+e");
+    (void)dialogOf(user, "export sections");
+    user.type(folder.file("nowhere/window.csv"));
+    (void)user.press("Return");
+    (void)program->until("no such folder", [](const State& s) {
+      return s["dialog"] == "export sections" && s["settled"] == true &&
+             s["texts"].dump().find("there is no such folder") != std::string::npos;
+    });
+    (void)user.key("Escape");
     saveAs(user, work);
     (void)quit(user);
   }
