@@ -147,7 +147,9 @@ void ViewProgram::each(const std::function<void(const State&)>& look) {
   const std::scoped_lock lock(mutex_);
   for (; shown_ < states_.size(); ++shown_) look(states_[shown_]);
   if (states_.size() > 1) states_.erase(states_.begin(), states_.end() - 1);
-  seen_ = shown_ = states_.size();
+  shown_ = states_.size();
+  // until() may wait for what is so already: a window at rest reports nothing more.
+  seen_ = states_.empty() ? 0 : states_.size() - 1;
 }
 
 void ViewProgram::skipToNewest() {
