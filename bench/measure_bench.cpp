@@ -18,6 +18,7 @@
 #include "engine/measure/areal.h"
 #include "engine/measure/form.h"
 #include "engine/measure/line_offsets.h"
+#include "engine/measure/line_suggestion.h"
 #include "engine/measure/lowered.h"
 #include "engine/measure/scale_filter.h"
 #include "engine/measure/section.h"
@@ -93,6 +94,14 @@ Result<Outcome> linesTaken(const Version& field, const engine::LineOptions& opti
       field, "taking lines out", [&](const auto& rect, double* out) { lines->readHeights(rect, out); }, job));
 }
 
+Result<Outcome> suggested(const Version& field, JobControl& job) {
+  const auto found = engine::suggestLevelling(field, {}, job);
+  if (!found) return tl::unexpected(found.error());
+  std::vector<double> apart{found->before};
+  for (const auto& tried : found->tried) apart.push_back(tried.apart);
+  return apart;
+}
+
 Result<Outcome> sectioned(const Version& field, double width_mm, JobControl& job) {
   const engine::Grid& grid = field.grid();
   const glm::dvec2 end((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
@@ -159,6 +168,7 @@ std::vector<Step> steps(const Version& moved, const Version& marked) {
       {"level, plane, robust", form(1, true)},
       {"level, degree 5", form(5, false)},
       {"level, rows by median", [](const Version& f, JobControl& job) { return linesTaken(f, {}, job); }},
+      {"level, way suggested", suggested},
       {"section", section(0.0)},
       {"section, 100 lanes wide", section(99 * kSpacingMm)},
       {"S-filter, 25 samples",

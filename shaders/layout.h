@@ -139,7 +139,7 @@ struct PanelUniforms {
   vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); -
   vec4 light;       // 352: unit vector to the light; share of light without direction
   vec4 marks_tint;  // 368: linear red, green, blue; opacity, -1: an outline alone
-  vec4 no_data;     // 384: linear red, green, blue; period of the hatch of what is not compared [px]
+  vec4 no_data;     // 384: linear red, green, blue; period of the hatch of what is not compared [mm]
   vec4 wall;        // 400: linear red, green, blue
   vec4 ground;      // 416: linear red, green, blue: background
   ivec4 size;       // 432: virtual columns, rows; true columns, rows

@@ -140,13 +140,14 @@ float markShare(ivec2 s, uint mark, float opacity) {
 }
 
 // Grey of a point that the original has no height for: its own height is all there is to show. Hatched, since holes have the
-// same grey: stripes are told from it whatever colours a person sees.
+// same grey: stripes are told from it whatever colours a person sees. They lie on the surface, so that they stay where they are
+// in a picture that moves, that is drawn in parts, or less sharply.
 vec3 greyByHeight(SurfacePoint p) {
   const float height = mix(mix(p.h.x, p.h.y, p.f.x), mix(p.h.z, p.h.w, p.f.x), p.f.y);
   const float share = (height - panel.limits.x) / max(panel.limits.y - panel.limits.x, 1e-30);
-  const float stripe = fract((gl_FragCoord.x + gl_FragCoord.y) / panel.no_data.w);
-  return panel.no_data.rgb * mix(0.5, 1.5, clamp(share, 0.0, 1.0)) * 
-         (stripe * float(kHatchStripes) < 1.0 ? 1.0 / float(kHatchShade) : 1.0);
+  const vec2 at = (vec2(p.cell) + p.f) * float(1 << shade_log2) * panel.placing.zw;
+  const bool stripe = fract((at.x + at.y) / panel.no_data.w) * float(kHatchStripes) < 1.0;
+  return panel.no_data.rgb * mix(0.5, 1.5, clamp(share, 0.0, 1.0)) / (stripe ? float(kHatchShade) : 1.0);
 }
 
 // `facet`: normal of the geometry, used where the point is displaced. The others as contourInk().

@@ -236,7 +236,9 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
     const double marks_share = spec.marks_look == MarksLook::kOutline ? -1.0 : spec.marks_opacity;
     u.marks_tint = vec4Of(plan.palette.marks, marks_share);
     u.suggested_tint = vec4Of(plan.palette.suggested, marks_share);
-    u.no_data = vec4Of(plan.palette.no_data, hatchPeriod(plan.layout.scale));
+    // A power of two, so that stripes do not swim while a view comes nearer.
+    const double stripes_mm = hatchPeriod(plan.layout.scale) / std::max(panel.camera.pixelsPerMm(), 1e-30);
+    u.no_data = vec4Of(plan.palette.no_data, std::exp2(std::round(std::log2(stripes_mm))));
     u.wall = vec4Of(plan.palette.wall, 1.0);
     u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);
     u.shade = glm::ivec4(0, 0, panel.placing.size);

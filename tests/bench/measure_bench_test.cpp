@@ -27,9 +27,9 @@ TEST(MeasureBench, HasARowForEachStepWithItsTimeBesideThatOfCopying) {
     // Each step makes another field, or finds other figures.
     EXPECT_TRUE(steps.emplace(row.bits, row.step).second) << steps[row.bits];
   }
-  ASSERT_EQ(report->rows.size(), 14U);
-  EXPECT_EQ(report->rows[12].step, "remove above 2 mm");
-  EXPECT_EQ(report->rows[13].step, "remove marked rows");
+  ASSERT_EQ(report->rows.size(), 15U);
+  EXPECT_EQ(report->rows[13].step, "remove above 2 mm");
+  EXPECT_EQ(report->rows[14].step, "remove marked rows");
 }
 
 TEST(MeasureBench, RefusesOptionsOutOfRange) {

@@ -76,6 +76,9 @@ TEST(Parts, JoinToThePictureDrawnAsOneWhateverItShows) {
     still.shown.original =
         fieldOf(gridOf(160, 120, 0.25, 0.25), [](int c, int r) { return 0.98 * part(c, r); });
     expectSame(still, side, "deviation");
+    still.shown.original = fieldOf(gridOf(160, 120, 0.25, 0.25),
+                                   [](int c, int r) { return r > 60 && c < 80 ? kNan : 0.98 * part(c, r); });
+    expectSame(still, side, "not compared");
     still.input.decoration = Decoration::kNone;
     still.input.sharpness = Sharpness::kFull;
     expectSame(still, side, "bare");
