@@ -14,8 +14,9 @@ namespace fettle::app {
 ///   chosen --- nothing changed for kQuiet --> begins: panel 1, panel 2, ... --> fine
 ///      ^---------------- the picture changes as a whole ------------------------'
 ///
-/// One panel after the other, each in bands of rows: so no frame takes long, and input is processed between two of them. After that only edited parts are drawn again. Panels that cannot be drawn
-/// independently (a picture for two eyes) are refined in one frame.
+/// One panel after the other, each in bands of rows: so no frame takes long, and input is processed between two of them. After
+/// that only edited parts are drawn again. Panels that cannot be drawn independently (a picture for two eyes) are refined in one
+/// frame.
 class Refinement {
  public:
   using Clock = std::chrono::steady_clock;

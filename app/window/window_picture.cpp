@@ -197,7 +197,8 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
     refinement_.drawn({.whole = figures_.redrawn == 1.0,
                        .continued = figures_.continued,
                        .tiles_coming = figures_.upload.pending_tiles > figures_.residency.pages_waiting,
-                       .pages_coming = figures_.residency.pages_waiting > 0},
+                       .pages_coming = figures_.residency.pages_waiting > 0,
+                       .bands_left = figures_.bands_left},
                       Refinement::Clock::now());
   return true;
 }

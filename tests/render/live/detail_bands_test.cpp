@@ -79,16 +79,17 @@ TEST(DetailBands, WhatChangesThePictureInBetweenIsDrawnAsAWhole) {
   const FrameInput input = bare();
   FrameInput lit = input;
   lit.light_azimuth_deg += 90.0;
-  for (const auto& [next, redraw] :
-       {std::pair{input, FrameInput::Redraw::kChanged}, std::pair{lit, FrameInput::Redraw::kInBands}}) {
+  for (const auto& [next, redraw, vertices] : {std::tuple{input, FrameInput::Redraw::kChanged, kCoarse},
+                                               {input, FrameInput::Redraw::kChanged, kFine},
+                                               {lit, FrameInput::Redraw::kInBands, kCoarse}}) {
     auto picture = makePicture();
     ASSERT_TRUE(picture->update(partField()));
     (void)drawComplete(*picture, with(input, kCoarse, FrameInput::Redraw::kChanged));
     for (int band = 0; band < 3; ++band) (void)shoot(*picture, with(input, kFine));
-    const Shot whole = shoot(*picture, with(next, kCoarse, redraw));
+    const Shot whole = shoot(*picture, with(next, vertices, redraw));
     EXPECT_EQ(whole.stats.redrawn, 1.0);
     EXPECT_EQ(whole.stats.bands_left, 0);
-    EXPECT_EQ(differing(whole.image, wholeOf(partField(), with(next, kCoarse)).image), 0U);
+    EXPECT_EQ(differing(whole.image, wholeOf(partField(), with(next, vertices)).image), 0U);
   }
 }
 
