@@ -77,10 +77,12 @@ TEST(DetailBands, AnEditInBetweenIsDrawnAtOnceAndTheBandsGoOn) {
 
 TEST(DetailBands, WhatChangesThePictureInBetweenIsDrawnAsAWhole) {
   const FrameInput input = bare();
-  FrameInput lit = input;
+  FrameInput lit = input, at_rest = input;
   lit.light_azimuth_deg += 90.0;
+  at_rest.sharpness = Sharpness::kRest;
   for (const auto& [next, redraw, vertices] : {std::tuple{input, FrameInput::Redraw::kChanged, kCoarse},
                                                {input, FrameInput::Redraw::kChanged, kFine},
+                                               {at_rest, FrameInput::Redraw::kChanged, kFine},
                                                {lit, FrameInput::Redraw::kInBands, kCoarse}}) {
     auto picture = makePicture();
     ASSERT_TRUE(picture->update(partField()));
