@@ -225,7 +225,7 @@ TEST_F(WindowTest, the_list_of_filters_begins_with_spikes_lines_and_holes) {
   (void)user.click("Outliers");
   EXPECT_EQ(user.click("Level lines (rows or columns) ...")["heights_preview"],
             "Level rows: median, form stays");
-  EXPECT_TRUE(user.readsScrolled("For lines that are off by a height each: all get the same"))
+  EXPECT_TRUE(user.readsScrolled("For lines that are off by a height each: all"))
       << "which lines that is for";
   (void)user.look("levelled");
   EXPECT_TRUE(user.readsScrolled("Add preview"));
