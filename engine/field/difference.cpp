@@ -3,8 +3,8 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
-#include <cstring>
 
+#include "engine/base/same_bits.h"
 #include "engine/field/difference_inl.h"
 
 namespace fettle::engine {
@@ -24,7 +24,7 @@ bool sameHeights(const Version& before, const Version& after) {
   bool same = true;
   detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
                       [&](std::int32_t, std::int32_t, const Tile& a, const Tile& b) {
-                        same = same && std::memcmp(&a.samples, &b.samples, sizeof(a.samples)) == 0;
+                        same = same && sameBits(a.samples, b.samples);
                       });
   return same;
 }

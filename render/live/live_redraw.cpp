@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/base/same_bits.h"
 #include "engine/field/difference.h"
 #include "render/detail/damage.h"
 #include "render/live/live_fields.h"
@@ -14,7 +15,7 @@ namespace {
 // Whether two panels are equal except for samples and patches, so that damageOf finds where they differ.
 bool onlyFieldDiffers(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
   return related(a.field, b.field) && a.variant == b.variant && a.shade_level == b.shade_level &&
-         a.pages == b.pages && std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) == 0;
+         a.pages == b.pages && engine::sameBits(a.uniforms, b.uniforms);
 }
 
 bool sameList(const std::vector<gpu::Patch>& a, const std::vector<gpu::Patch>& b) {
@@ -51,7 +52,7 @@ bool sameButDetail(const DrawnFrame& before, const DrawnFrame& now) {
   for (std::size_t i = 0; i < now.panels.size(); ++i) {
     const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
     if (!(a.field == b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
-        std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) != 0)
+        !engine::sameBits(a.uniforms, b.uniforms))
       return false;
   }
   return true;

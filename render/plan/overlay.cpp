@@ -178,8 +178,11 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Decoratio
 void hatch(Pen& pen, double left, double top, double side, const glm::vec3& grey, double scale) {
   const double period = hatchPeriod(scale), dark = period / gpu::kHatchStripes;
   const glm::vec3 stripe = grey / static_cast<float>(gpu::kHatchShade);
-  for (double row = 0.0; row < side; ++row)
-    for (double at = -std::fmod(left + top + row, period); at < side; at += period) {
+  const auto rows = static_cast<int>(side);
+  const auto stripes = static_cast<int>(std::ceil(side / period)) + 1;
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < stripes; ++k) {
+      const double at = k * period - std::fmod(left + top + row, period);
       const double from = std::max(0.0, at), to = std::min(side, at + dark);
       if (to > from) pen.box(left + from, top + row, to - from, 1.0, stripe);
     }
