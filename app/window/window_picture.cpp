@@ -150,6 +150,10 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   const bool sharp_wanted = draws == Draws::kRefined && input.sharpness == render::Sharpness::kFull;
   const bool changes_whole = sharp_wanted && (std::exchange(results_came_, false) || looks_other);
   if (sharp_wanted && drawsLess(changes_whole, now)) input.sharpness = render::Sharpness::kHalf;
+  // The first frame of every pixel after those with fewer is drawn as a whole: with more vertices it would take long.
+  if (input.sharpness == render::Sharpness::kFull &&
+      (drawn_sharpness_ == render::Sharpness::kHalf || drawn_sharpness_ == render::Sharpness::kQuarter))
+    refinement_.restart(now);
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
