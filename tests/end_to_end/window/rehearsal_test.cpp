@@ -28,7 +28,10 @@ class RehearsalTest : public WindowTest {
   }
   void showUntilRehearsed(const std::string& path) const {
     const auto program = start({path}, environment());
-    (void)program->until("the rehearsal", [](const State& s) { return s.value("rehearsed", false); });
+    // It lets everything else go first: beside other programs it takes minutes.
+    (void)program->until(
+        "the rehearsal", [](const State& s) { return s.value("rehearsed", false); },
+        5 * ViewProgram::kPatience);
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0) << program->err();
   }

@@ -119,8 +119,9 @@ std::string ViewProgram::lastReported() const {
   return text + "last reported: " + last.dump();
 }
 
-ViewProgram::State ViewProgram::until(const std::string& what, const std::function<bool(const State&)>& is) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+ViewProgram::State ViewProgram::until(const std::string& what, const std::function<bool(const State&)>& is,
+                                      std::chrono::seconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
   std::unique_lock lock(mutex_);
   for (;;) {
     while (seen_ < states_.size()) {

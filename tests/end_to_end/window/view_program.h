@@ -35,7 +35,8 @@ class ViewProgram {
 
   /// Waits until the program has reported such a state, looking at every one since the last that was waited
   /// for, that one included. Throws when it does not come: nothing after it makes sense.
-  State until(const std::string& what, const std::function<bool(const State&)>& is);
+  State until(const std::string& what, const std::function<bool(const State&)>& is,
+              std::chrono::seconds patience = kPatience);
   /// The newest state reported; null before the first.
   [[nodiscard]] State now();
   /// Shows every state reported since the last call of this, those that until() has looked at among them, without waiting for more;

@@ -114,6 +114,10 @@ class Run {
       : hand_(display.name()), program_(arguments(scan, drawing), {}, ViewProgram::Watched::kNo) {
     if (!hand_.works()) throw std::runtime_error("the display has no XTEST extension");
     settle("the scan at rest");
+    // Nobody presses a key within a second of the first picture. Beside two that spin the rehearsal takes minutes.
+    (void)program_.until(
+        "the rehearsal", [](const State& s) { return s.value("rehearsed", false); },
+        5 * ViewProgram::kPatience);
   }
 
   Row measure() {
@@ -313,11 +317,6 @@ int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds) 
     for (const Shown shown : kinds)
       for (const Beside beside : {Beside::kNothing, Beside::kSpinning})
         for (const Drawing drawing : {Drawing::kAdapts, Drawing::kSteady}) {
-          const char* only = std::getenv("FETTLE_ROWS");
-          const std::string row =
-              fmt::format("{}{}{}", shown == Shown::kAll ? "a" : "l", beside == Beside::kNothing ? "n" : "s",
-                          drawing == Drawing::kAdapts ? "a" : "s");
-          if (only && std::string(only).find(row) == std::string::npos) continue;
           const TempFolder home;  // without the work of the run before
           for (const char* kind : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"})
             setenv(kind, home.path().c_str(), 1);
