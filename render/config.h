@@ -55,7 +55,9 @@ inline constexpr std::int64_t kFewestFrameVertices = 4096, kMostFrameVertices = 
 /// Of Sharpness::kRest: frames that draw a picture with four rays per pixel, so that none of them takes long.
 inline constexpr int kRestBands = 12;
 /// Of FrameInput::Redraw::kInBands: a million vertices take 90 ms on two cores.
-inline constexpr int kDetailBands = 8;
+inline constexpr int kDetailBands = 16;
+/// The same, of the first sharp picture after one with fewer pixels: with the usual vertices it takes 35 to 60 ms at once.
+inline constexpr int kSharpBands = 4;
 /// Screen error of a frame and of a picture that is drawn once [px].
 inline constexpr double kFrameErrorPx = 1.0, kStillErrorPx = 0.25;
 /// How far seams overlap the patches that they join [rays]: as much as rounding may separate them.

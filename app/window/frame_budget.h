@@ -7,7 +7,7 @@ namespace fettle::app {
 /// Whether frames of one kind are drawn with less, decided by the time that the last ones took. The mean of them counts, the newest
 /// ones most, and a single long one - a pipeline that was compiled - changes nothing.
 ///
-///   all --- mean above slow_ms, kFew frames at least, the last two above it --> less
+///   all --- mean above slow_ms, `few` frames at least, the last ones (two at most) above it --> less
 ///    ^--- mean below quick_ms, calm() frames in a row ---'
 ///
 /// Where frames with all are slow again soon after that, calm() doubles: so the picture does not keep changing between the two
@@ -19,12 +19,16 @@ class FrameBudget {
   /// Two frames lie between an edit and its pixel at worst, of 33 ms together; with less there must be time for what all
   /// would take in addition.
   static constexpr double kSlow_ms = 25.0, kQuick_ms = 12.0;
-  /// Of frames that change as a whole: between a key and its effect lie two at worst, of 100 ms together.
-  static constexpr double kSlowWhole_ms = 45.0, kQuickWhole_ms = 22.0;
+  /// Of frames that change as a whole: between a key and its effect lie two at worst, of 100 ms together, and a third of that is for
+  /// what a busy machine adds.
+  static constexpr double kSlowWhole_ms = 33.0, kQuickWhole_ms = 16.0;
   static constexpr int kFew = 3, kCalm = 20, kMostCalm = 320, kSoon = 60;
+  /// The first of them decides: what is drawn with less is sharp a quarter of a second later, and no frame of that takes long.
+  static constexpr int kFewWhole = 1;
 
-  explicit constexpr FrameBudget(double slow_ms = kSlow_ms, double quick_ms = kQuick_ms) noexcept
-      : slow_ms_(slow_ms), quick_ms_(quick_ms) {}
+  explicit constexpr FrameBudget(double slow_ms = kSlow_ms, double quick_ms = kQuick_ms,
+                                 int few = kFew) noexcept
+      : slow_ms_(slow_ms), quick_ms_(quick_ms), few_(few) {}
 
   /// A frame of this kind took so long, from its beginning until it was passed to the window system, without waiting for the display.
   void note(double ms) noexcept {
@@ -47,7 +51,7 @@ class FrameBudget {
  private:
   void noteAll() noexcept {
     if (frames_ >= kSoon) calm_ = kCalm;
-    if (frames_ < kFew || slow_ < 2 || mean_ms_ <= slow_ms_) return;
+    if (frames_ < few_ || slow_ < std::min(few_, 2) || mean_ms_ <= slow_ms_) return;
     if (returned_ && frames_ < kSoon) calm_ = std::min(2 * calm_, kMostCalm);
     change(true);
   }
@@ -63,6 +67,7 @@ class FrameBudget {
   }
 
   double slow_ms_, quick_ms_;
+  int few_;
   bool less_ = false, returned_ = false;
   double mean_ms_ = 0.0;
   int frames_ = 0;  // since the last change

@@ -59,7 +59,7 @@ void WindowPicture::clear() {
   figures_ = {};
   // What took long was another field or another device.
   moving_ = strokes_ = FrameBudget();
-  whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms);
+  whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole);
   sharp_later_ = {};
   results_came_ = false;
   measured_ = Measured::kNothing;
@@ -113,8 +113,9 @@ bool WindowPicture::takeDue(Draws draws) {
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool refines = draws == Draws::kRefined;
   if (refines && measuresFirst(now)) return false;
-  const bool changes = needs_redraw_ || figures_.upload.pending_tiles > 0 ||
-                       (refines && (refinement_.due(now) || sharp_later_.due(now)));
+  const bool changes =
+      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
+      (refines && (refinement_.due(now) || sharp_later_.due(now) || figures_.bands_left > 0));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = false;
@@ -150,15 +151,17 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   const bool sharp_wanted = draws == Draws::kRefined && input.sharpness == render::Sharpness::kFull;
   const bool changes_whole = sharp_wanted && (std::exchange(results_came_, false) || looks_other);
   if (sharp_wanted && drawsLess(changes_whole, now)) input.sharpness = render::Sharpness::kHalf;
-  // The first frame of every pixel after those with fewer is drawn as a whole: with more vertices it would take long.
-  if (input.sharpness == render::Sharpness::kFull &&
-      (drawn_sharpness_ == render::Sharpness::kHalf || drawn_sharpness_ == render::Sharpness::kQuarter))
-    refinement_.restart(now);
+  // The first frame of every pixel after those with fewer has the usual vertices: with more it would take longer.
+  const bool sharpens =
+      input.sharpness == render::Sharpness::kFull &&
+      (drawn_sharpness_ == render::Sharpness::kHalf || drawn_sharpness_ == render::Sharpness::kQuarter);
+  if (sharpens) refinement_.restart(now);
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
-  const bool in_bands =
-      draws == Draws::kRefined && refinement_.inBands() && input.sharpness == render::Sharpness::kFull;
+  const bool in_bands = draws == Draws::kRefined && !changes_whole &&
+                        input.sharpness == render::Sharpness::kFull &&
+                        (refinement_.inBands() || sharpens || figures_.bands_left > 0);
   if (in_bands) input.redraw = render::FrameInput::Redraw::kInBands;
   const bool rests = draws == Draws::kRefined && smooth_at_rest_ && !refinement_.pending() &&
                      input.sharpness == render::Sharpness::kFull &&
@@ -181,7 +184,10 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
-  if (changes_whole) {
+  // What a whole frame takes is known before the first key that changes it.
+  const bool whole = sharp_wanted && !rests && !in_bands && !whole_.less() && figures_.redrawn == 1.0 &&
+                     figures_.upload.tiles == 0;
+  if (changes_whole || whole) {
     measured_ = Measured::kWhole;
     if (input.sharpness == render::Sharpness::kHalf) sharp_later_.drawnWithLess(drawn_);
   } else if (!sharp_wanted && (input.sharpness == render::Sharpness::kHalf ||

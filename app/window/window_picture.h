@@ -61,7 +61,8 @@ class WindowPicture {
   void skipRedraw() noexcept { needs_redraw_ = false; }
   /// Whether something must be drawn without waiting.
   [[nodiscard]] bool active() const noexcept {
-    return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0;
+    return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0 ||
+           figures_.bands_left > 0;
   }
   [[nodiscard]] bool refining() const noexcept { return refinement_.pending() || sharp_later_.pending(); }
   /// Whether frames are left until the picture has four rays per pixel.
@@ -155,7 +156,8 @@ class WindowPicture {
   bool needs_redraw_ = true;
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
   bool adapts_ = true, may_be_half_ = true;
-  FrameBudget moving_, strokes_, whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms};
+  FrameBudget moving_, strokes_,
+      whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole};
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
   // What the frame that is being shown is measured for.

@@ -1,5 +1,6 @@
 #include "render/live/live_frame.h"
 #include "render/live/panel_pass.h"
+#include "render/plan/colour_map.h"
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/descriptor_writes.h"
 
@@ -10,8 +11,15 @@ namespace {
 
 constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
 
-vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
-  return redraw == LiveFrame::Redraw::kParts ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear;
+// Whether what the frame before has left of depth, or of the colours, stays outside of the parts.
+bool keepsDepth(LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kParts;
+}
+bool keepsColours(LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kParts || redraw == LiveFrame::Redraw::kFirstPartOver;
+}
+vk::AttachmentLoadOp loadOf(bool keeps) {
+  return keeps ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear;
 }
 
 // The same bytes, read as code values and not as amounts of light.
@@ -24,6 +32,17 @@ vk::Format codesOf(vk::Format colour) {
     default:
       return colour;
   }
+}
+
+// The order of channels does not matter where all are mixed in the same way.
+constexpr vk::Format kEnlarged = vk::Format::eB8G8R8A8Unorm;
+
+// Values of kEnlarged with which an image of the format has this colour [linear light].
+vk::ClearColorValue codesOf(const glm::vec3& light, vk::Format colour) {
+  const auto code = [](float channel) { return static_cast<float>(srgbFromLinear(channel)); };
+  const bool red_first = codesOf(colour) == vk::Format::eR8G8B8A8Unorm;
+  const float red = code(light.r), green = code(light.g), blue = code(light.b);
+  return red_first ? std::array{blue, green, red, 1.0F} : std::array{red, green, blue, 1.0F};
 }
 
 // Every `step`-th pixel, rounded up: one pixel of the result is `step` of the whole in each direction.
@@ -137,8 +156,7 @@ void LiveFrame::makeSmall(Layers& layers, vk::Extent2D picture, int step, std::u
   makeLayer(layers, picture, everyNth(picture, static_cast<std::uint32_t>(step)));
   if (!enlarge)
     enlarge = std::make_unique<Resize>(
-        context_, step == 2 ? Resize::Direction::kEnlarge : Resize::Direction::kEnlargeMore,
-        vk::Format::eB8G8R8A8Unorm);
+        context_, step == 2 ? Resize::Direction::kEnlarge : Resize::Direction::kEnlargeMore, kEnlarged);
   enlarge->set(layers.base, whole_.base, layers_);
 }
 
@@ -238,7 +256,7 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
   const PanelDraws draws(commands, pipelines_.sceneLayout());
   using Geometry = Pipelines::Geometry;
   const vk::RenderingAttachmentInfo depth =
-      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(redraw),
+      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(keepsDepth(redraw)),
                  vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, layers.depth.extent()})
@@ -251,7 +269,7 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
     draws.begin(p, part, layers.scale);
-    if (redraw == Redraw::kParts)
+    if (keepsDepth(redraw))
       clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, scaled(part, layers.scale));
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
@@ -274,8 +292,8 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
                            Redraw redraw, HiddenLines lines) {
   const PanelDraws draws(commands, pipelines_.sceneLayout());
   const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
-  const vk::RenderingAttachmentInfo cleared =
-      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
+  const vk::RenderingAttachmentInfo cleared = attachment(
+      layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(keepsColours(redraw)), nothing);
   vk::RenderingInfo rendering;
   const vk::RenderingAttachmentInfo read =
       attachment(layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
@@ -289,7 +307,7 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     const Rectangle& part = partOf(panels[i], redraw);
     if (empty(part)) continue;
     draws.begin(panels[i], part, layers.scale);
-    if (redraw == Redraw::kParts) clear(commands, kColour, nothing, scaled(part, layers.scale));
+    if (keepsColours(redraw)) clear(commands, kColour, nothing, scaled(part, layers.scale));
     draws.instances(pipelines_.of(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
@@ -334,22 +352,38 @@ void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot&
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
     const std::vector<gpu::Line>& lines = in_scene ? p.in_scene : p.on_top;
-    if (empty(p.visible) || lines.empty()) continue;
-    draws.begin(p, p.visible, scale);
+    const Rectangle& part = in_scene ? p.tested : p.visible;
+    if (empty(part) || lines.empty()) continue;
+    draws.begin(p, part, scale);
     draws.instances(pipelines_.of(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top, 4, 0,
                     lines.size());
   }
 }
 
-void LiveFrame::recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers,
-                              const Resize& resize, const GpuImage& to) {
+void LiveFrame::beforeResize(const vk::raii::CommandBuffer& commands, const Layers& layers,
+                             const GpuImage& to) {
   Barriers before;
   before.add(layers.base.image(), kColour, kColourWritten,
              {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
   before.add(to.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
              kColourUsed);
   before.record(commands);
-  resize.record(commands);
+}
+
+// Outside of the panels is what a frame of every pixel leaves there: bands of it may follow.
+void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
+                               std::span<const LivePanel> panels, const glm::vec3& ground) {
+  beforeResize(commands, layers, whole_.base);
+  std::vector<vk::Rect2D> parts;
+  for (const LivePanel& panel : panels)
+    if (!empty(panel.visible)) parts.push_back(rectOf(panel.visible));
+  (&layers == &half_ ? enlarge_ : enlarge_more_)->record(commands, parts, codesOf(ground, colour_));
+}
+
+void LiveFrame::recordReduced(const vk::raii::CommandBuffer& commands, const Resize& reduce,
+                              const GpuImage& to) {
+  beforeResize(commands, fine_, to);
+  reduce.record(commands);
 }
 
 void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -380,7 +414,7 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
   if (redraw == Redraw::kAll) commands.draw(4, quads, 0, 0);
   // Only over what was drawn again: over older pixels the soft edges would be blended twice.
   for (const LivePanel& p : panels)
-    if (redraw == Redraw::kParts && !empty(p.redraw)) {
+    if (keepsColours(redraw) && !empty(p.redraw)) {
       commands.setScissor(0, rectOf(p.redraw));
       commands.draw(4, quads, 0, 0);
     }
@@ -398,7 +432,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   commands.copyImage(base.image(), ImageLayout::eTransferSrcOptimal, target.image,
                      ImageLayout::eTransferDstOptimal, copy);
   const bool lines = std::any_of(panels.begin(), panels.end(), [&](const LivePanel& p) {
-    return !empty(p.visible) && ((in_scene && !p.in_scene.empty()) || !p.on_top.empty());
+    return (in_scene && !empty(p.tested) && !p.in_scene.empty()) || (!empty(p.visible) && !p.on_top.empty());
   });
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
   const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
@@ -456,8 +490,8 @@ void LiveFrame::recordSurface(const vk::raii::CommandBuffer& commands, const Slo
                               const Layers& layers, Redraw redraw, const Before& before) {
   Barriers begin;
   begin.add(layers.depth.image(), kDepth,
-            {before.kept ? ImageLayout::eDepthAttachmentOptimal : ImageLayout::eUndefined, kDepthStages,
-             Access::eDepthStencilAttachmentWrite},
+            {keepsDepth(redraw) ? ImageLayout::eDepthAttachmentOptimal : ImageLayout::eUndefined,
+             kDepthStages, Access::eDepthStencilAttachmentWrite},
             {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
   begin.record(commands);
   recordDepth(commands, slot, panels, layers, redraw);
@@ -467,7 +501,7 @@ void LiveFrame::recordSurface(const vk::raii::CommandBuffer& commands, const Slo
             {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
              Access::eDepthStencilAttachmentRead | Access::eShaderRead});
   Barriers::Access base = before.base;
-  if (!before.kept) base.layout = ImageLayout::eUndefined;
+  if (!keepsColours(redraw)) base.layout = ImageLayout::eUndefined;
   shade.add(layers.base.image(), kColour, base, kColourUsed);
   shade.record(commands);
   recordBase(commands, slot, panels, ground, layers, redraw, before.lines);
@@ -496,16 +530,13 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   Barriers compose;
   if (redraws) {
     // The previous frame may still draw lines against this depth and copy from that base.
-    recordSurface(commands, slot, panels, ground, layers, redraw,
-                  {.base = resized ? read : copied,
-                   .kept = !all,
-                   .lines = resized ? HiddenLines::kInBase : HiddenLines::kOverCopy});
-    if (resized)
-      recordResized(commands, layers,
-                    *(&layers == &half_      ? enlarge_
-                      : &layers == &quarter_ ? enlarge_more_
-                                             : reduce_),
-                    whole_.base);
+    recordSurface(
+        commands, slot, panels, ground, layers, redraw,
+        {.base = resized ? read : copied, .lines = resized ? HiddenLines::kInBase : HiddenLines::kOverCopy});
+    if (&layers == &fine_)
+      recordReduced(commands, *reduce_, whole_.base);
+    else if (resized)
+      recordEnlarged(commands, layers, panels, ground);
     recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }
@@ -532,11 +563,9 @@ void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::
     const Barriers::Access reduced{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
                                    Access::eShaderRead};
     recordSurface(commands, slot, panels, ground, fine_, rest.first ? Redraw::kFirstPart : Redraw::kParts,
-                  {.base = rest.first ? reduced : kColourWritten,
-                   .kept = !rest.first,
-                   .lines = HiddenLines::kOverCopy});
+                  {.base = rest.first ? reduced : kColourWritten, .lines = HiddenLines::kOverCopy});
     if (rest.last) {
-      recordResized(commands, fine_, *reduce_to_rest_, rest_);
+      recordReduced(commands, *reduce_to_rest_, rest_);
       recordDecorations(commands, slot, panels, decorations, rest_, Redraw::kAll);
       compose.add(rest_.image(), kColour, kColourWritten, copied);
     }

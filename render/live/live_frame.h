@@ -54,6 +54,7 @@ class LiveFrame {
     kAll,  ///< every layer, whatever LivePanel::redraw says
     kParts,  ///< of depth and base only LivePanel::redraw; the rest stays as it is. Only at kFull, after a frame of kFull
     kFirstPart,  ///< only LivePanel::redraw, the rest becomes empty. Only by recordRest
+    kFirstPartOver,  ///< the same of depth; of base the rest stays as it is. Only at kFull, after a frame of kHalf or kQuarter
   };
   /// Records into submissions.commands(). `staging` transfers new glyphs.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
@@ -107,7 +108,6 @@ class LiveFrame {
   /// What the frame before has done to the layers that a surface is drawn to.
   struct Before {
     Barriers::Access base;  ///< how it used `base` last
-    bool kept = false;      ///< whether their content stays
     HiddenLines lines = HiddenLines::kOverCopy;
   };
   void recordSurface(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -123,8 +123,10 @@ class LiveFrame {
   void makeRest(Submissions& submissions, vk::Extent2D extent);
   void makeFine(vk::Extent2D extent);
   void makeSmall(Layers& layers, vk::Extent2D picture, int step, std::unique_ptr<Resize>& enlarge);
-  void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers, const Resize& resize,
-                     const GpuImage& to);
+  static void beforeResize(const vk::raii::CommandBuffer& commands, const Layers& layers, const GpuImage& to);
+  void recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
+                      std::span<const LivePanel> panels, const glm::vec3& ground);
+  void recordReduced(const vk::raii::CommandBuffer& commands, const Resize& reduce, const GpuImage& to);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
                     std::span<const LivePanel> panels, const GpuImage& base, const LiveTarget& target,
                     Sharpness sharpness);

@@ -14,7 +14,9 @@ namespace fettle::render {
 struct LivePanel {
   Rectangle plot;     ///< where the camera's picture lies [px]
   Rectangle visible;  ///< the part of it that is drawn
-  Rectangle redraw;   ///< the part of that which is drawn again; `choice` needs to cover only this
+  Rectangle
+      tested;  ///< the part of that in which lines and a stylus are drawn that the surface hides: that has its depth
+  Rectangle redraw;  ///< the part of `visible` that is drawn again; `choice` needs to cover only this
   gpu::PanelUniforms uniforms{};
   const PatchChoice* choice = nullptr;
   const LiveTexture* field = nullptr;

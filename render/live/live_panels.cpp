@@ -124,7 +124,8 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
         own, [i](const OverlayLine& line) { return line.panel >= 0 && line.panel != static_cast<int>(i); });
     panels_.push_back(panelOf(i, input, plan, own));
     if (input.overlays.stylus) panels_.back().stylus = stylusIn(p, *input.overlays.stylus);
-    panels_.back().visible = drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
+    panels_.back().visible = panels_.back().tested =
+        drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
     queries_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
     queries_.back().shade_reach = panels_.back().reach + 1;
     trees_.push_back(empty(panels_.back().visible) ? PatchTree() : trees.tree(i, queries_.back(), p.field));

@@ -110,6 +110,8 @@ struct LivePicture::Impl {
   // What the layers of `frame` show: one of both, or neither.
   std::optional<DrawnFrame> drawn;
   std::optional<BandedFrame> banded;
+  // Neither, and what the colours show at half or a quarter of the resolution.
+  std::optional<DrawnFrame> drawn_with_less;
   // The picture with four rays per pixel that is drawn at Sharpness::kRest: what it shows, and how many of its bands are drawn.
   struct Rest {
     DrawnFrame shown;
@@ -143,6 +145,7 @@ struct LivePicture::Impl {
   struct Reused {
     std::vector<PatchChoice> parts;
     std::optional<BandedFrame> banded;  ///< once the frame is submitted
+    LiveFrame::Redraw redraw = LiveFrame::Redraw::kAll;
   };
   Reused reuse(FrameInput::Redraw redraw, const DrawnFrame& current, LivePanels& chosen,
                FrameStatistics& stats);
@@ -274,14 +277,20 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   // A frame can be reused by the next one only at full sharpness and when no heights are pending: tiles of
   // unknown detail are drawn finer than necessary, but correctly; missing pages are part of DrawnFrame.
   const bool stereo = input.stereo.mode != StereoMode::kOff;
+  const bool one_eye = !stereo && !head && !input.part;
+  const bool every_pixel = input.sharpness == Sharpness::kFull || input.sharpness == Sharpness::kRest;
+  const bool with_less = input.sharpness == Sharpness::kHalf || input.sharpness == Sharpness::kQuarter;
   const bool reusable =
-      !stereo && !head && !input.part &&
-      (input.sharpness == Sharpness::kFull || input.sharpness == Sharpness::kRest) &&
+      one_eye && every_pixel &&
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
   const bool holds = reusable && input.redraw != FrameInput::Redraw::kAll && frame.holds(target.extent) &&
                      (decorations.empty() || frame.holds(glyphs));
   Reused reused = reuse(holds ? input.redraw : FrameInput::Redraw::kAll, current, chosen, stats);
   stats.select_ms = selecting.ms();
+  // Below them such lines are in the colours already, and there is no depth that could hide them.
+  if (reused.banded && reused.banded->over_fewer_pixels)
+    for (LivePanel& panel : panels)
+      panel.tested = cut(panel.visible, {panel.visible.x, 0, panel.visible.width, reused.banded->end});
 
   if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
   const bool whole_frame = stereo || head || input.sharpness != Sharpness::kRest;
@@ -296,13 +305,13 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     eyes.record(input.stereo, {panels, decorations, plan.palette.ground, input.sharpness}, target);
   else
     frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
-                 stats.continued ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll,
-                 input.sharpness == Sharpness::kRest ? Sharpness::kFull : input.sharpness);
+                 reused.redraw, input.sharpness == Sharpness::kRest ? Sharpness::kFull : input.sharpness);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
   banded = std::move(reused.banded);
   if (reusable && !banded) drawn = std::move(current);
+  if (one_eye && with_less) drawn_with_less = std::move(current);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.contour_step = plan.contour_step;
@@ -319,29 +328,41 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
 LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, const DrawnFrame& current,
                                                    LivePanels& chosen, FrameStatistics& stats) {
   const std::optional<DrawnFrame> whole = std::exchange(drawn, std::nullopt);
+  const std::optional<DrawnFrame> with_less = std::exchange(drawn_with_less, std::nullopt);
   std::optional<BandedFrame> begun = std::exchange(banded, std::nullopt);
   const DrawnFrame* const before = begun ? &begun->goal : whole ? &*whole : nullptr;
   const bool in_bands = redraw == FrameInput::Redraw::kInBands;
   // Layers that show a frame in part are of use for its other bands alone.
-  if (redraw == FrameInput::Redraw::kAll || before == nullptr || (begun && !in_bands)) return {};
+  if (redraw == FrameInput::Redraw::kAll || (begun && !in_bands)) return {};
   std::vector<LivePanel>& panels = chosen.panels();
-  const bool same = showTheSame(*before, current);
   Reused reused;
-  if (in_bands && sameButDetail(*before, current) && (begun || !same)) {
-    BandedFrame next{current, begun ? std::move(begun->differs) : std::vector<bool>(panels.size()),
-                     begun && same ? begun->bands : 0};
+  reused.redraw = LiveFrame::Redraw::kParts;
+  if (in_bands && with_less && sameButPixels(*with_less, current)) {
+    reused.banded = BandedFrame{current, std::vector<bool>(panels.size(), true), kSharpBands, 0, true};
+    reused.parts = nextBand(*reused.banded, chosen);
+    reused.redraw = LiveFrame::Redraw::kFirstPartOver;
+  } else if (before == nullptr) {
+    return {};
+  } else if (const bool same = showTheSame(*before, current);
+             in_bands && sameButDetail(*before, current) && (begun || !same)) {
+    std::vector<bool> differs = begun ? begun->differs : std::vector<bool>(panels.size());
     for (std::size_t i = 0; i < panels.size(); ++i)
-      next.differs[i] = next.differs[i] || !sameDetail(before->panels[i], current.panels[i]);
-    reused.parts = nextBand(next, chosen);
-    if (next.bands < kDetailBands) reused.banded = std::move(next);
+      differs[i] = differs[i] || !sameDetail(before->panels[i], current.panels[i]);
+    reused.banded = begun ? std::move(begun) : BandedFrame{};
+    reused.banded->goal = current;
+    reused.banded->differs = std::move(differs);
+    if (!same) reused.banded->drawn = 0;
+    reused.parts = nextBand(*reused.banded, chosen);
   } else if (canContinue(*before, current)) {
     reused.parts = cutToDamage(*before, current, chosen.queries(),
                                stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
-    if (begun) reused.banded = BandedFrame{current, std::move(begun->differs), begun->bands};
+    reused.banded = std::move(begun);
+    if (reused.banded) reused.banded->goal = current;
   } else {
     return {};
   }
-  stats.bands_left = reused.banded ? kDetailBands - reused.banded->bands : 0;
+  if (reused.banded && reused.banded->drawn == reused.banded->all) reused.banded.reset();
+  stats.bands_left = reused.banded ? reused.banded->all - reused.banded->drawn : 0;
   stats.continued = true;
   stats.redrawn = redrawnShare(panels);
   return reused;
@@ -356,13 +377,15 @@ std::vector<PatchChoice> LivePicture::Impl::nextBand(BandedFrame& next, LivePane
     first = std::min(first, panels[i].visible.y & ~1);
     end = std::max(end, panels[i].visible.y + panels[i].visible.height);
   }
-  const auto row = [first, end](int band) {
-    return band == kDetailBands ? end : (first + (end - first) * band / kDetailBands) & ~1;
+  const auto row = [&](int band) {
+    return band == next.all ? end : (first + (end - first) * band / next.all) & ~1;
   };
-  std::vector<PatchChoice> parts = cutToRows(row(next.bands), row(next.bands + 1), chosen.queries(), panels);
+  const int behind = row(next.drawn + 1);
+  std::vector<PatchChoice> parts = cutToRows(row(next.drawn), behind, chosen.queries(), panels);
+  next.end = std::max(next.end, behind);
   for (std::size_t i = 0; i < panels.size(); ++i)
     if (!next.differs[i]) panels[i].redraw = {};
-  ++next.bands;
+  ++next.drawn;
   return parts;
 }
 

@@ -145,8 +145,9 @@ struct FrameInput {
   Sharpness sharpness = Sharpness::kFull;
   /// Whether parts that cannot have changed since the last frame are reused; the picture is bit-identical
   /// either way.
-  /// kInBands: as kChanged, but where a frame would only show the same more finely it draws one of kDetailBands bands of rows, the
-  /// frames after it the others, and none of them takes long. An edit in between is drawn at once. Only at kFull and kRest.
+  /// kInBands: as kChanged, but where a frame would only show the same more finely it draws one of kDetailBands bands of rows, of
+  /// kSharpBands after a frame of kHalf or kQuarter, the frames after it the others, and none of them takes long. An edit in between is
+  /// drawn at once. Only at kFull and kRest.
   enum class Redraw { kChanged, kInBands, kAll } redraw = Redraw::kChanged;
   /// Of a field on demand: whether the frame is drawn with the pages that are on the device, or waits for all
   /// requested pages that the memory holds.

@@ -58,6 +58,20 @@ bool sameButDetail(const DrawnFrame& before, const DrawnFrame& now) {
   return true;
 }
 
+bool sameButPixels(const DrawnFrame& fewer, const DrawnFrame& now) {
+  if (!sameAround(fewer, now)) return false;
+  for (std::size_t i = 0; i < now.panels.size(); ++i) {
+    const DrawnFrame::Panel &a = fewer.panels[i], &b = now.panels[i];
+    gpu::PanelUniforms uniforms = a.uniforms;
+    uniforms.seam.x = b.uniforms.seam.x;  // a share of the pixels that are drawn
+    uniforms.pages = b.uniforms.pages;
+    if (!related(a.field, b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
+        !engine::sameBits(uniforms, b.uniforms))
+      return false;
+  }
+  return true;
+}
+
 bool sameDetail(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
   return a.pages == b.pages && sameList(a.choice.patches, b.choice.patches) &&
          sameList(a.choice.seams, b.choice.seams) && sameList(a.choice.walls, b.choice.walls);

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/version.h"
+#include "render/config.h"
 #include "render/detail/patches.h"
 #include "render/live/live_frame.h"
 
@@ -39,6 +40,9 @@ struct DrawnFrame {
 /// Whether two frames differ at most in how finely they show the same: in the choice of patches, and in the pages they are drawn
 /// from.
 [[nodiscard]] bool sameButDetail(const DrawnFrame& before, const DrawnFrame& now);
+/// Whether a frame shows what one with fewer pixels does, edits and pages aside: as long as only some of its rows are drawn the
+/// others may show that one.
+[[nodiscard]] bool sameButPixels(const DrawnFrame& fewer, const DrawnFrame& now);
 /// Whether two panels of such frames do not differ in that either.
 [[nodiscard]] bool sameDetail(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b);
 
@@ -49,7 +53,12 @@ struct DrawnFrame {
 struct BandedFrame {
   DrawnFrame goal;
   std::vector<bool> differs;  ///< of each panel: from what was shown before
-  int bands = 0;              ///< that are drawn
+  int all = kDetailBands;     ///< bands
+  int drawn = 0;              ///< of them
+  /// Below the bands that are drawn there are colours of a frame with fewer pixels, with the lines that the surface hides, and no
+  /// depth.
+  bool over_fewer_pixels = false;
+  int end = 0;  ///< row behind the bands that are drawn, or were before they began anew [px]
 };
 
 /// Whether pages that the frame reads are on the device: where some are not, their samples are drawn from coarser ones.

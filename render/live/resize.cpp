@@ -71,11 +71,22 @@ void Resize::set(const GpuImage& from, const GpuImage& to, std::uint32_t layers)
 }
 
 void Resize::record(const vk::raii::CommandBuffer& commands) const {
+  record(commands, std::array{vk::Rect2D{{0, 0}, extent_}}, vk::AttachmentLoadOp::eDontCare, {});
+}
+
+void Resize::record(const vk::raii::CommandBuffer& commands, std::span<const vk::Rect2D> parts,
+                    const vk::ClearColorValue& outside) const {
+  record(commands, parts, vk::AttachmentLoadOp::eClear, outside);
+}
+
+void Resize::record(const vk::raii::CommandBuffer& commands, std::span<const vk::Rect2D> parts,
+                    vk::AttachmentLoadOp load, const vk::ClearColorValue& outside) const {
   for (std::uint32_t i = 0; i < count_; ++i) {
     vk::RenderingAttachmentInfo colour;
     colour.setImageView(*layers_[i].to)
         .setImageLayout(vk::ImageLayout::eColorAttachmentOptimal)
-        .setLoadOp(vk::AttachmentLoadOp::eDontCare)
+        .setLoadOp(load)
+        .setClearValue(outside)
         .setStoreOp(vk::AttachmentStoreOp::eStore);
     vk::RenderingInfo rendering;
     commands.beginRendering(
@@ -83,7 +94,10 @@ void Resize::record(const vk::raii::CommandBuffer& commands) const {
     coverAll(commands, extent_);
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *layers_[i].set, {});
-    commands.draw(4, 1, 0, 0);
+    for (const vk::Rect2D& part : parts) {
+      commands.setScissor(0, part);
+      commands.draw(4, 1, 0, 0);
+    }
     commands.endRendering();
   }
 }

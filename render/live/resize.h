@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "render/vulkan/barrier.h"
 
@@ -25,8 +26,14 @@ class Resize {
   /// `from` is in ShaderReadOnlyOptimal, `to` in ColorAttachmentOptimal. As much of it as the result
   /// covers is written.
   void record(const vk::raii::CommandBuffer& commands) const;
+  /// The same; `parts` show the result, the rest is `outside`, as values of the format: nothing of the parts is mixed into it.
+  void record(const vk::raii::CommandBuffer& commands, std::span<const vk::Rect2D> parts,
+              const vk::ClearColorValue& outside) const;
 
  private:
+  void record(const vk::raii::CommandBuffer& commands, std::span<const vk::Rect2D> parts,
+              vk::AttachmentLoadOp load, const vk::ClearColorValue& outside) const;
+
   const Context& context_;
   Direction direction_;
   vk::Format format_;

@@ -7,7 +7,7 @@
 namespace fettle::render {
 
 bool StylusPass::neededBy(std::span<const LivePanel> panels) {
-  return std::ranges::any_of(panels, [](const LivePanel& p) { return p.stylus && !empty(p.visible); });
+  return std::ranges::any_of(panels, [](const LivePanel& p) { return p.stylus && !empty(p.tested); });
 }
 
 void StylusPass::record(const vk::raii::CommandBuffer& commands, std::span<const LivePanel> panels,
@@ -33,8 +33,8 @@ void StylusPass::record(const vk::raii::CommandBuffer& commands, std::span<const
   const PanelDraws draws(commands, pipelines_.sceneLayout());
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
-    if (empty(p.visible) || !p.stylus) continue;
-    draws.begin(p, p.visible, to.scale);
+    if (empty(p.tested) || !p.stylus) continue;
+    draws.begin(p, p.tested, to.scale);
     const vk::DescriptorSet set = sets[i];
     if (p.stylus->shadow.x > 0.0F) draws.instances(pipelines_.of(Pipelines::Stylus::kShadow), set, 4, 0, 1);
     const std::size_t bodies = p.stylus->shadow.w > 0.0F ? 2 : 1;

@@ -57,13 +57,13 @@ TEST(DetailBands, AnEditInBetweenIsDrawnAtOnceAndTheBandsGoOn) {
   auto picture = makePicture();
   ASSERT_TRUE(picture->update(live.snapshot()));
   (void)drawComplete(*picture, with(input, kCoarse, FrameInput::Redraw::kChanged));
-  const std::vector<float> bump(10, 2.5F);
+  const std::vector<float> bump(20, 2.5F);
   for (int left = kDetailBands - 1; left >= 0; --left) {
     const Shot band = shoot(*picture, with(input, kFine));
     EXPECT_EQ(band.stats.bands_left, left);
     if (left % 2 == 0) continue;
-    for (int r = 400; r < 410; ++r)
-      ASSERT_TRUE(live.writeHeights(60 * left + 100, r, 10, 1, bump.data(), 10));
+    for (int r = 400; r < 420; ++r)
+      ASSERT_TRUE(live.writeHeights(30 * left + 100, r, 20, 1, bump.data(), 20));
     ASSERT_TRUE(picture->update(live.snapshot()));
     const Shot edited = shoot(*picture, with(input, kFine));
     EXPECT_EQ(edited.stats.bands_left, left);
