@@ -63,7 +63,9 @@ bool sameButPixels(const DrawnFrame& fewer, const DrawnFrame& now) {
   for (std::size_t i = 0; i < now.panels.size(); ++i) {
     const DrawnFrame::Panel &a = fewer.panels[i], &b = now.panels[i];
     gpu::PanelUniforms uniforms = a.uniforms;
-    uniforms.seam.x = b.uniforms.seam.x;  // a share of the pixels that are drawn
+    // By the size of the pixels that are drawn.
+    uniforms.seam.x = b.uniforms.seam.x;
+    uniforms.footprint = b.uniforms.footprint;
     uniforms.pages = b.uniforms.pages;
     if (!related(a.field, b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
         !engine::sameBits(uniforms, b.uniforms))

@@ -44,6 +44,7 @@ TEST(SharpBands, EndWithTheBitsOfTheSharpPicture) {
       input.view.width = 481;
       input.view.height = 323;
       input.decoration = Decoration::kFull;
+      input.form = {.filtered_normals = true, .occlusion = 0.8, .cavity = 0.5};
       addOverlays(input.overlays);
       const Shot sharp = sharpOf(partField(), sharpened(input, Sharpness::kFull));
       auto picture = makePicture();
