@@ -102,9 +102,9 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 }
 
 void WindowPicture::noteFrame(double ms) noexcept {
-  if (measured_ == Measured::kMoving) moving_.note(ms);
+  if (measured_ == Measured::kMoving || measured_ == Measured::kWholeWithLess) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
-  if (measured_ == Measured::kWhole) whole_.note(ms);
+  if (measured_ == Measured::kWhole || measured_ == Measured::kWholeWithLess) whole_.note(ms);
   measured_ = Measured::kNothing;
 }
 
@@ -150,7 +150,8 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   look_->overlays = {};
   const bool sharp_wanted = draws == Draws::kRefined && input.sharpness == render::Sharpness::kFull;
   const bool changes_whole = sharp_wanted && (std::exchange(results_came_, false) || looks_other);
-  if (sharp_wanted && drawsLess(changes_whole, now)) input.sharpness = render::Sharpness::kHalf;
+  if (sharp_wanted && drawsLess(changes_whole, now))
+    input.sharpness = moving_.less() ? render::Sharpness::kQuarter : render::Sharpness::kHalf;
   // The first frame of every pixel after those with fewer has the usual vertices: with more it would take longer.
   const bool sharpens =
       input.sharpness == render::Sharpness::kFull &&
@@ -187,16 +188,17 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   // What a whole frame takes is known before the first key that changes it.
   const bool whole = sharp_wanted && !rests && !in_bands && !whole_.less() && figures_.redrawn == 1.0 &&
                      figures_.upload.tiles == 0;
+  const bool with_less =
+      input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
   if (changes_whole || whole) {
-    measured_ = Measured::kWhole;
-    if (input.sharpness == render::Sharpness::kHalf) sharp_later_.drawnWithLess(drawn_);
-  } else if (!sharp_wanted && (input.sharpness == render::Sharpness::kHalf ||
-                               input.sharpness == render::Sharpness::kQuarter)) {
+    measured_ = with_less ? Measured::kWholeWithLess : Measured::kWhole;
+    if (with_less) sharp_later_.drawnWithLess(drawn_);
+  } else if (!sharp_wanted && with_less) {
     measured_ = Measured::kMoving;
   } else if (!rests && !in_bands && figures_.continued && figures_.redrawn < 1.0) {
     measured_ = Measured::kStroke;
   }
-  if (input.sharpness != render::Sharpness::kHalf) sharp_later_.drawnSharply();
+  if (!with_less) sharp_later_.drawnSharply();
   at_rest_.drawn({.changed = figures_.redrawn > 0.0,
                   .at_rest = rests,
                   .left = figures_.rest_left,

@@ -161,7 +161,13 @@ class WindowPicture {
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
   // What the frame that is being shown is measured for.
-  enum class Measured : std::uint8_t { kNothing, kMoving, kStroke, kWhole } measured_ = Measured::kNothing;
+  enum class Measured : std::uint8_t {
+    kNothing,
+    kMoving,
+    kStroke,
+    kWhole,
+    kWholeWithLess
+  } measured_ = Measured::kNothing;
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
   Refinement::Clock::time_point drawn_;  // the last frame
   DrawFigures draw_figures_;

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -22,15 +23,20 @@ bool setNice(int nice) noexcept {
   return setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice) == 0;
 }
 
+// Of the process: it has one window.
+std::atomic<bool> window_is_before{false};
+
 }  // namespace
 
 void goBehindTheWindow() noexcept {
   // Where it is refused all threads are as before.
-  static_cast<void>(setNice(10));
+  static_cast<void>(setNice(window_is_before.load(std::memory_order_relaxed) ? 0 : 10));
 }
 
 bool comeBeforeOtherWork() noexcept {
-  return setNice(-10);
+  const bool allowed = setNice(-10);
+  if (allowed) window_is_before.store(true, std::memory_order_relaxed);
+  return allowed;
 }
 
 int putWorkersBehindTheWindow() {

@@ -83,8 +83,8 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   const Settings settings = Settings::load(settingsPath("/window.json"));
   if (window.scale <= 0.0) window.scale = settings.ui_scale;
   engine::keepFreeMemory();
-  putWorkersBehindTheWindow();
   comeBeforeOtherWork();
+  putWorkersBehindTheWindow();
   auto opened = render::Window::create(window);
   if (!opened) return tl::unexpected(opened.error());
   std::unique_ptr<Workstation> station(new Workstation(options, settings, std::move(*opened)));
