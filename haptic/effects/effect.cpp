@@ -43,7 +43,8 @@ std::size_t EffectList::bytes() const noexcept {
 }
 
 void needMotion(EffectList& list, const Scene& scene) {
-  if (!list.motion) list.motion.emplace(1e-3 * scene.params.velocity.filter_ms);
+  const VelocityParams& velocity = scene.params.velocity;
+  if (!list.motion) list.motion.emplace(1e-3 * velocity.filter_ms, velocity.fastest_mm_per_s);
 }
 
 EffectList composeEffects(const Scene& scene, const engine::Version& original, const engine::Version& now) {

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "haptic/scene/effects.h"
+
 namespace fettle::haptic {
 
 /// The velocity of the endpoint [mm/s]: differences between ticks through a first-order low pass,
@@ -13,7 +15,7 @@ namespace fettle::haptic {
 /// Times are the samples' own, so a replay and the live loop compute the same, and a skipped tick counts.
 ///
 /// Restarts, at rest, when the speed of the hand cannot be known: first input, time that does not advance,
-/// goes back or is not finite, a gap above 20 ms, a step faster than any hand (5 m/s: a jump).
+/// goes back or is not finite, a gap above 20 ms, a step faster than any hand (VelocityParams::fastest_mm_per_s: a jump).
 /// A restart gives zero velocity, so forces that depend on it fade out and never jump.
 ///
 /// Source: the filtered backward difference is the common choice; its part in stability is derived in Colgate
@@ -22,10 +24,10 @@ namespace fettle::haptic {
 class VelocityFilter {
  public:
   static constexpr double kLongestGap_s = 0.020;
-  static constexpr double kFastestHand = 5000.0;  // [mm/s]
 
-  /// `tau_s` >= 0.
-  explicit VelocityFilter(double tau_s) noexcept : tau_s_(tau_s) {}
+  /// `tau_s` >= 0; `fastest_mm_s` > 0.
+  explicit VelocityFilter(double tau_s, double fastest_mm_s = VelocityParams{}.fastest_mm_per_s) noexcept
+      : tau_s_(tau_s), fastest_mm_s_(fastest_mm_s) {}
 
   /// One input; `at_mm` finite.
   void update(double t_s, const glm::dvec3& at_mm) noexcept {
@@ -35,7 +37,7 @@ class VelocityFilter {
     at_mm_ = at_mm;
     // Negated, so that NaN restarts; a step too far to be squared has an infinite length.
     const bool continuous =
-        known_ && dt_s > 0.0 && dt_s <= kLongestGap_s && glm::length(step) <= kFastestHand * dt_s;
+        known_ && dt_s > 0.0 && dt_s <= kLongestGap_s && glm::length(step) <= fastest_mm_s_ * dt_s;
     known_ = true;
     dt_s_ = continuous ? dt_s : 0.0;
     v_ = continuous ? v_ + (dt_s / (dt_s + tau_s_)) * (step / dt_s - v_) : glm::dvec3(0.0);
@@ -52,7 +54,7 @@ class VelocityFilter {
   [[nodiscard]] double dt() const noexcept { return dt_s_; }
 
  private:
-  double tau_s_;
+  double tau_s_, fastest_mm_s_;
   double t_s_ = 0.0;
   double dt_s_ = 0.0;
   glm::dvec3 at_mm_{0.0};

@@ -74,7 +74,7 @@ inline constexpr auto kEffectWords = [] {
 struct FrictionParams {
   double static_coefficient = 0.4;   ///< "static": tangential over normal force at which it slips, 0 .. 2
   double dynamic_coefficient = 0.3;  ///< "dynamic": the same while it slips, 0 .. static
-  double stiffness_n_per_mm = 1.0;   ///< of the stuck tip, along the surface, > 0 .. 1000
+  double stiffness_n_per_mm = 1.0;   ///< of the stuck tip, along the surface, > 0 .. 1e9
 
   friend bool operator==(const FrictionParams&, const FrictionParams&) = default;
 };
@@ -87,7 +87,7 @@ enum class ViscousMedium : std::uint8_t {
 
 /// [viscosity]
 struct ViscosityParams {
-  double damping_n_s_per_mm = 0.002;               ///< 0 .. 1; hand devices hold 0.004 to 0.03
+  double damping_n_s_per_mm = 0.002;               ///< 0 .. 1e6; hand devices hold 0.004 to 0.03
   ViscousMedium medium = ViscousMedium::kContact;  ///< "in"
 
   friend bool operator==(const ViscosityParams&, const ViscosityParams&) = default;
@@ -96,7 +96,7 @@ struct ViscosityParams {
 /// [edge_snap]
 struct EdgeSnapParams {
   double force_n = 0.5;   ///< largest pull, halfway between edge and reach, 0 .. 20
-  double reach_mm = 1.0;  ///< horizontal distance at which the pull begins, > 0 .. 50
+  double reach_mm = 1.0;  ///< horizontal distance at which the pull begins, > 0 .. 1e9
 
   friend bool operator==(const EdgeSnapParams&, const EdgeSnapParams&) = default;
 };
@@ -108,8 +108,8 @@ enum class TexturePattern : std::uint8_t {
 
 /// [texture]
 struct TextureParams {
-  double amplitude_mm = 0.02;  ///< highest to lowest point, both below the surface, 0 .. 1
-  double wavelength_mm = 0.5;  ///< shortest there is, > 0 .. 100
+  double amplitude_mm = 0.02;  ///< highest to lowest point, both below the surface, 0 .. 1e9
+  double wavelength_mm = 0.5;  ///< shortest there is, > 0 .. 1e9
   TexturePattern pattern = TexturePattern::kNoise;
 
   friend bool operator==(const TextureParams&, const TextureParams&) = default;
@@ -124,14 +124,14 @@ struct GravityParams {
 
 /// [coupling]
 struct CouplingParams {
-  double damping_n_s_per_mm = 0.001;  ///< between proxy and endpoint, 0 .. 1
+  double damping_n_s_per_mm = 0.001;  ///< between proxy and endpoint, 0 .. 1e6
 
   friend bool operator==(const CouplingParams&, const CouplingParams&) = default;
 };
 
 /// [passivity]
 struct PassivityParams {
-  /// Largest damping the controller adds beyond taking driving force away, 0 .. 1
+  /// Largest damping the controller adds beyond taking driving force away, 0 .. 1e6
   double max_damping_n_s_per_mm = 0.005;
 
   friend bool operator==(const PassivityParams&, const PassivityParams&) = default;
@@ -151,6 +151,8 @@ struct SoundParams {
 /// [velocity]: the estimate that viscosity and coupling share
 struct VelocityParams {
   double filter_ms = 2.0;  ///< time constant of its low pass, 0 .. 50
+  /// Of the tip in the field [mm/s]: a faster step is a jump, > 0 .. 1e13. A hand reaches 4000, times the scale of its workspace.
+  double fastest_mm_per_s = 5000.0;
 
   friend bool operator==(const VelocityParams&, const VelocityParams&) = default;
 };

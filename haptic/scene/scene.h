@@ -42,7 +42,7 @@ inline constexpr double kMaxBrushSpacing = 2.0;
 /// behaviour; a scene is composed into a tick once, when it is loaded.
 struct Scene {
   TipShape tip = TipShape::kPoint;
-  /// Ball's radius [mm]; the endpoint is its centre. > 0 .. 100, and at most 16 cells of the field that is
+  /// Ball's radius [mm]; the endpoint is its centre. > 0 .. 1e9, and at most 16 cells of the field that is
   /// touched (sphereProblem). Not used by a point.
   double tip_radius_mm = 0.1;
 
@@ -67,7 +67,7 @@ struct Scene {
   /// A ball: in which direction a step has a largest length.
   BallSteps ball_steps = BallSteps::kInPlan;
 
-  /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
+  /// Spring: newtons per millimetre of penetration. > 0 .. 1e9; a hand device holds about 1 to 3 times its scale.
   double stiffness_n_per_mm = 1.0;
   /// Largest force [N], and what counts as full strength for smoothing. > 0 .. 1000; devices: 3 to 20.
   double force_limit_n = 8.0;

@@ -23,6 +23,13 @@ enum class NumberKind : std::uint8_t { kReal, kWhole };
 /// Whether a scene's text has a key whose value is the default. Older programs read a text without a key they do not know.
 enum class Written : std::uint8_t { kAlways, kUnlessDefault };
 
+// Ends of ranges: of a field as small as an atom and as large as the earth, in the hand of a device. What a device holds is said
+// by its stability (haptic/effects/stability.h), not by these.
+inline constexpr double kMostStiffness = 1e9;  // [N/mm]
+inline constexpr double kMostDamping = 1e6;    // [N s/mm]
+inline constexpr double kMostLength = 1e9;     // [mm]
+inline constexpr double kMostSpeed = 1e13;     // [mm/s]
+
 namespace scene_rows {
 
 // A member of a member of ... of a scene.
@@ -128,7 +135,7 @@ constexpr SceneNumber ofEffect(std::string_view table, std::string_view key, std
 
 /// In the order of scene files. The table of an effect's own numbers is called as the effect is.
 inline constexpr std::array kSceneNumbers = {
-    scene_rows::number<&Scene::tip_radius_mm>("", "tip_radius_mm", "ball radius", "mm", 0, 100,
+    scene_rows::number<&Scene::tip_radius_mm>("", "tip_radius_mm", "ball radius", "mm", 0, kMostLength,
                                               "Radius of the ball with which the surface is felt.",
                                               LowEnd::kExcluded),
     scene_rows::number<&Scene::certified_radius_cells>(
@@ -149,7 +156,7 @@ inline constexpr std::array kSceneNumbers = {
                                           "ends, where steps are limited in plan; 0: no bound.",
                                           LowEnd::kIncluded, NumberKind::kWhole),
     scene_rows::number<&Scene::stiffness_n_per_mm>(
-        "force", "stiffness_n_per_mm", "stiffness", "N/mm", 0, 1000,
+        "force", "stiffness_n_per_mm", "stiffness", "N/mm", 0, kMostStiffness,
         "Force for each millimetre that the tip is pressed in.", LowEnd::kExcluded),
     scene_rows::number<&Scene::force_limit_n>(
         "force", "limit_n", "force limit", "N", 0, 1000,
@@ -170,31 +177,31 @@ inline constexpr std::array kSceneNumbers = {
     scene_rows::ofEffect<&EffectParams::friction, &FrictionParams::dynamic_coefficient>(
         "friction", "dynamic", "dynamic", "", 0, 2, "The same while the tip slides; at most the static one."),
     scene_rows::ofEffect<&EffectParams::friction, &FrictionParams::stiffness_n_per_mm>(
-        "friction", "stiffness_n_per_mm", "grip", "N/mm", 0, 1000,
+        "friction", "stiffness_n_per_mm", "grip", "N/mm", 0, kMostStiffness,
         "Stiffness along the surface of a tip that sticks.", LowEnd::kExcluded),
     scene_rows::ofEffect<&EffectParams::viscosity, &ViscosityParams::damping_n_s_per_mm>(
-        "viscosity", "damping_n_s_per_mm", "damping", "N s/mm", 0, 1,
+        "viscosity", "damping_n_s_per_mm", "damping", "N s/mm", 0, kMostDamping,
         "Force against the speed of the tip. Hand devices hold 0.004 to 0.03."),
     scene_rows::ofEffect<&EffectParams::edge_snap, &EdgeSnapParams::force_n>(
         "edge_snap", "force_n", "pull", "N", 0, 20,
         "Largest pull towards marks and edge lines, halfway between them and the reach."),
     scene_rows::ofEffect<&EffectParams::edge_snap, &EdgeSnapParams::reach_mm>(
-        "edge_snap", "reach_mm", "reach", "mm", 0, 50, "Horizontal distance at which the pull begins.",
-        LowEnd::kExcluded),
+        "edge_snap", "reach_mm", "reach", "mm", 0, kMostLength,
+        "Horizontal distance at which the pull begins.", LowEnd::kExcluded),
     scene_rows::ofEffect<&EffectParams::texture, &TextureParams::amplitude_mm>(
-        "texture", "amplitude_mm", "amplitude", "mm", 0, 1,
+        "texture", "amplitude_mm", "amplitude", "mm", 0, kMostLength,
         "From the highest to the lowest point of the relief, all of it below the surface."),
     scene_rows::ofEffect<&EffectParams::texture, &TextureParams::wavelength_mm>(
-        "texture", "wavelength_mm", "wavelength", "mm", 0, 100, "The shortest of the relief.",
+        "texture", "wavelength_mm", "wavelength", "mm", 0, kMostLength, "The shortest of the relief.",
         LowEnd::kExcluded),
     scene_rows::ofEffect<&EffectParams::gravity, &GravityParams::stylus_kg>(
         "gravity", "stylus_kg", "mass", "kg", 0, 2,
         "Mass that is held up; more than the stylus weighs makes it rise."),
     scene_rows::ofEffect<&EffectParams::coupling, &CouplingParams::damping_n_s_per_mm>(
-        "coupling", "damping_n_s_per_mm", "damping", "N s/mm", 0, 1,
+        "coupling", "damping_n_s_per_mm", "damping", "N s/mm", 0, kMostDamping,
         "Between the tip and the surface, along the press only."),
     scene_rows::ofEffect<&EffectParams::passivity, &PassivityParams::max_damping_n_s_per_mm>(
-        "passivity", "max_damping_n_s_per_mm", "largest damping", "N s/mm", 0, 1,
+        "passivity", "max_damping_n_s_per_mm", "largest damping", "N s/mm", 0, kMostDamping,
         "That the controller adds, beyond taking driving force away."),
     scene_rows::ofEffect<&EffectParams::sound, &SoundParams::profile>(
         "sound", "profile", "profile", "", 0, 10,
@@ -211,6 +218,10 @@ inline constexpr std::array kSceneNumbers = {
     scene_rows::ofEffect<&EffectParams::velocity, &VelocityParams::filter_ms>(
         "velocity", "filter_ms", "speed filter", "ms", 0, 50,
         "Time constant of the speed that viscosity and coupling go by: a longer one is quieter and later."),
+    scene_rows::number<&Scene::params, &EffectParams::velocity, &VelocityParams::fastest_mm_per_s>(
+        "velocity", "fastest_mm_per_s", "fastest hand", "mm/s", 0, kMostSpeed,
+        "Speed of the tip above which it jumped: such a step is not damped and is no work of the hand.",
+        LowEnd::kExcluded, NumberKind::kReal, Written::kUnlessDefault),
 };
 
 inline constexpr std::array kSceneWords = {
@@ -237,7 +248,14 @@ inline constexpr std::array kSceneWords = {
   throw "no such number";
 }
 
-/// "0 to 2 N", "above 0, at most 1000 N/mm", "a whole number from 1 to 64 cells".
+/// How a number follows the size of a field that shall feel alike: 1, a length or speed, grows with it; -1, something for each
+/// millimetre, falls with it; 0: it is of the hand (force, time, mass, loudness), a share, or counted in samples.
+[[nodiscard]] constexpr int lengthPower(const SceneNumber& number) noexcept {
+  if (number.unit == "mm" || number.unit == "mm/s") return 1;
+  return number.unit == "N/mm" || number.unit == "N s/mm" ? -1 : 0;
+}
+
+/// "0 to 2 N", "above 0, at most 1000 N", "a whole number from 1 to 64 cells".
 [[nodiscard]] std::string rangeText(const SceneNumber& number);
 /// A value out of range as one sentence, with the names of the scene file: "limit_n in [force] must be above 0, at most 1000 N".
 [[nodiscard]] std::string rangeProblem(const SceneNumber& number);

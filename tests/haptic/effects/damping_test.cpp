@@ -44,6 +44,13 @@ TEST(Velocity, IsZeroAfterWhateverIsNoMeasureOfSpeed) {
     EXPECT_EQ(filter.mmPerS(), glm::dvec3(0.0)) << t << ' ' << x;
     EXPECT_EQ(filter.dt(), 0.0);
   }
+  // A hand of 100 mm/s on a field of kilometres, which is no jump.
+  VelocityFilter wide(0.0, 1e9);
+  wide.update(0.0, {0.0, 0.0, 0.0});
+  wide.update(0.001, {1e4, 0.0, 0.0});
+  EXPECT_NEAR(wide.mmPerS().x, 1e7, 1.0);
+  wide.update(0.002, {2e6, 0.0, 0.0});
+  EXPECT_EQ(wide.mmPerS(), glm::dvec3(0.0));
   VelocityFilter small(0.0);
   small.update(0.0, {0.0, 0.0, 0.0});
   small.update(0.001, {5e-324, 0.0, 0.0});

@@ -91,7 +91,7 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   scene.ball_searches = static_cast<int>(random() % 4097);
   scene.ball_work = static_cast<int>(random() % 1000);
   scene.ball_minima = static_cast<haptic::BallMinima>(random() % 2);
-  scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
+  scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, random() % 2 == 0 ? 1000 : 1e9);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);
   scene.mark_radius_samples = static_cast<double>(random() % 64);
@@ -102,7 +102,8 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   scene.params.friction = {0.9, tests::uniform(random, 0, 0.9), tests::uniform(random, 1e-9, 1000)};
   scene.params.viscosity.medium =
       random() % 2 == 0 ? haptic::ViscousMedium::kContact : haptic::ViscousMedium::kEverywhere;
-  scene.params.texture.wavelength_mm = tests::uniform(random, 1e-9, 100);
+  scene.params.texture.wavelength_mm = tests::uniform(random, 1e-9, random() % 2 == 0 ? 100 : 1e9);
+  if (random() % 2 == 0) scene.params.velocity.fastest_mm_per_s = tests::uniform(random, 1e-12, 1e13);
   scene.params.texture.pattern =
       random() % 2 == 0 ? haptic::TexturePattern::kNoise : haptic::TexturePattern::kGrating;
   scene.effects = {haptic::EffectKind::kSpring};
