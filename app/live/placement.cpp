@@ -9,14 +9,10 @@
 
 namespace fettle::app {
 
-namespace {
-
 double reachScale(const haptic::DeviceProfile& profile, const engine::Grid& grid) {
   const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
   return haptic::Workspace::fit(profile, glm::dvec3(0.0), side).scale();
 }
-
-}  // namespace
 
 double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid, const haptic::Scene& scene,
                    double rate_hz) {

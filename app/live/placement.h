@@ -11,7 +11,11 @@
 
 namespace fettle::app {
 
-/// The scale [mm of the field per mm of the hand] at which the smaller side of the field is within the
+/// The scale [mm of the field per mm of the hand] at which the smaller side of the field is within the device's reach; 0 for a field
+/// of one row or column.
+[[nodiscard]] double reachScale(const haptic::DeviceProfile& profile, const engine::Grid& grid);
+
+/// For a scene that the user gave, which is not fitted (fitted_scene.h): the scale at which the smaller side of the field is within the
 /// device's reach, or for a device that gives force the largest at which the scene is stable
 /// (haptic::stability.h) if that is less; 1 for a field of one row or column. Also 1 for a device on which
 /// the scene is not stable at any scale: see its stabilityProblem.

@@ -66,17 +66,6 @@ double damping(const Scene& scene) noexcept {
          (lists(scene, EffectKind::kPassivity) ? scene.params.passivity.max_damping_n_s_per_mm : 0.0);
 }
 
-// To four digits: a value typed as it is displayed is not above the limit.
-double roundedDown(double value) noexcept {
-  if (!(value > 0.0)) return 0.0;
-  if (std::isinf(value)) return value;
-  const double digits = std::floor(std::log10(value)) - 3.0;
-  // A power of ten above one is exact, below one it is not: dividing by it keeps 6 exactly 6.
-  const double unit = std::pow(10.0, std::abs(digits));
-  return digits < 0.0 ? std::floor(value * unit * kRounding) / unit
-                      : std::floor(value / unit * kRounding) * unit;
-}
-
 // What part of a scene is stable on a device, in the field's millimetres.
 class Hold {
  public:
@@ -197,6 +186,16 @@ class Hold {
 };
 
 }  // namespace
+
+double roundedDown(double value) noexcept {
+  if (!(value > 0.0)) return 0.0;
+  if (std::isinf(value)) return value;
+  const double digits = std::floor(std::log10(value)) - 3.0;
+  // A power of ten above one is exact, below one it is not: dividing by it keeps 6 exactly 6.
+  const double unit = std::pow(10.0, std::abs(digits));
+  return digits < 0.0 ? std::floor(value * unit * kRounding) / unit
+                      : std::floor(value / unit * kRounding) * unit;
+}
 
 StabilityNeed stabilityNeed(const Scene& scene, double rate_hz) noexcept {
   StabilityNeed need;

@@ -44,6 +44,9 @@ struct StabilityProblem {
                                                                const DeviceProfile& profile, double rate_hz,
                                                                double scale = 1.0);
 
+/// To four digits, so that a value typed as it is displayed is not above a limit; 0 of one that is not above 0.
+[[nodiscard]] double roundedDown(double value) noexcept;
+
 /// Largest stiffness [N/mm] of the spring that the device holds with the rest of the scene, rounded down to
 /// four digits; 0 when it holds none. As stabilityProblem().
 [[nodiscard]] double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz,
