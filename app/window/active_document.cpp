@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr auto kNoteEvery = std::chrono::seconds(1);
 // Writing what came since is a matter of milliseconds, and no word for it shall flicker.
 constexpr auto kSayWaiting = std::chrono::seconds(1);
+constexpr const char* kFittedNote =
+    "fitted scene";  // what of the note "scene" is no choice of the user; empty: all is
 constexpr const char* kContactNote = "contact";  // what the words of the note "scene" mean: kContactRevision
 
 // Of the scene that a session notes: none is noted by the programs that had only the first.
@@ -32,26 +34,34 @@ int contactRevision(const Document& document) {
   return revision;
 }
 
+std::optional<haptic::Scene> sceneNoted(const Document& document, const char* note) {
+  const auto noted = document.notes.find(note);
+  if (noted == document.notes.end() || noted->second.empty()) return std::nullopt;
+  const auto scene = haptic::parseScene(noted->second, "the session's scene", contactRevision(document));
+  return scene ? std::optional(*scene) : std::nullopt;
+}
+
 // The first scene for a scan or session.
 haptic::Scene firstScene(const Document& document, const std::optional<haptic::Scene>& given,
                          LoopClientOptions& options) {
-  options.fit_spring = !given.has_value();
+  options.fitting = {.fits = !given.has_value()};
   if (given) return *given;
   haptic::Scene scene = haptic::defaultScene();
-  if (const auto noted = document.notes.find("scene"); noted == document.notes.end()) {
-    // Wider than the default of one sample: as wide as the displayed brush.
-    scene.brush_radius_samples = 6.0;
-    scene.mark_radius_samples = 3.0;
-    // Samples are distances: what is near is high.
-    scene.invert = document.scan.import.depth_camera.has_value();
-  } else if (const auto kept =
-                 haptic::parseScene(noted->second, "the session's scene", contactRevision(document))) {
-    scene = *kept;
-    options.fit_spring = false;
-    // The session may come from another device, and must open with this one too.
-    options.lower_scene = true;
+  // Wider than the default of one sample: as wide as the displayed brush.
+  scene.brush_radius_samples = 6.0;
+  scene.mark_radius_samples = 3.0;
+  // Samples are distances: what is near is high.
+  scene.invert = document.scan.import.depth_camera.has_value();
+  const auto kept = sceneNoted(document, "scene");
+  if (!kept) return scene;
+  // The session may come from another device, and must open with this one too.
+  options.fitting.lowers = true;
+  options.fitting.fits = false;
+  if (const auto fitted = sceneNoted(document, kFittedNote)) {
+    options.fitting.fits = true;
+    options.fitting.last = SceneFit{scene, *fitted};
   }
-  return scene;
+  return *kept;
 }
 
 }  // namespace
@@ -150,6 +160,8 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
 void ActiveDocument::storeNotes(const render::View& view) {
   keeper_->setNote("camera", viewText(view));
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
+  const std::optional<SceneFit>& fit = loop_->fit();
+  keeper_->setNote(kFittedNote, fit ? haptic::sceneText(fit->fitted) : std::string());
   keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));
   noteDrawn();
 }

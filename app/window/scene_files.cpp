@@ -35,7 +35,7 @@ void SceneFiles::begin(const LoopClient& client, std::string path) {
 
 bool SceneFiles::open(const std::string& path, LoopClient& client, Feedback& feedback) {
   const auto scene = readSceneFor(path, client.field().grid());
-  const engine::Status set = scene ? client.setScene(*scene) : tl::unexpected(scene.error());
+  const engine::Status set = scene ? client.openScene(*scene) : tl::unexpected(scene.error());
   if (!set) {
     // Back to the dialog in which it was chosen.
     feedback.questions.ask(

@@ -10,6 +10,7 @@
 
 #include "app/live/placement.h"
 #include "engine/base/stopwatch.h"
+#include "haptic/scene/scene_numbers.h"
 
 namespace fettle::app {
 
@@ -59,11 +60,8 @@ double handsUnitMm(const engine::Grid& grid) {
 }
 
 // A hand without force: its depth replaces it. Two units deep is pressing hard, at every scale of the field.
-haptic::Scene fitted(haptic::Scene scene, double unit_mm) {
-  const double wanted = scene.force_limit_n / (2.0 * unit_mm);
-  scene.stiffness_n_per_mm = std::clamp(wanted, 1e-6, 1000.0);
-  // Beyond what a scene may state the limit follows: on cells of nanometres no stiffness would reach it.
-  if (scene.stiffness_n_per_mm != wanted) scene.force_limit_n = 2.0 * unit_mm * scene.stiffness_n_per_mm;
+haptic::Scene fittedToDepth(haptic::Scene scene, double unit_mm) {
+  scene.stiffness_n_per_mm = std::min(scene.force_limit_n / (2.0 * unit_mm), haptic::kMostStiffness);
   return scene;
 }
 
@@ -86,6 +84,15 @@ std::shared_ptr<haptic::ControllerLink> controllersBeside(const std::string& dev
 DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Grid& grid)
     : options_(std::move(options)), driver_(haptic::driverNamed(options_.device).driver), grid_(grid) {}
 
+template <class Fitted>
+void DeviceLoop::fit(haptic::Scene& scene, Fitted fitted) {
+  std::optional<SceneFit>& last = options_.fitting.last;
+  const haptic::Scene plain = last ? plainOf(scene, *last) : scene;
+  const haptic::Scene pure = fitted(plain);
+  scene = last ? withEdits(pure, scene, last->fitted) : pure;
+  last = SceneFit{plain, pure};
+}
+
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   const engine::Grid& grid = grid_;
   if (driver_ != nullptr && driver_->needs_window) {
@@ -94,24 +101,30 @@ engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
           std::make_unique<haptic::ControllerStylus>(feelFor(handsUnitMm(grid)), options_.controllers);
       mouse_ = &hands->mouse();
       device_ = std::move(hands);
-      if (options_.fit_spring) scene = fitted(scene, handsUnitMm(grid));
+      if (options_.fitting.fits)
+        fit(scene, [&](const haptic::Scene& plain) { return fittedToDepth(plain, handsUnitMm(grid)); });
       return {};
     }
     auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(spacingMm(grid)));
     mouse_ = mouse.get();
     device_ = std::move(mouse);
-    if (options_.fit_spring) {
-      scene = fitted(scene, spacingMm(grid));
-      // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
-      // them.
-      scene.level = haptic::ContactLevel::kCertified;
-      scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
-    }
+    if (options_.fitting.fits)
+      fit(scene, [&](const haptic::Scene& plain) {
+        haptic::Scene fitted = fittedToDepth(plain, spacingMm(grid));
+        // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
+        // them.
+        fitted.level = haptic::ContactLevel::kCertified;
+        fitted.certified_radius_cells = 6;  // more than the four cells that it presses at most
+        return fitted;
+      });
     return {};
   }
   auto device = haptic::openDevice(options_.device, options_.rate_hz);
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
+  // Its millimetres are the field's: nothing of another device's fit stays.
+  if (options_.fitting.fits && device_->profile().space == haptic::DeviceSpace::kField)
+    fit(scene, [](const haptic::Scene& plain) { return plain; });
   if (const auto known = options_.setups.find(setupKey(device_->profile())); known != options_.setups.end())
     setup_ = known->second;
   return {};
@@ -152,8 +165,7 @@ engine::Status DeviceLoop::startOn(const std::string& device, const Start& start
   // Outlives the loop that reads it, which startLoop() replaces.
   std::unique_ptr<haptic::Device> device_before = std::move(device_);
   options_.device = device;
-  options_.fit_spring = false;
-  options_.lower_scene = true;
+  options_.fitting.lowers = true;
   options_.controllers.reset();  // of a headset: they are beside the mouse of the start alone
   driver_ = haptic::driverNamed(device).driver;
   setup_ = {};
@@ -190,7 +202,11 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     top_mm_ = topMm(start.field, scene);
     const glm::dvec3 middle{0.5 * (grid.width - 1) * grid.spacingXMm(),
                             0.5 * (grid.height - 1) * grid.spacingYMm(), top_mm_};
-    scale_at_start_ = setup_.motion * fittedScale(setup_.in(profile), grid, scene, options_.rate_hz);
+    const haptic::DeviceProfile reached = setup_.in(profile);
+    if (options_.fitting.fits)
+      fit(scene,
+          [&](const haptic::Scene& plain) { return fittedScene(plain, reached, grid, options_.rate_hz); });
+    scale_at_start_ = scaleFor(scene);
     const glm::dvec3 hand = setup_.reach ? setup_.reach->middle() : glm::dvec3(0.0);
     settings.options.workspace = haptic::Workspace(scale_at_start_, middle - scale_at_start_ * hand);
     settings.options.clutch_buttons = setup_.clutch_buttons;
@@ -199,11 +215,14 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
     haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);
     // For a device that is never stable there is no such scene.
-    if (!options_.lower_scene || stabilityProblem(lowered, options_.rate_hz))
+    if (!options_.fitting.lowers || stabilityProblem(lowered, options_.rate_hz))
       return engine::inputError(problem->what, "scene", problem->remedy);
     scene = std::move(lowered);
     notices.push_back({problem->what, "lowered to " + problem->remedy});
   }
+  if (const auto problem = feltProblem(scene))
+    notices.push_back(
+        {problem->what, fmt::format("fit it in the panel Haptics, or take {}", problem->remedy)});
   auto loop = haptic::HapticLoop::create(start.field, start.original, scene, *device_, settings);
   if (!loop) return tl::unexpected(loop.error());
   if (auto status = device_->start(); !status) return status;
@@ -282,6 +301,24 @@ std::optional<haptic::StabilityProblem> DeviceLoop::stabilityProblem(const hapti
   const haptic::DeviceProfile& profile = device_->profile();
   if (!profile.gives_force) return std::nullopt;
   return haptic::stabilityProblem(scene, profile, rate_hz, scale_at_start_);
+}
+
+double DeviceLoop::scaleFor(const haptic::Scene& scene) const {
+  const haptic::DeviceProfile reached = setup_.in(device_->profile());
+  return setup_.motion * (options_.fitting.fits ? wholeFieldScale(reached, grid_)
+                                                : fittedScale(reached, grid_, scene, options_.rate_hz));
+}
+
+bool DeviceLoop::movesOtherwise(const haptic::Scene& scene) const {
+  if (device_->profile().space != haptic::DeviceSpace::kDesk) return false;
+  return scale_at_start_ !=
+         setup_.motion * fittedScale(setup_.in(device_->profile()), grid_, scene, options_.rate_hz);
+}
+
+std::optional<FeltProblem> DeviceLoop::feltProblem(const haptic::Scene& scene) const {
+  if (options_.fitting.fits) return std::nullopt;
+  return app::feltProblem(scene, setup_.in(device_->profile()), grid_, options_.rate_hz,
+                          scale_at_start_ / setup_.motion);
 }
 
 std::optional<double> DeviceLoop::largestStiffness(const haptic::Scene& scene) const {

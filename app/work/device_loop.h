@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/fitted_scene.h"
 #include "app/sound/loudness.h"
 #include "app/work/device_setup.h"
 #include "engine/base/error.h"
@@ -41,14 +42,22 @@ struct Notice {
 /// Adds a notice; one with Notice::several is counted where it stands already.
 void addNotice(std::vector<Notice>& notices, Notice notice);
 
+/// What becomes of a scene that a device starts with.
+struct SceneFitting {
+  /// It is fitted to field and device: for a mouse spring and depth follow the field's spacing, for a device on the desk all
+  /// lengths the field's size (fittedScene). Off when the user gave the scene.
+  bool fits = true;
+  /// The last fit, also of another device: what of it is still in the scene is fitted anew.
+  std::optional<SceneFit> last = {};
+  /// Values with which the device is not stable (haptic::stabilityProblem) are lowered to the largest stable
+  /// ones, with a notice; otherwise such a scene is refused.
+  bool lowers = false;
+};
+
 struct LoopClientOptions {
   std::string device = "mouse";  ///< a word of haptic::openDevice
   double rate_hz = 1000.0;
-  /// Spring and depth of the mouse follow the field's spacing; off when a scene file states the spring.
-  bool fit_spring = true;
-  /// Values of the first scene with which the device is not stable (haptic::stabilityProblem) are lowered to
-  /// the largest stable ones, with a notice; otherwise such a scene is refused.
-  bool lower_scene = false;
+  SceneFitting fitting = {};
   Loudness loudness;         ///< of scenes with sound
   DeviceSetups setups = {};  ///< of the devices that are known
   /// Of a headset's controllers, which are then the tip as well where the device is the mouse; null: there are none.
@@ -73,7 +82,7 @@ class DeviceLoop {
   /// For fields of a grid.
   DeviceLoop(LoopClientOptions options, const engine::Grid& grid);
 
-  /// Opens the device; a mouse fits the scene to the field. Errors: those of haptic::openDevice.
+  /// Opens the device; a mouse's scene is fitted to the field here, one on the desk's at each start. Errors: those of haptic::openDevice.
   [[nodiscard]] engine::Status openDevice(haptic::Scene& scene);
   /// Starts device and loop at a rate from an upright field. A simulated hand restarts its path when it is
   /// not the first loop. Errors: a scene with which the device is not stable, those of HapticLoop::create and
@@ -81,7 +90,7 @@ class DeviceLoop {
   struct Start {
     engine::Version field;
     engine::Version original;        ///< upright: what Scene::max_change is measured against
-    haptic::Scene* scene = nullptr;  ///< lowered to the stable values (LoopClientOptions::lower_scene)
+    haptic::Scene* scene = nullptr;  ///< fitted, and lowered to the stable values (SceneFitting)
     haptic::Tool tool = haptic::Tool::kFeel;
     bool records = false;  ///< every tick's input (HapticLoop::pollRecord)
     double rate_hz = 1000.0;
@@ -92,6 +101,13 @@ class DeviceLoop {
   /// stably, with a notice. Errors: those of openDevice() and start(); the device before is there then, as after stop().
   [[nodiscard]] engine::Status startOn(const std::string& device, const Start& start,
                                        std::vector<Notice>& notices);
+  /// From the next start on.
+  void setFitting(const SceneFitting& fitting) { options_.fitting = fitting; }
+  [[nodiscard]] const SceneFitting& fitting() const noexcept { return options_.fitting; }
+  /// Whether another scene of the user is felt at another scale than that of the start.
+  [[nodiscard]] bool movesOtherwise(const haptic::Scene& scene) const;
+  /// feltProblem() of a scene that was not fitted, at the scale of the start.
+  [[nodiscard]] std::optional<FeltProblem> feltProblem(const haptic::Scene& scene) const;
   /// The words of the device.
   [[nodiscard]] const std::string& deviceWords() const noexcept { return options_.device; }
   /// Ends the loop with a last tick of zero force; its events and records can still be polled.
@@ -157,6 +173,11 @@ class DeviceLoop {
     void measure(const haptic::LoopState& state);
   };
   [[nodiscard]] engine::Status startLoop(const Start& start, std::vector<Notice>& notices);
+  /// Of the whole field, or that at which a scene of the user is stable.
+  [[nodiscard]] double scaleFor(const haptic::Scene& scene) const;
+  /// `fitted`: of the scene as it was before a fit. What the user changed since the last fit stays.
+  template <class Fitted>
+  void fit(haptic::Scene& scene, Fitted fitted);
   [[nodiscard]] bool simulatesHand() const { return driver_ != nullptr && driver_->simulates_hand; }
   void armByItself(const haptic::LoopState& state);
   void watch(const haptic::LoopState& state, std::vector<Notice>& notices);

@@ -128,6 +128,40 @@ engine::Status LoopClient::setDeviceSetup(const DeviceSetup& setup) {
   return status;
 }
 
+engine::Status LoopClient::openScene(const haptic::Scene& scene) {
+  if (const auto problem = haptic::sceneProblem(scene)) return engine::inputError(*problem, "scene");
+  if (!loop_.movesOtherwise(scene)) {
+    engine::Status set = setScene(scene);
+    if (set) loop_.setFitting({.fits = false});
+    return set;
+  }
+  return startWith(scene, {.fits = false});
+}
+
+engine::Status LoopClient::fitScene() {
+  return startWith(scene_, {.fits = true, .lowers = true});
+}
+
+engine::Status LoopClient::startWith(const haptic::Scene& scene, const SceneFitting& fitting) {
+  if (finished()) return {};
+  const bool disarmed = loop_.disarmed();
+  const haptic::Scene before = scene_;
+  const SceneFitting fitting_before = loop_.fitting();
+  const double same_hz = rate();
+  endForAnother();
+  scene_ = scene;
+  loop_.setFitting(fitting);
+  engine::Status status = startLoop(same_hz);
+  if (!status) {
+    scene_ = before;
+    loop_.setFitting(fitting_before);
+    static_cast<void>(startLoop(same_hz));
+  }
+  loop_.setDisarmed(disarmed);
+  if (status) noteDisarmed(tr("the scene is felt at another scale, without force"));
+  return status;
+}
+
 engine::Status LoopClient::setDevice(const std::string& words) {
   if (finished() || words == deviceWords()) return {};
   const bool disarmed = loop_.disarmed();

@@ -90,6 +90,17 @@ class LoopClient final {
   /// (sceneProblem), or not stable with a force device at this rate (haptic::stabilityProblem): the message
   /// names the largest stable value.
   [[nodiscard]] engine::Status setScene(const haptic::Scene& scene);
+  /// A scene that the user gave, as it is (SceneFitting::fits). Where it is felt at another scale the loop ends and another
+  /// starts, as in setDeviceSetup(). Errors: those of setScene() and start(), after which the scene before is felt, or the loop is
+  /// finished().
+  [[nodiscard]] engine::Status openScene(const haptic::Scene& scene);
+  /// Fits the lengths of the scene, those of the default scene, to field and device, and what that is not stable with is lowered; as
+  /// openScene().
+  [[nodiscard]] engine::Status fitScene();
+  /// The fit in force; nothing where the user gave the scene.
+  [[nodiscard]] const std::optional<SceneFit>& fit() const noexcept { return loop_.fitting().last; }
+  /// Why a scene that the user gave is felt badly; nothing where it is not.
+  [[nodiscard]] std::optional<FeltProblem> feltProblem() const { return loop_.feltProblem(scene_); }
   /// The problem of a scene with which the device is not stable; empty for one without force.
   [[nodiscard]] std::optional<haptic::StabilityProblem> stabilityProblem(const haptic::Scene& scene) const {
     return loop_.stabilityProblem(scene, loop_.rate());
@@ -189,6 +200,8 @@ class LoopClient final {
   // Where no audio device answers, a notice.
   void hear();
   void endForAnother();
+  /// Ends the loop and starts another with this scene; on errors with that before.
+  [[nodiscard]] engine::Status startWith(const haptic::Scene& scene, const SceneFitting& fitting);
   // That a device which gave force has to be armed again.
   void noteDisarmed(const std::string& what);
   void takeTicks();

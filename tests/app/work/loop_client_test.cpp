@@ -67,7 +67,7 @@ class LoopClientTest : public ::testing::Test {
         64, 64, [](int, int) { return 0.0; }, 0.2, 0.2);
     LoopClientOptions options;
     options.device = "hand:" + strokes;
-    options.lower_scene = lower_scene;
+    options.fitting = {.fits = false, .lowers = lower_scene};
     return LoopClient::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
   }
   // Goes round as the window does.

@@ -1,0 +1,153 @@
+// Whose scene the loop takes: the default one is fitted to every device, one that the user gave is not.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "app/work/loop_client.h"
+#include "haptic/devices/known_devices.h"
+#include "tests/haptic/support/fields.h"
+
+namespace fettle::app {
+namespace {
+
+// A device on the desk that gives force, and is not plugged in: all that is asked here is known without it.
+constexpr const char* kDesk = "woodenhaptics";
+
+class SceneFitTest : public ::testing::Test {
+ protected:
+  static engine::Version fieldOf(double side_mm) {
+    return tests::fieldOf(
+        65, 65, [](int, int) { return 0.0; }, side_mm / 64.0, side_mm / 64.0);
+  }
+  static std::unique_ptr<LoopClient> start(double side_mm, const std::string& device,
+                                           const SceneFitting& fitting,
+                                           const haptic::Scene& scene = haptic::defaultScene()) {
+    const engine::Version plate = fieldOf(side_mm);
+    LoopClientOptions options;
+    options.device = device;
+    options.fitting = fitting;
+    auto client =
+        LoopClient::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
+    EXPECT_TRUE(client) << client.error().line();
+    return client ? std::move(*client) : nullptr;
+  }
+  // What the hand feels: the largest stiffness of the field is felt as the device's.
+  static double felt(const LoopClient& client) {
+    return client.device().profile().max_stiffness_n_per_mm / *client.largestStiffness() *
+           client.scene().stiffness_n_per_mm;
+  }
+  static double reached(const LoopClient& client) {
+    const haptic::DeviceProfile& profile = client.device().profile();
+    return 2.0 * profile.workspace_radius_mm * profile.max_stiffness_n_per_mm / *client.largestStiffness();
+  }
+  static bool says(const std::vector<Notice>& notices, const char* what) {
+    return std::ranges::any_of(notices,
+                               [&](const Notice& n) { return n.what.find(what) != std::string::npos; });
+  }
+};
+
+TEST_F(SceneFitTest, TheDefaultSceneIsFittedToTheDeviceAtEveryStart) {
+  for (const double side_mm : {5e-3, 5e6}) {
+    const auto client = start(side_mm, kDesk, {});
+    ASSERT_TRUE(client);
+    EXPECT_NEAR(felt(*client), 1.0, 2e-3) << side_mm;
+    EXPECT_NEAR(reached(*client) / side_mm, 1.0, 2e-3);
+    EXPECT_FALSE(client->feltProblem());
+    EXPECT_FALSE(says(client->takeNotices(), "of the field"));
+    const haptic::Scene fitted = client->scene();
+    ASSERT_TRUE(client->setRate(2000.0));
+    EXPECT_EQ(client->scene(), fitted) << "fitted again, to the same";
+    // A part of the motion is softer and finer, and no other scene.
+    DeviceSetup setup = client->deviceSetup();
+    setup.motion = 0.5;
+    ASSERT_TRUE(client->setDeviceSetup(setup));
+    EXPECT_EQ(client->scene(), fitted);
+    EXPECT_NEAR(felt(*client), 0.5, 2e-3);
+  }
+}
+
+TEST_F(SceneFitTest, AnotherDeviceIsFittedAnewAndWhatTheUserChangedStays) {
+  const auto client = start(5e-3, "mouse", {});
+  ASSERT_TRUE(client);
+  haptic::Scene edited = client->scene();
+  EXPECT_EQ(edited.level, haptic::ContactLevel::kCertified);
+  EXPECT_EQ(edited.force_limit_n, 8.0) << "cells of 0.08 um, on which a stiffness of 1000 N/mm was the most";
+  EXPECT_NEAR(edited.stiffness_n_per_mm * 2.0 * 5e-3 / 64.0, 8.0, 1e-9);
+  edited.brush_radius_samples = 11.0;
+  edited.params.edge_snap.reach_mm = 3e-4;
+  ASSERT_TRUE(client->setScene(edited));
+  ASSERT_TRUE(client->setDevice(kDesk));
+  EXPECT_NEAR(felt(*client), 1.0, 2e-3);
+  EXPECT_NEAR(reached(*client), 5e-3, 1e-5);
+  EXPECT_EQ(client->scene().level, haptic::ContactLevel::kPaper) << "as at the start with this device";
+  EXPECT_EQ(client->scene().brush_radius_samples, 11.0);
+  EXPECT_EQ(client->scene().params.edge_snap.reach_mm, 3e-4);
+  // As often as the device is changed.
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(client->setDevice("mouse"));
+    EXPECT_EQ(client->scene(), edited);
+    ASSERT_TRUE(client->setDevice(kDesk));
+    EXPECT_EQ(client->scene().params.edge_snap.reach_mm, 3e-4);
+  }
+}
+
+TEST_F(SceneFitTest, TheUsersSceneStaysAsItIsAndWhatIsWrongWithItIsSaidUntilItIsFitted) {
+  haptic::Scene own = haptic::defaultScene();
+  own.brush_radius_samples = 5.0;
+  own.stiffness_n_per_mm = 0.8;
+  for (const double side_mm : {5e-3, 5e6}) {
+    const auto client = start(side_mm, kDesk, {.fits = false}, own);
+    ASSERT_TRUE(client);
+    EXPECT_EQ(client->scene(), own);
+    ASSERT_TRUE(client->feltProblem());
+    EXPECT_TRUE(says(client->takeNotices(), client->feltProblem()->what.c_str()));
+    ASSERT_TRUE(client->fitScene());
+    EXPECT_FALSE(client->feltProblem());
+    EXPECT_NEAR(felt(*client), 1.0, 2e-3);
+    EXPECT_NEAR(reached(*client) / side_mm, 1.0, 2e-3);
+    EXPECT_EQ(client->scene().brush_radius_samples, 5.0);
+    EXPECT_FALSE(client->finished());
+    // And back to the file.
+    ASSERT_TRUE(client->openScene(own));
+    EXPECT_EQ(client->scene(), own);
+    EXPECT_TRUE(client->feltProblem());
+    EXPECT_FALSE(client->fit());
+  }
+}
+
+// A stiffer scene is felt at a smaller scale, as at the start with it; with one that the device never holds all stays.
+TEST_F(SceneFitTest, AnOpenedSceneIsFeltAsAtTheStartWithIt) {
+  const auto client = start(100.0, kDesk, {});
+  ASSERT_TRUE(client);
+  EXPECT_EQ(client->scene(), haptic::defaultScene());
+  EXPECT_NEAR(felt(*client), 0.5, 1e-3) << "a part of ordinary size, as ever";
+  haptic::Scene own = haptic::defaultScene();
+  own.stiffness_n_per_mm = 4.0;
+  ASSERT_TRUE(client->openScene(own));
+  EXPECT_EQ(client->scene(), own);
+  EXPECT_NEAR(felt(*client), 1.0, 1e-3);
+  EXPECT_NEAR(reached(*client), 50.0, 0.1);
+  EXPECT_FALSE(client->feltProblem()) << "half of the field";
+  own.stiffness_n_per_mm = -1.0;
+  EXPECT_FALSE(client->openScene(own));
+  EXPECT_EQ(client->scene().stiffness_n_per_mm, 4.0);
+  EXPECT_FALSE(client->finished());
+}
+
+// The scene of a session, kept with what was fitted for the device it was made with.
+TEST_F(SceneFitTest, AKeptFitIsFittedAnewAndAKeptSceneWithoutOneIsNot) {
+  const auto mouse = start(5e-3, "mouse", {});
+  ASSERT_TRUE(mouse && mouse->fit());
+  haptic::Scene kept = mouse->scene();
+  kept.mark_radius_samples = 9.0;
+  const auto fitted = start(5e-3, kDesk, {.fits = true, .last = mouse->fit(), .lowers = true}, kept);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(felt(*fitted), 1.0, 2e-3);
+  EXPECT_EQ(fitted->scene().mark_radius_samples, 9.0);
+  const auto as_it_is = start(5e-3, kDesk, {.fits = false, .lowers = true}, kept);
+  ASSERT_TRUE(as_it_is);
+  EXPECT_EQ(as_it_is->scene(), kept);
+}
+
+}  // namespace
+}  // namespace fettle::app
