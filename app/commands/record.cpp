@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,9 +12,11 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/value_checks.h"
+#include "app/live/fitted_scene.h"
 #include "app/live/live_session.h"
 #include "app/live/placement.h"
 #include "app/terminal.h"
+#include "app/work/scene_text_file.h"
 #include "engine/io/raster/marks.h"
 #include "haptic/base/strokes.h"
 #include "haptic/devices/enumerate.h"
@@ -33,6 +36,7 @@ struct RecordArguments {
   std::string out;
   std::string device;
   std::string scene;
+  std::string scene_out;
   std::string marks;
   std::string marks_out;
   std::string tool = "feel";
@@ -43,6 +47,7 @@ struct RecordArguments {
   double scale = 0.0;  // 0 = fitted
   std::optional<double> max_force_n;
   bool keys = false;
+  bool fit = false;
   std::string original;
   Replacing replacing = Replacing::kNoWork;
   ScanOptions reading;
@@ -101,6 +106,31 @@ glm::dvec3 middleOf(const engine::Version& field) {
           height * grid.height_unit.mm};
 }
 
+// Whether the lengths of the scene are fitted: those of the user, and a scale of the user, are taken as they are.
+bool fits(const RecordArguments& options, const haptic::DeviceProfile& profile) {
+  const bool asked = options.fit || (options.scene.empty() && options.scale == 0.0);
+  return asked && profile.space == haptic::DeviceSpace::kDesk;
+}
+
+// A scene of the user keeps its effects, which the device holds with lower numbers.
+haptic::Scene fittedFor(const RecordArguments& options, const haptic::DeviceProfile& profile,
+                        const engine::Grid& grid, const haptic::Scene& given) {
+  haptic::Scene fitted = fittedScene(given, profile, grid, options.rate_hz);
+  if (!options.fit || !profile.gives_force) return fitted;
+  const double scale = options.scale > 0.0 ? options.scale : wholeFieldScale(profile, grid);
+  if (const auto problem = haptic::stabilityProblem(fitted, profile, options.rate_hz, scale)) {
+    warn(fmt::format("{}: lowered to {}", problem->what, problem->remedy));
+    fitted = haptic::stableScene(std::move(fitted), profile, options.rate_hz, scale);
+  }
+  return fitted;
+}
+
+// What is recorded is replayed with the scene that was felt: beside the strokes, unless a place is given.
+std::string sceneOut(const RecordArguments& options, const haptic::Scene& felt, const haptic::Scene& given) {
+  if (!options.scene_out.empty() || felt == given) return options.scene_out;
+  return std::filesystem::path(options.strokes).replace_extension(".scene.toml").string();
+}
+
 // Placement of the device in the field: --scale, or the whole field within reach unless the device cannot
 // hold that.
 engine::Result<haptic::Workspace> place(const RecordArguments& options, const engine::Version& felt,
@@ -111,8 +141,10 @@ engine::Result<haptic::Workspace> place(const RecordArguments& options, const en
                                 "--scale", "omit it");
     return haptic::Workspace{};
   }
-  const double scale =
-      options.scale > 0.0 ? options.scale : fittedScale(profile, felt.grid(), scene, options.rate_hz);
+  const engine::Grid& grid = felt.grid();
+  const double scale = options.scale > 0.0      ? options.scale
+                       : fits(options, profile) ? wholeFieldScale(profile, grid)
+                                                : fittedScale(profile, grid, scene, options.rate_hz);
   return haptic::Workspace(scale, middleOf(felt));
 }
 
@@ -128,7 +160,13 @@ engine::Status checkStability(const RecordArguments& options, const engine::Vers
     return {};
   }
   const auto problem = haptic::stabilityProblem(scene, profile, options.rate_hz, scale);
-  if (!problem) return {};
+  if (!problem) {
+    const auto faint = fits(options, profile)
+                           ? std::nullopt
+                           : feltProblem(scene, profile, felt.grid(), options.rate_hz, scale);
+    if (faint) warn(fmt::format("{}: {}: give --fit, or {}", where, faint->what, faint->remedy));
+    return {};
+  }
   // Only the requested scale may be wrong.
   const double largest = haptic::largestStableScale(scene, profile, options.rate_hz);
   if (options.scale > 0.0 && largest > 0.0)
@@ -265,11 +303,11 @@ engine::Status save(const RecordArguments& options, const engine::Version& field
 }
 
 engine::Result<Report> record(const RecordArguments& options, engine::JobControl& job) {
-  const auto scene = haptic::loadSceneOrDefault(options.scene);
-  if (!scene) return tl::unexpected(scene.error());
-  if (auto status = checkOriginal(options.original, scene->max_change.has_value(), options.out); !status)
+  const auto given = haptic::loadSceneOrDefault(options.scene);
+  if (!given) return tl::unexpected(given.error());
+  if (auto status = checkOriginal(options.original, given->max_change.has_value(), options.out); !status)
     return tl::unexpected(status.error());
-  auto chosen = choose(options, *scene);
+  auto chosen = choose(options, *given);
   if (!chosen) return tl::unexpected(chosen.error());
   if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
                                   {options.out, OutputKind::kField},
@@ -280,15 +318,28 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
     return tl::unexpected(status.error());
   const auto field = load(options, job);
   if (!field) return tl::unexpected(field.error());
-  const engine::Version felt = scene->invert ? field->start.inverted() : field->start;
-  const auto settings = settingsFor(options, *chosen, felt, *scene);
+  const engine::Version felt = given->invert ? field->start.inverted() : field->start;
+  haptic::Scene scene = *given;
+  if (const haptic::DeviceProfile& profile = chosen->device->profile(); fits(options, profile))
+    scene = fittedFor(options, profile, felt.grid(), *given);
+  const auto settings = settingsFor(options, *chosen, felt, scene);
   if (!settings) return tl::unexpected(settings.error());
+  const std::string scene_out = sceneOut(options, scene, *given);
+  if (!scene_out.empty()) {
+    if (auto status =
+            checkOutputs({{scene_out, OutputKind::kText}},
+                         {options.scan, options.scene, options.strokes, options.out}, options.replacing, job);
+        !status)
+      return tl::unexpected(status.error());
+    // Before the recording, which is not to be replayed without it.
+    if (auto status = writeScene(scene_out, scene); !status) return tl::unexpected(status.error());
+  }
   auto strokes = haptic::StrokesWriter::create(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
 
   haptic::Device& device = *chosen->device;
   SessionLog log(*strokes);
-  auto outcome = runLive(field->start, field->original, *scene, device, *settings, log, job);
+  auto outcome = runLive(field->start, field->original, scene, device, *settings, log, job);
   if (!outcome) return tl::unexpected(outcome.error());
   if (auto status = save(options, outcome->field, field->original, *strokes); !status)
     return tl::unexpected(status.error());
@@ -297,7 +348,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
   engine::JobControl unhurried;
   const auto rows = haptic::readStrokes(options.strokes);
   if (!rows) return tl::unexpected(rows.error());
-  const auto again = haptic::replay(field->start, field->original, *rows, *scene, {}, unhurried);
+  const auto again = haptic::replay(field->start, field->original, *rows, scene, {}, unhurried);
   if (!again) return tl::unexpected(again.error());
   const std::string hash = hashOf(outcome->field);
   const std::string replayed = hashOf(again->field);
@@ -329,7 +380,8 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"not_near", outcome->last.not_prefetched},
                 {"rate_hz", options.rate_hz},
                 {"scale", desk ? Report(workspace.scale()) : Report()},
-                {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene->stiffness_n_per_mm)},
+                {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},
+                {"scene", scene_out.empty() ? Report() : Report(scene_out)},
                 {"missed", outcome->missed},
                 {"over_1_ms", outcome->over_1_ms},
                 {"lateness", timingOf(outcome->lateness)},
@@ -354,8 +406,12 @@ constexpr const char* kRecordNotes =
     "Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, "
     "in a "
     "temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene "
-    "and "
-    "--marks.";
+    "and --marks.\n"
+    "Without --scene and --scale the default scene is fitted to scan and device: all of the scan is within "
+    "the hand's reach, and "
+    "is felt as a part of ordinary size. The scene that was felt is written beside STROKES, as STROKES with "
+    ".scene.toml, where it is not "
+    "the one that was given: --scene of fettle replay takes it.";
 
 }  // namespace
 
@@ -387,7 +443,17 @@ void addRecord(Command root, Chosen& chosen) {
       {.name = "--scene",
        .to = &options->scene,
        .text = "Scene file: tip, stiffness, brush, effects (TOML)",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kFile,
+       .otherwise = "the default one, fitted to scan and device"},
+      {.name = "--fit",
+       .to = &options->fit,
+       .text = "Take stiffness, damping and lengths of the scene from the default one, fitted to scan and "
+               "device"},
+      {.name = "--scene-out",
+       .to = &options->scene_out,
+       .text = "Write the scene that was felt, for fettle replay",
+       .kind = ValueKind::kNewFile,
+       .otherwise = "beside STROKES where it was fitted"},
       {.name = "--marks",
        .to = &options->marks,
        .text = "Picture of marks to start from",

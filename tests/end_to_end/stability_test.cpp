@@ -56,6 +56,28 @@ TEST_F(Stability, RecordRefusesWhatTheHandDoesNotHoldAndNamesTheLargestThatItDoe
                 "at most 1 N/mm");
 }
 
+// A scene that was given is felt as it is, and what is wrong with it at the scan's size is said, with what helps.
+TEST_F(Stability, RecordSaysWhyAGivenSceneIsFeltBadlyAndFitsItWhenAsked) {
+  const std::string own = scene("[force]\nstiffness_n_per_mm = 20\n[brush]\nradius_samples = 3\n");
+  const auto recordWith = [&](std::vector<std::string> more) {
+    std::vector<std::string> all{"record",        scan,        recorded, "--device",
+                                 "woodenhaptics", "--seconds", "0.1",    "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return fettle(all);
+  };
+  const Outcome corner = recordWith({"--scene", own});
+  EXPECT_NE(corner.err.find("the hand reaches"), std::string::npos) << corner.err;
+  EXPECT_NE(corner.err.find("give --fit, or at most"), std::string::npos) << corner.err;
+  EXPECT_TRUE(nlohmann::json::parse(corner.out)["scene"].is_null());
+  EXPECT_FALSE(std::filesystem::exists(folder.file("recorded.scene.toml")));
+  const Outcome fitted = recordWith({"--scene", own, "--fit", "--scene-out", out + ".toml"});
+  EXPECT_EQ(fitted.err.find("the hand reaches"), std::string::npos) << fitted.err;
+  std::ifstream written(out + ".toml");
+  const std::string text((std::istreambuf_iterator<char>(written)), std::istreambuf_iterator<char>());
+  EXPECT_NE(text.find("radius_samples = 3"), std::string::npos) << text;
+  EXPECT_EQ(text.find("stiffness_n_per_mm = 20"), std::string::npos) << text;
+}
+
 TEST_F(Stability, RecordSaysThatItWaitsForADeviceThatIsNotThereAndHowToEnd) {
   const Outcome waited =
       fettle({"record", scan, recorded, "--device", "woodenhaptics", "--seconds", "0.3", "-q", "--json"});

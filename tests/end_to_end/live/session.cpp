@@ -16,19 +16,18 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kSide = 201;
-constexpr double kSpacing_mm = 0.5;
 const glm::dvec3 kAbove{0.0, 0.0, 6.0};
 
 }  // namespace
 
-void writePlate(const std::string& path) {
+void writePlate(const std::string& path, double side_mm) {
   engine::Grid grid;
   grid.width = grid.height = kSide;
-  grid.spacing_x = grid.spacing_y = kSpacing_mm;
+  grid.spacing_x = grid.spacing_y = side_mm / (kSide - 1);
   std::vector<float> heights;
   for (int r = 0; r < kSide; ++r)
     for (int c = 0; c < kSide; ++c)
-      heights.push_back(static_cast<float>(0.05 * std::sin(1.9 * c) * std::cos(2.3 * r)));
+      heights.push_back(static_cast<float>(5e-4 * side_mm * std::sin(1.9 * c) * std::cos(2.3 * r)));
   engine::JobControl job;
   ASSERT_TRUE(engine::exportField(engine::makeField(grid, heights), path, {}, job));
 }
@@ -47,13 +46,13 @@ void expectNoSanitizerReport(const LiveProgram& program) {
     EXPECT_EQ(program.err().find(word), std::string::npos) << program.err();
 }
 
-Session::Session(Firmware firmware_to_run, std::vector<std::string> more_arguments)
+Session::Session(Firmware firmware_to_run, std::vector<std::string> more_arguments, double side_mm)
     : firmware(firmware_to_run), woody(folder.path().string(), "woody", firmware_to_run) {
   scan = folder.file("plate.tif");
   strokes = folder.file("session.csv");
   out = folder.file("after.tif");
   marks = folder.file("marks.png");
-  writePlate(scan);
+  writePlate(scan, side_mm);
   woody.plug();
   std::vector<std::string> arguments{"record", scan,       strokes,         out,      "--marks-out",
                                      marks,    "--device", "woodenhaptics", "--keys", "--json"};
@@ -154,8 +153,11 @@ nlohmann::json Session::end() {
   EXPECT_EQ(report["refused_edits"], 0);
   EXPECT_LE(report["safety"]["given_peak_n"].get<double>(), kPeak_n * (1.0 + 1e-12));
   // And by the command itself, in a process of its own.
-  const Outcome replayed =
-      runProcess({FETTLE_PROGRAM, "replay", scan, strokes, folder.file("replayed.tif"), "--json"});
+  std::vector<std::string> replay = {FETTLE_PROGRAM, "replay", scan, strokes, folder.file("replayed.tif"),
+                                     "--json"};
+  if (report["scene"].is_string())
+    replay.insert(replay.end(), {"--scene", report["scene"].get<std::string>()});
+  const Outcome replayed = runProcess(replay);
   EXPECT_EQ(replayed.status, 0) << replayed.err;
   const auto again = nlohmann::json::parse(replayed.out, nullptr, false);
   EXPECT_TRUE(again.is_object() && again["hash"] == report["hash"]) << replayed.out;

@@ -16,11 +16,14 @@ namespace fettle::tests {
 
 using Firmware = fake::FakeWoody::Firmware;
 
+inline constexpr double kPlate_mm = 100.0;
+
 /// A session of the built program on a fake WoodenHaptics device: a bumpy plate of 100 mm, felt with half a
 /// N/mm; the stylus starts in its home pose, 205 mm above.
 class Session {
  public:
-  explicit Session(Firmware firmware, std::vector<std::string> more_arguments = {});
+  explicit Session(Firmware firmware, std::vector<std::string> more_arguments = {},
+                   double side_mm = kPlate_mm);
 
   /// Until force is given: calibrated by the device's own button (P14) or by key (W8), armed by key.
   void arm();
@@ -39,7 +42,7 @@ class Session {
   /// arms again after a fault.
   void expectForce();
   void expectNoForce();
-  /// Ends by key, expects success, compares the recording with a replay of its own, returns the report.
+  /// Ends by key, expects success, compares the recording with a replay of its own, with the scene that was felt, returns the report.
   nlohmann::json end();
 
   /// What the device felt since `from`; prints it as a row of the table of attacks.
@@ -62,8 +65,8 @@ inline constexpr double kSlew_n_per_ms = 1.0;
 /// No report on stderr of a sanitizer, whichever was built in.
 void expectNoSanitizerReport(const LiveProgram& program);
 
-/// A rough plate of 100 x 100 mm at height 0, as a TIFF.
-void writePlate(const std::string& path);
+/// A rough plate at height 0, as a TIFF.
+void writePlate(const std::string& path, double side_mm = kPlate_mm);
 
 [[nodiscard]] bool eventually(const std::function<bool()>& holds);
 

@@ -65,8 +65,31 @@ TEST_P(LiveSession, PressSmoothAndMarkAreFeltKeptAndReplayedToTheSameBits) {
   EXPECT_EQ(report["ended_by"], "key");
   EXPECT_NEAR(report["scale"].get<double>(), 0.5, 1e-9);
   EXPECT_NEAR(report["felt_stiffness_n_per_mm"].get<double>(), 0.5, 1e-9);
+  EXPECT_TRUE(report["scene"].is_null()) << "the default scene as it is";
   EXPECT_EQ(session->woody.log().ma, (std::array<std::int16_t, 3>{}));
   EXPECT_EQ(session->woody.log().watchdog_fired, 0U);
+}
+
+// The hand does the same and feels an ordinary part at 1:1; what was fitted is written for the replay.
+TEST_P(LiveSession, AScanOfMicrometresOrKilometresIsFeltKeptAndReplayedToTheSameBits) {
+  for (const double side_mm : {5e-3, 5e6}) {
+    std::optional<Session> session;
+    nlohmann::json report;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      session.emplace(GetParam(), std::vector<std::string>{}, side_mm);
+      report = pressSmoothAndMark(*session);
+      if (report["safety"]["faults"] == 0) break;
+    }
+    EXPECT_EQ(report["safety"]["faults"], 0);
+    EXPECT_GT(session->felt("a session on another scale").peak_n,
+              1.6);  // 3 mm of the hand at 1 N/mm, as above
+    EXPECT_GT(report["samples_changed"], 20);
+    EXPECT_GT(report["marked"], 20);
+    EXPECT_NEAR(report["scale"].get<double>() / (side_mm / 200.0), 1.0, 1e-6);
+    EXPECT_NEAR(report["felt_stiffness_n_per_mm"].get<double>(), 1.0, 1e-3);
+    EXPECT_EQ(report["scene"], session->folder.file("session.scene.toml"));
+    EXPECT_EQ(session->program->err().find("warning"), std::string::npos) << session->program->err();
+  }
 }
 
 TEST_P(LiveSession, NothingIsGivenOrEditedUntilThePersonArms) {
