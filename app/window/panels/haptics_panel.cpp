@@ -156,6 +156,17 @@ std::optional<double> rateField(double now_hz) {
   return chosen;
 }
 
+// Beside what is wrong with a scene that was not fitted.
+bool fitButton(const LoopClient& client) {
+  const auto problem = client.feltProblem();
+  if (!problem) return false;
+  writeIn(PanelColour::kWarning, problem->what);
+  return pressButton(
+      "Fit to the scan",
+      "Takes the default stiffness and lengths, so that all of the scan is within the hand's reach "
+      "and felt as a part of ordinary size is. Force, brush and effects stay.");
+}
+
 // Of a scene with sound alone.
 void soundControls(LoopClient& client, Loudness& loudness) {
   if (!client.scene().lists(haptic::EffectKind::kSound)) return;
@@ -194,6 +205,7 @@ LoopRequests hapticsPanel(const PanelContext& context, Parts& parts) {
   endFields();
   if (const auto largest = client.largestStiffness())
     figure("it can hold", trFormat("{:.4g} N/mm at most", *largest));
+  requests.fit_scene = fitButton(client);
   effectTicks(context);
   effectFields(context);
   soundControls(client, parts.settings.loudness);

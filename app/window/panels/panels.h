@@ -79,6 +79,7 @@ void statusPanel(const PanelContext& context, const WindowPicture& picture, cons
 struct LoopRequests {
   std::optional<double> rate_hz;
   std::optional<std::string> device;  ///< words of haptic::openDevice
+  bool fit_scene = false;             ///< LoopClient::fitScene()
 };
 [[nodiscard]] LoopRequests hapticsPanel(const PanelContext& context, Parts& parts);
 /// A number of the scene: what is wrong with it stands beside it while it is typed.

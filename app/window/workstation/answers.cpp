@@ -12,6 +12,7 @@ void Workstation::carryOut(PanelRequests requests) {
   if (requests.sample) parts_.files.makeSample();
   if (requests.loop.rate_hz) setRate(*requests.loop.rate_hz);
   if (requests.loop.device) setDevice(*requests.loop.device);
+  if (requests.loop.fit_scene) fitScene();
   if (requests.answer) carryOut(*std::move(requests.answer));
 }
 

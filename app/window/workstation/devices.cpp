@@ -63,6 +63,21 @@ void Workstation::setDevice(const std::string& words) {
   parts_.picture.requestRedraw();
 }
 
+// As setRate().
+void Workstation::fitScene() {
+  LoopClient& client = *parts_.document.client();
+  parts_.releaseHands();
+  parts_.filters.cancel(client);
+  const engine::Status set = client.fitScene();
+  if (client.finished())
+    end_ = set;
+  else if (!set)
+    parts_.feedback.message(set.error().line(), tr("the scene stays as it is"));
+  else
+    parts_.feedback.status = tr("the scene is fitted to the scan");
+  parts_.picture.requestRedraw();
+}
+
 // A lost graphics device - its driver restarted, it hung, it was unplugged, its memory ran out - loses only
 // the picture: field, history, marks and camera belong to the document.
 void Workstation::losePicture(const engine::Error& why) {

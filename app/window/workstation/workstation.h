@@ -84,6 +84,7 @@ class Workstation {
   void carryOutOfScene(Answer answer);
   void setRate(double hz);
   void setDevice(const std::string& words);
+  void fitScene();
   void setUpDevice(const DeviceSetup& setup);
   void releaseHandsWhenAsked();
   void losePicture(const engine::Error& why);
