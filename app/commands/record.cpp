@@ -364,7 +364,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
 
   const haptic::Workspace& workspace = settings->loop.options.workspace;
   const bool desk = device.profile().space == haptic::DeviceSpace::kDesk;
-  return Report{{"ticks", log.rows()},
+  Report report{{"ticks", log.rows()},
                 {"contact_ticks", again->report.contact_ticks},
                 {"max_force_n", again->report.max_force_n},
                 {"samples_changed", again->report.samples_changed},
@@ -381,7 +381,6 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"rate_hz", options.rate_hz},
                 {"scale", desk ? Report(workspace.scale()) : Report()},
                 {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},
-                {"scene", scene_out.empty() ? Report() : Report(scene_out)},
                 {"missed", outcome->missed},
                 {"over_1_ms", outcome->over_1_ms},
                 {"lateness", timingOf(outcome->lateness)},
@@ -391,6 +390,8 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"safety", safetyOf(*outcome, log.given(), settings->loop.options.limits)},
                 {"device", deviceOf(device, outcome->device)},
                 {"events", eventsOf(outcome->events)}};
+  if (!scene_out.empty()) report["scene"] = scene_out;
+  return report;
 }
 
 constexpr const char* kRecordNotes =

@@ -287,7 +287,7 @@ std::vector<ReportSchema> changing() {
           {"rate_hz", "number", ""},
           {"scale", "number", "field over device; null: the device moves in the field"},
           {"felt_stiffness_n_per_mm", "number", ""},
-          {"scene", "string", "written, to replay with; null: the scene is the one that was given"},
+          {"scene?", "string", "written, to replay with: not the one that was given, or with --scene-out"},
           {"missed", "integer", "ticks"},
           {"over_1_ms", "integer", "ticks"},
           {"lateness", "object", "of the ticks", timing()},
