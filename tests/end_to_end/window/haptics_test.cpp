@@ -173,6 +173,31 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
   expectSilence(*program);
 }
 
+// A force device that need not be plugged in, with a scene of the user that is stable on it in a corner of the scan only.
+TEST_F(HapticsTest, a_scene_that_reaches_a_corner_is_said_to_and_fitted_by_the_button_beside_it) {
+  const std::string scene = folder.file("stiff.toml");
+  std::ofstream(scene) << "[force]\nstiffness_n_per_mm = 20\n[brush]\nradius_samples = 4\n";
+  const auto program = start({scan, "--device", "woodenhaptics", "--scene", scene});
+  const State before = program->until(
+      "the scan", [](const State& s) { return s.value("device", "") != "" && s["settled"] == true; });
+  EXPECT_EQ(before["stiffness_n_per_mm"], 20.0);
+  EXPECT_NE(before["notices"].dump().find("the hand reaches 10 of"), std::string::npos) << before["notices"];
+  User user(display, *program, "fit");
+  for (const char* header : {"Tool", "Filters", "Steps", "Change since the scan"}) (void)user.click(header);
+  (void)user.click("Haptics");
+  (void)user.click("Fit to the scan");
+  const State fitted = program->until(
+      "the fit", [](const State& s) { return s["stiffness_n_per_mm"] != 20.0 && s["settled"] == true; });
+  EXPECT_LT(fitted["stiffness_n_per_mm"], 1.5);
+  EXPECT_NE(fitted["status"].get<std::string>().find("the scene is fitted to the scan"), std::string::npos);
+  program->until("no more to say", [](const State& s) {
+    return s["texts"].dump().find("Fit to the scan") == std::string::npos;
+  });
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
 TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
   const auto program = start({scan});
   User user(display, *program, "effects");
