@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,8 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kLeastShare = 0.01;         // of the samples that are no holes
+constexpr double kLeastAmongNoise = 0.001;   // likewise, of a height among noise: a missed line of a thousand
+constexpr double kNear = 0.02;               // of those with the value: samples near it
 constexpr std::int64_t kFewestSamples = 16;  // samples with the value; other heights
 constexpr double kFlat = 0.04;               // of the samples: share that another height may have
 constexpr double kFlatNeighbour = 0.25;      // of those with the value, likewise
@@ -51,8 +55,11 @@ Sketch sketchOf(const Version& field) {
   const std::int32_t by_row = (grid.height + kSketchSide - 1) / kSketchSide;
   Sketch sketch;
   std::vector<float> heights;
-  for (std::int32_t r = 0; r < grid.height; r += by_row)
-    for (std::int32_t c = 0; c < grid.width; c += by_column) {
+  // Each at another place of its block: a missed line lies in every row of blocks for some of their columns, whichever line it is.
+  for (std::int32_t row = 0; row < grid.height; row += by_row)
+    for (std::int32_t column = 0; column < grid.width; column += by_column) {
+      const std::int32_t r = std::min(row + column / by_column % by_row, grid.height - 1),
+                         c = std::min(column + row / by_row % by_column, grid.width - 1);
       const float z = reader.heightAt(c, r);
       if (std::isnan(z)) continue;
       heights.push_back(z);
@@ -174,8 +181,11 @@ struct Suspect {
   float value = 0.0F;
   double least_ranges = 0.0;    // from the rest
   double least_distance = 0.0;  // [height unit], likewise
+  double least_share = 0.0;     // of the samples that are no holes
+  bool among_noise = false;     // a few others may lie nearer
   bool hole_number = false;     // a number that is written for holes
-  std::int64_t samples = 0;
+  double reach = 0.0;           // [height unit] within which others are counted
+  std::int64_t samples = 0, near = 0;
   float below = -std::numeric_limits<float>::infinity();  // nearest of the rest
   float above = std::numeric_limits<float>::infinity();
 
@@ -185,27 +195,49 @@ struct Suspect {
 };
 
 // Limit for heights as frequent as a lone value: at least half of its share is on the lattice.
-std::ptrdiff_t fewestOnLattice(const Sketch& sketch) {
+std::ptrdiff_t fewestOnLattice(const Sketch& sketch, double share) {
   return std::max<std::ptrdiff_t>(
-      kFewestSamples / 4,
-      static_cast<std::ptrdiff_t>(0.5 * kLeastShare * static_cast<double>(sketch.samples)));
+      kFewestSamples / 4, static_cast<std::ptrdiff_t>(0.5 * share * static_cast<double>(sketch.samples)));
+}
+
+// Whether few samples lie nearer to a height than that, beside those that have it.
+bool standsApart(const std::vector<Level>& levels, std::size_t height, double distance) {
+  const double most = kNear * static_cast<double>(levels[height].samples);
+  std::ptrdiff_t near = 0;
+  const auto isNear = [&](std::size_t i) {
+    return std::abs(double{levels[i].value} - double{levels[height].value}) < distance;
+  };
+  for (std::size_t i = height; i > 0 && isNear(i - 1); --i)
+    if (static_cast<double>(near += levels[i - 1].samples) > most) return false;
+  for (std::size_t i = height + 1; i < levels.size() && isNear(i); ++i)
+    if (static_cast<double>(near += levels[i].samples) > most) return false;
+  return true;
 }
 
 std::vector<Suspect> amongNoise(const Sketch& sketch) {
   std::vector<Suspect> found;
   const std::vector<Level>& levels = sketch.levels;
+  if (levels.size() < 3) return found;
+  const std::ptrdiff_t fewest = fewestOnLattice(sketch, kLeastAmongNoise);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (levels[i].samples < fewestOnLattice(sketch)) continue;
-    Suspect one{levels[i].value};
-    if (i > 0) one.below = levels[i - 1].value;
-    if (i + 1 < levels.size()) one.above = levels[i + 1].value;
-    const Rest rest = restOf(levels, {one.value});
-    if (!(rest.lowest < rest.highest) || one.distance() < kFromNoise * rest.range()) continue;
+    if (levels[i].samples < fewest) continue;
+    const double range = double{levels[i + 1 < levels.size() ? levels.size() - 1 : i - 1].value} -
+                         double{levels[i > 0 ? 0 : 1].value};
+    if (!(range > 0.0) || !standsApart(levels, i, kFromNoise * range)) continue;
     const auto least = leastFromNoise(sketch, i);
-    if (!least || one.distance() < *least * rest.range()) continue;
-    one.least_ranges = *least;
-    found.push_back(one);
+    if (!least || !standsApart(levels, i, *least * range)) continue;
+    found.push_back({.value = levels[i].value,
+                     .least_ranges = *least,
+                     .least_share = kLeastAmongNoise,
+                     .among_noise = true,
+                     .reach = *least * range});
   }
+  // Rare ones of a field that has many say nothing of those that are frequent.
+  if (found.size() > kMostLoneValues)
+    std::erase_if(found, [&](const Suspect& one) {
+      const auto level = std::ranges::find(levels, one.value, &Level::value);
+      return level->samples < fewestOnLattice(sketch, kLeastShare);
+    });
   return found.size() > kMostLoneValues ? std::vector<Suspect>() : found;
 }
 
@@ -218,8 +250,11 @@ std::vector<Suspect> farBeyond(const Sketch& sketch, double least_distance) {
       std::vector<float> values;
       for (std::size_t k = 0; k < count; ++k) {
         const Level& level = k < low ? levels[k] : levels[levels.size() - 1 - (k - low)];
-        if (level.samples < fewestOnLattice(sketch)) break;
-        outer.push_back({level.value, kFarBeyond, least_distance});
+        if (level.samples < fewestOnLattice(sketch, kLeastShare)) break;
+        outer.push_back({.value = level.value,
+                         .least_ranges = kFarBeyond,
+                         .least_distance = least_distance,
+                         .least_share = kLeastShare});
         values.push_back(level.value);
       }
       const Rest rest = restOf(levels, values);
@@ -240,7 +275,11 @@ struct Tally {
 
 Tally tallyOf(const Version& field, std::vector<Suspect>& suspects) {
   Tally tally;
-  for (Suspect& one : suspects) one = {one.value, one.least_ranges, one.least_distance, one.hole_number};
+  for (Suspect& one : suspects) {
+    one.samples = one.near = 0;
+    one.below = -std::numeric_limits<float>::infinity();
+    one.above = std::numeric_limits<float>::infinity();
+  }
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
   std::vector<float> row(static_cast<std::size_t>(grid.width));
@@ -256,11 +295,13 @@ Tally tallyOf(const Version& field, std::vector<Suspect>& suspects) {
         continue;
       }
       tally.rest.take(z);
-      for (Suspect& one : suspects)
+      for (Suspect& one : suspects) {
         if (z < one.value)
           one.below = std::max(one.below, z);
         else
           one.above = std::min(one.above, z);
+        one.near += static_cast<std::int64_t>(std::abs(double{z} - double{one.value}) < one.reach);
+      }
     }
   }
   return tally;
@@ -271,10 +312,11 @@ bool isLone(const Suspect& one, const Tally& tally, const HeightRule& rule) {
     const std::int64_t fewest = std::abs(storedNumber(one.value, rule)) >= kNoHeight ? 1 : kFewestSamples;
     return one.samples >= fewest && isFarFromSurface(one.value, tally.rest, rule);
   }
-  return one.samples >= kFewestSamples &&
-         static_cast<double>(one.samples) > kLeastShare * static_cast<double>(tally.all) &&
-         tally.rest.lowest < tally.rest.highest &&
-         one.distance() >= std::max(one.least_ranges * tally.rest.range(), one.least_distance);
+  if (one.samples < kFewestSamples || !(tally.rest.lowest < tally.rest.highest) ||
+      static_cast<double>(one.samples) <= one.least_share * static_cast<double>(tally.all))
+    return false;
+  if (one.among_noise) return static_cast<double>(one.near) <= kNear * static_cast<double>(one.samples);
+  return one.distance() >= std::max(one.least_ranges * tally.rest.range(), one.least_distance);
 }
 
 std::vector<Suspect> suspectsOf(const Version& field, const HeightRule& rule) {
@@ -288,7 +330,8 @@ std::vector<Suspect> suspectsOf(const Version& field, const HeightRule& rule) {
   }
   std::vector<Suspect> suspects;
   const std::vector<float> numbers = holeNumbers(sketch.levels, rule);
-  for (const float value : numbers) suspects.push_back({value, kWrittenForHoles, 0.0, true});
+  for (const float value : numbers)
+    suspects.push_back({.value = value, .least_ranges = kWrittenForHoles, .hole_number = true});
   if (rule.user_no_data) return suspects;
   for (const float value : numbers)
     std::erase_if(sketch.levels, [&](const Level& level) {
@@ -313,24 +356,34 @@ std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& r
   Tally tally;
   for (int pass = 0; pass < kMostPasses; ++pass) {
     tally = tallyOf(field, suspects);
+    // Heights that the lattice has missed may make the range larger.
+    bool reach = true;
+    for (Suspect& one : suspects) {
+      if (!one.among_noise) continue;
+      const double before = std::exchange(one.reach, one.least_ranges * tally.rest.range());
+      reach = reach && one.reach == before;
+    }
     // Beyond a rare number there may be another, which the lattice missed as well.
     const std::size_t known = suspects.size();
     for (const float end : {tally.rest.lowest, tally.rest.highest})
       if (std::isfinite(end) && writtenForHoles(storedNumber(end, rule)) && tally.rest.range() > 0.0)
-        suspects.push_back({end, kWrittenForHoles, 0.0, true});
-    if (suspects.size() == known) break;
+        suspects.push_back({.value = end, .least_ranges = kWrittenForHoles, .hole_number = true});
+    if (suspects.size() == known && reach) break;
   }
   std::vector<LoneValue> lone;
   lone.reserve(suspects.size());
   for (const Suspect& one : suspects) {
     if (!isLone(one, tally, rule)) continue;
     const float stored = storedNumber(one.value, rule);
+    const std::string& unit = field.grid().height_unit.name;
+    const std::string alone =
+        one.near > 0 ? fmt::format("only {} within {:.6g} {} of that",
+                                   one.near == 1 ? "1 other is" : fmt::format("{} others are", one.near),
+                                   one.reach, unit)
+                     : fmt::format("no other height is within {:.6g} {} of that", one.distance(), unit);
     warnings.push_back(fmt::format(
-        "{:.3g} % of the samples are exactly {} {}, and no other height is within {:.6g} {} of that: if they "
-        "are "
-        "holes{}",
-        100.0 * static_cast<double>(one.samples) / static_cast<double>(tally.all), one.value,
-        field.grid().height_unit.name, one.distance(), field.grid().height_unit.name,
+        "{:.3g} % of the samples are exactly {} {}, and {}: if they are holes{}",
+        100.0 * static_cast<double>(one.samples) / static_cast<double>(tally.all), one.value, unit, alone,
         lone.empty()
             ? fmt::format(", give --no-data {}", stored)
             : fmt::format(" too, convert with the other number and read the result with --no-data {}, "

@@ -1,6 +1,7 @@
 // Holes that a file means and hardly says: in the description of a PNG that Fettle wrote, and as one number
 // far from every height.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -119,18 +120,17 @@ TEST(UndeclaredHoles, TheOptionIsInTheNumbersThatTheFileStores) {
 
 TEST(UndeclaredHoles, SurfacesThatHaveAFlatAreNotDoubted) {
   const TempFolder folder;
-  std::vector<float> steps, few, ground, rare, part;
+  std::vector<float> steps, few, ground, part;
   std::mt19937 random(3);
   for (int i = 0; i < 10000; ++i) {
     const float noise = static_cast<float>(random() % 1000) * 0.001F;
     steps.push_back(static_cast<float>(i % 7) * 10.0F);      // few levels, each held by many
     few.push_back(i % 5 == 0 ? 0.0F : 3.0F + noise * 0.0F);  // two levels
     ground.push_back(i % 3 == 0 ? 0.0F : noise);             // a flat that the rest comes down to
-    rare.push_back(i % 200 == 0 ? -50.0F : noise);           // half a percent
     // Two flats and what lies between them, without noise: a part as it is designed.
     part.push_back(i % 5 < 2 ? 0.0F : i % 5 == 2 ? 18.0F : 8.0F + noise * 10.0F);
   }
-  for (const std::vector<float>& z : {steps, few, ground, rare, part}) {
+  for (const std::vector<float>& z : {steps, few, ground, part}) {
     ASSERT_TRUE(save(makeField(gridOf(100, 100), z), folder.file("flat.tif")));
     FETTLE_LOAD(scan, folder.file("flat.tif"));
     EXPECT_FALSE(warned(scan.warnings, "--no-data")) << scan.warnings.front();
@@ -259,6 +259,75 @@ TEST_F(LoneValues, PartsWithALevelOfTheirOwnAreNotDoubted) {
     floor.push_back(row < 60 ? -150.0F : column < 100 ? 0.0F : 0.01F * static_cast<float>(column - 100));
   }
   for (const std::vector<float>& z : {block, counted, plate, floor, mask, black}) {
+    const auto warnings = said(z);
+    EXPECT_FALSE(warned(warnings, "--no-data")) << warnings.back();
+  }
+}
+
+// 200 x 150 heights about 0.08 in counts of 0.0001, and spikes from 0.04 to 0.3.
+std::vector<float> chip() {
+  constexpr double kCount = 0.0001;
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal(0.08, 0.003);
+  std::vector<float> z(30000);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const double height = i % 1000 == 17 ? 0.04 + 0.26 * static_cast<double>(i) / 30000.0 : normal(random);
+    z[i] = static_cast<float>(std::round(height / kCount) * kCount);
+  }
+  return z;
+}
+
+// A line that was missed is a fraction of a percent, and some other sample may be next to it.
+TEST_F(LoneValues, ZeroesOfALineThatWasMissedAreSaid) {
+  std::vector<float> z = chip();
+  for (std::size_t c = 0; c < 90; ++c) z[c] = 0.0F;
+  z[12345] = 0.0003F;
+  const auto warnings = said(z);
+  EXPECT_TRUE(warned(warnings, "--no-data 0"));
+  EXPECT_TRUE(warned(warnings, "0.3 % of the samples are exactly 0 mm, and only 1 other is within 0.0"));
+  std::vector<float> below = chip();
+  for (std::size_t i = 0; i < below.size(); i += 200) below[i] = -50.0F;
+  EXPECT_TRUE(warned(said(below), "--no-data -50"));
+}
+
+// Whichever line it is, of a field larger than what is looked at first.
+TEST_F(LoneValues, ZeroesOfALineOfALargeFieldAreSaid) {
+  const int wide = 600, high = 700;
+  std::mt19937 random(13);
+  std::normal_distribution<float> normal(5.0F, 0.1F);
+  std::vector<float> noise(static_cast<std::size_t>(wide * high));
+  for (float& height : noise) height = normal(random);
+  for (const bool rows : {true, false})
+    for (const int line : {0, 301, 302}) {
+      std::vector<float> z = noise;
+      for (int k = 0; k < (rows ? wide : high); ++k)
+        z[static_cast<std::size_t>(rows ? line * wide + k : k * wide + line)] = 0.0F;
+      ASSERT_TRUE(save(makeField(gridOf(wide, high), z), folder.file("line.tif")));
+      FETTLE_LOAD(scan, folder.file("line.tif"));
+      EXPECT_TRUE(warned(scan.warnings, "--no-data 0")) << (rows ? "row " : "column ") << line;
+    }
+}
+
+// Rare counts at the ends of noise, counts of every other number, and tops that are flat but for their rims.
+TEST_F(LoneValues, RareHeightsThatOthersLieBesideAreNotDoubted) {
+  std::mt19937 random(14);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<float> bytes, words, coarse, flat, pins, terraces;
+  for (int i = 0; i < 30000; ++i) {
+    const int column = i % 200, row = i / 200;
+    const double noise = normal(random);
+    bytes.push_back(static_cast<float>(0.01 * std::clamp(std::round(128.0 + 25.0 * noise), 0.0, 255.0)));
+    words.push_back(static_cast<float>(0.004 * std::round(8000.0 + 300.0 * noise)));
+    coarse.push_back(static_cast<float>(std::round(3.0 * noise)));
+    // A pin on noisy ground: flat, its walls are sampled.
+    const int out = std::max(std::abs(column - 100), std::abs(row - 75));
+    const double wall = out < 6 ? 10.0 : out < 8 ? static_cast<double>(random() % 1000) * 0.01 : 0.0;
+    flat.push_back(static_cast<float>(out < 8 ? wall : 0.3 * noise));
+    // The same with noise in counts.
+    pins.push_back(static_cast<float>(std::round((out < 8 ? 10.0 : 0.0) * 50.0 + 5.0 * noise) / 50.0));
+    terraces.push_back(static_cast<float>(row / 5 * 3 + (column < 3 ? 50 : 0)));
+  }
+  for (const std::vector<float>& z : {bytes, words, coarse, flat, pins, terraces}) {
     const auto warnings = said(z);
     EXPECT_FALSE(warned(warnings, "--no-data")) << warnings.back();
   }
