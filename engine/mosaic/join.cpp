@@ -38,8 +38,8 @@ double usualPlay(const std::vector<Version>& scans) {
 
 Result<JoinedScans> joinScans(const std::vector<Version>& scans, const JoinOptions& options,
                               JobControl& job) {
-  auto found =
-      overlapMotions(scans, options.places, options.play.value_or(usualPlay(scans)), options.align, job);
+  auto found = overlapMotions(scans, options.places, options.play.value_or(usualPlay(scans)), options.align,
+                              options.names, job);
   if (!found) return tl::unexpected(found.error());
   const auto middles = middlesOf(scans, job);
   if (!middles) return tl::unexpected(middles.error());

@@ -1,6 +1,7 @@
 #include "engine/mosaic/overlap_motions.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -99,8 +100,11 @@ std::vector<glm::dvec2> placesInRows(const std::vector<Version>& scans, std::siz
 
 Result<OverlapMotions> overlapMotions(const std::vector<Version>& scans,
                                       const std::optional<std::vector<glm::dvec2>>& places, double play,
-                                      const AlignOptions& options, JobControl& job) {
+                                      const AlignOptions& options, const std::vector<std::string>& names,
+                                      JobControl& job) {
   constexpr std::int32_t kFewest = 12;  // samples a side
+  assert(names.empty() || names.size() == scans.size());
+  AlignOptions how = options;
   OverlapMotions out;
   for (std::size_t i = 0; i < scans.size(); ++i)
     for (std::size_t j = i + 1; j < scans.size(); ++j) {
@@ -120,7 +124,8 @@ Result<OverlapMotions> overlapMotions(const std::vector<Version>& scans,
         place_a = at_a + lowerLeft(a, rect_a);
         place_b = at_b + lowerLeft(b, rect_b);
       }
-      const auto found = alignFields(pieceAt(a, rect_a, place_a), pieceAt(b, rect_b, place_b), options, job);
+      if (!names.empty()) how.words.first = names[i], how.words.second = names[j];
+      const auto found = alignFields(pieceAt(a, rect_a, place_a), pieceAt(b, rect_b, place_b), how, job);
       if (!found && found.error().kind != ErrorKind::kInput) return tl::unexpected(found.error());
       if (!found) {
         out.failed.push_back({i, j, found.error()});

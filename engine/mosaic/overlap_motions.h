@@ -38,12 +38,13 @@ struct OverlapMotions {
 /// Aligns every two scans that overlap. `places`: where the lower left sample of each lies, roughly [mm]; then the parts of
 /// both that overlap, and so much around them as `play` [mm] allows places to be wrong, are aligned with a
 /// search among themselves. Without places every pair is tried over the whole of both, which finds overlaps of at least a
-/// fifth. A pair that cannot be aligned is no error: others may place its scans.
+/// fifth. A pair that cannot be aligned is no error: others may place its scans. `names`: what its reason calls the scans, as many
+/// as there are, or none: the words of `options`.
 /// Costs, threads: alignFields() of each; memory: two pieces besides, not in a store. Errors: kCancelled. Throws std::bad_alloc.
 [[nodiscard]] Result<OverlapMotions> overlapMotions(const std::vector<Version>& scans,
                                                     const std::optional<std::vector<glm::dvec2>>& places,
                                                     double play, const AlignOptions& options,
-                                                    JobControl& job);
+                                                    const std::vector<std::string>& names, JobControl& job);
 
 /// The middle of each scan, at its middle height, in its field coordinates [mm]. Errors: kCancelled. Throws std::bad_alloc.
 [[nodiscard]] Result<std::vector<glm::dvec3>> middlesOf(const std::vector<Version>& scans, JobControl& job);

@@ -82,13 +82,20 @@ TEST(MosaicCommand, NamesWhatItCannotJoin) {
   writePiece(a, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1});
   writePiece(b, {6.0, 0.0, 0.2, 0.0, 6.0, 0.0, 2});
   writePiece(far, {60.0, 0.0, 0.2, 0.0, 60.0, 0.0, 3});
+  const std::string row = folder.file("row.asc");
+  {
+    std::ofstream file(row);
+    file << "ncols 60\nnrows 1\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+    for (int c = 0; c < 60; ++c) file << c % 7 << ' ';
+  }
   struct Refusal {
     std::vector<std::string> words;
-    const char* text;
+    std::string text;
   };
   for (const Refusal& one :
        {Refusal{{"mosaic", a, b, far, out}, "far.asc"},
         {{"mosaic", a, b, far, out}, "no overlap joins this scan to the first"},
+        {{"mosaic", row, a, out}, "heights of " + row + " are whole"},
         {{"mosaic", a, out}, "needs two scans"},
         {{"mosaic", a, b, out, "--layout", "3x1"}, "3 x 1 places"},
         {{"mosaic", a, b, out, "--overlap", "30"}, "give --layout too"},

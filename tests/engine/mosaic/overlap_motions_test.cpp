@@ -18,6 +18,7 @@
 #include "engine/compare/compare.h"
 #include "engine/mosaic/blended.h"
 #include "tests/engine/mosaic/parts.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
@@ -56,7 +57,7 @@ CutPart cutPart(double noise, double sx = 0.05, double sy = 0.05, bool stated = 
 
 Result<AdjustedPoses> posesOf(const CutPart& cut, const std::optional<std::vector<glm::dvec2>>& places) {
   JobControl job;
-  const auto found = overlapMotions(cut.scans, places, 0.8, {}, job);
+  const auto found = overlapMotions(cut.scans, places, 0.8, {}, {}, job);
   EXPECT_TRUE(found) << found.error().line();
   for (const FailedPair& pair : found->failed)
     std::printf("  pair %zu, %zu: %s\n", pair.first, pair.second, pair.reason.line().c_str());
@@ -213,16 +214,32 @@ TEST(OverlapMotions, OfASurfaceThatRepeatsItselfSayWhichPairsFitElsewhere) {
   };
   const std::vector<Version> scans{waves(0.0, 1), waves(7.8, 2)};
   JobControl job;
-  const auto anywhere = overlapMotions(scans, std::nullopt, 0.8, {}, job);
+  const auto anywhere = overlapMotions(scans, std::nullopt, 0.8, {}, {}, job);
   ASSERT_TRUE(anywhere) << anywhere.error().line();
   ASSERT_EQ(anywhere->repeated.size(), 1U);
   EXPECT_NEAR(glm::length(anywhere->repeated.front().shift), 2.5, 0.03);
   const std::vector<glm::dvec2> places{glm::dvec2(0.0), glm::dvec2(7.8, 0.0)};
-  const auto known = overlapMotions(scans, places, 0.8, {}, job);
+  const auto known = overlapMotions(scans, places, 0.8, {}, {}, job);
   ASSERT_TRUE(known) << known.error().line();
   ASSERT_EQ(known->pairs.size(), 1U);
   EXPECT_NEAR(known->pairs.front().motion.shift.x, 7.8, 0.03);
   EXPECT_TRUE(known->repeated.empty());
+}
+
+// Who joins scans has given files and no A and B.
+TEST(OverlapMotions, AReasonCallsTheScansByTheirNames) {
+  JobControl job;
+  const Version hole = makeField(gridFor(60, 60, 0.1, 0.1), std::vector<float>(3600, kNan)),
+                row = makeField(gridFor(60, 1, 0.1, 0.1), std::vector<float>(60, 0.0F));
+  const std::vector<Version> scans{row, cutPart(kNoise, 0.1, 0.1).scans.front(), hole};
+  const auto found = overlapMotions(scans, std::nullopt, 0.5, {}, {"row.tif", "part.tif", "hole.tif"}, job);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->failed.size(), 3U);
+  const auto reason = [&](std::size_t k) { return found->failed[k].reason; };
+  EXPECT_NE(reason(0).what.find("heights of row.tif are whole"), std::string::npos) << reason(0).line();
+  EXPECT_EQ(reason(0).where, "row.tif");
+  EXPECT_EQ(reason(1).where, "hole.tif");
+  EXPECT_EQ(reason(2).where, "hole.tif");
 }
 
 TEST(OverlapMotions, NeitherInventOverlapsNorHideWhyNot) {
@@ -230,7 +247,7 @@ TEST(OverlapMotions, NeitherInventOverlapsNorHideWhyNot) {
   JobControl job;
   std::vector<Version> scans = cutPart(kNoise, 0.1, 0.1).scans;
   scans.resize(2);
-  const auto apart = overlapMotions(scans, std::vector<glm::dvec2>{{0, 0}, {9, 0}}, 0.5, {}, job);
+  const auto apart = overlapMotions(scans, std::vector<glm::dvec2>{{0, 0}, {9, 0}}, 0.5, {}, {}, job);
   ASSERT_TRUE(apart);
   EXPECT_TRUE(apart->pairs.empty());
   EXPECT_TRUE(apart->failed.empty());
@@ -240,7 +257,7 @@ TEST(OverlapMotions, NeitherInventOverlapsNorHideWhyNot) {
   planes.push_back(makeField(gridFor(60, 60, 0.1, 0.1),
                              std::vector<float>(3600, std::numeric_limits<float>::quiet_NaN())));
   planes.push_back(makeField(gridFor(60, 1, 0.1, 0.1), std::vector<float>(60, 0.0F)));
-  const auto flat = overlapMotions(planes, std::nullopt, 0.5, {}, job);
+  const auto flat = overlapMotions(planes, std::nullopt, 0.5, {}, {}, job);
   ASSERT_TRUE(flat);
   EXPECT_TRUE(flat->pairs.empty());
   EXPECT_EQ(flat->failed.size(), 6U);
@@ -249,7 +266,7 @@ TEST(OverlapMotions, NeitherInventOverlapsNorHideWhyNot) {
   AlignOptions level;
   level.moves = {.shift = false, .rotation = false, .tilt = true};
   planes.resize(2);
-  const auto found = overlapMotions(planes, std::vector<glm::dvec2>{{0, 0}, {3, 0}}, 0.0, level, job);
+  const auto found = overlapMotions(planes, std::vector<glm::dvec2>{{0, 0}, {3, 0}}, 0.0, level, {}, job);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->pairs.size(), 1U);
   EXPECT_NEAR(found->pairs[0].motion.shift.z, -1.0, 1e-6);
