@@ -91,6 +91,13 @@ double memoryOfAll(double all, const std::array<double, 3>& samples, const std::
   return memory[2] * std::pow(std::max(1.0, all / samples[2]), power);
 }
 
+// The error of a sample as one of the file that it is a sample of: the user has named no other.
+tl::unexpected<engine::Error> ofOutput(engine::Error error, const PlannedWork& work,
+                                       const ScratchFolder& folder) {
+  if (error.where.starts_with(folder.path())) error.where = shownOutput(work.out);
+  return tl::unexpected(std::move(error));
+}
+
 engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Version& piece,
                                    const engine::SampleRect& at,
                                    const std::optional<engine::Version>& original,
@@ -102,9 +109,9 @@ engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Versio
   const bool peak_known = engine::resetPeak();
   const engine::Stopwatch watch;
   if (work.write) {
-    if (auto written = work.write(piece, path, job); !written) return tl::unexpected(written.error());
+    if (auto written = work.write(piece, path, job); !written) return ofOutput(written.error(), work, folder);
   } else if (const auto written = engine::exportField(piece, path, writing, job); !written) {
-    return tl::unexpected(written.error());
+    return ofOutput(written.error(), work, folder);
   }
   WritingCost cost{0.0, watch.seconds()};
   if (const std::uint64_t peak = engine::residentMemory().peak; peak_known && peak > before)

@@ -106,10 +106,12 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
     Status copied = database_->execute("VACUUM INTO '" + quoted + "'");
     database_->stopWith(nullptr);
     if (!copied) {
-      // It is not known which of the two files failed.
-      Error error = copied.error();
-      if (error.kind != ErrorKind::kCancelled) error.where = fmt::format("{} to {}", path_, path);
-      return tl::unexpected(error);
+      // A full disk is that of the new file, the old one is only read; of other errors it is not known which of the two failed.
+      // The new one is the one that was asked for, the old one may be one for unsaved work that nobody has named.
+      Error error = file->explained(copied.error());
+      if (error.kind != ErrorKind::kCancelled && error.where != path)
+        error.where = fmt::format("{} (copied from {})", path, path_);
+      return tl::unexpected(std::move(error));
     }
     auto database = Database::open(file->temporaryPath(), DatabaseAccess::kWrite, path);
     if (!database) return tl::unexpected(database.error());

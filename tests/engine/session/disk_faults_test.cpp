@@ -227,7 +227,10 @@ TEST(FullDisk, OfATmpfsKeepsTheWorkUntilThereIsRoomOrAnotherPlace) {
     for (int a = 0; a < 5; ++a) play.act(writer->get());
     EXPECT_GT(settled(**writer).waiting, 1U);
     // In its own folder there is no room for another one either: nothing is left of the try.
-    EXPECT_FALSE((*writer)->saveAs(folder.file("b.fettle"), OriginalStorage::kEmbedded, job));
+    const Status refused = (*writer)->saveAs(folder.file("b.fettle"), OriginalStorage::kEmbedded, job);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().what, "the disk is full, the file was not written");
+    EXPECT_EQ(refused.error().where, folder.file("b.fettle")) << "the file that was asked for";
     EXPECT_FALSE(fs::exists(folder.file("b.fettle")));
     ASSERT_TRUE((*writer)->saveAs(elsewhere.file("b.fettle"), OriginalStorage::kEmbedded, job));
     EXPECT_FALSE((*writer)->status().error);
