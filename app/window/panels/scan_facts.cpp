@@ -18,6 +18,12 @@ ReadAs readAs(double length, const engine::LengthUnit& unit) {
   return {shown.name, 1.0 / shown.per_unit};
 }
 
+// Lengths across a field, that between two samples too.
+ReadAs readAcross(const engine::Grid& grid) {
+  const render::ShownUnit shown = render::fieldUnits(grid, 0.0, 1.0).length;
+  return {shown.name, 1.0 / shown.per_unit};
+}
+
 // To four digits and without an exponent: readAs() leaves lengths of up to 5e4 in their unit.
 std::string plainNumber(double value) {
   return std::abs(value) < 9999.5 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
@@ -30,15 +36,17 @@ std::string sizeText(const ScanThumbnail& picture) {
   return trFormat("{} x {} samples", picture.grid->width, picture.grid->height);
 }
 
+std::string spacingText(const engine::Grid& grid) {
+  const ReadAs as = readAcross(grid);
+  return fmt::format("{:.4g} x {:.4g} {}", grid.spacing_x / as.size, grid.spacing_y / as.size, as.name);
+}
+
 std::string extentText(const ScanThumbnail& picture) {
   if (!picture.grid) return {};
   const engine::Grid& grid = *picture.grid;
-  const double across = grid.width * grid.spacing_x, up = grid.height * grid.spacing_y;
-  const ReadAs whole = readAs(std::max(across, up), grid.lateral_unit);
-  const ReadAs apart = readAs(std::max(grid.spacing_x, grid.spacing_y), grid.lateral_unit);
-  return trFormat("{} x {} {}, {:.4g} x {:.4g} {} apart", plainNumber(across / whole.size),
-                  plainNumber(up / whole.size), whole.name, grid.spacing_x / apart.size,
-                  grid.spacing_y / apart.size, apart.name);
+  const ReadAs as = readAcross(grid);
+  return trFormat("{} x {} {}, {} apart", plainNumber(grid.width * grid.spacing_x / as.size),
+                  plainNumber(grid.height * grid.spacing_y / as.size), as.name, spacingText(grid));
 }
 
 std::string heightsText(const ScanThumbnail& picture) {
@@ -54,8 +62,7 @@ std::string heightsText(const ScanThumbnail& picture) {
 
 std::string cursorText(const ScanThumbnail& picture, const PictureCursor& cursor) {
   const engine::Grid& grid = *picture.grid;
-  const double longest = std::max(grid.width * grid.spacing_x, grid.height * grid.spacing_y);
-  const ReadAs across = readAs(longest, grid.lateral_unit);
+  const ReadAs across = readAcross(grid);
   const std::string place = fmt::format("x {:.4g}  y {:.4g} {}", cursor.column * grid.spacing_x / across.size,
                                         cursor.row * grid.spacing_y / across.size, across.name);
   if (!std::isfinite(cursor.height)) return fmt::format("{}  {}", place, tr("hole"));

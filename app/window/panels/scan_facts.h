@@ -9,7 +9,9 @@ namespace fettle::app {
 
 /// "4096 x 4096 samples"; empty where the file does not tell before it is read.
 [[nodiscard]] std::string sizeText(const ScanThumbnail& picture);
-/// "81.9 x 81.9 mm, 20 x 20 um apart", in units that read well.
+/// "0.02 x 0.02 mm": how far samples lie apart along rows and columns, in the unit in which the window has lengths across a field.
+[[nodiscard]] std::string spacingText(const engine::Grid& grid);
+/// "81.9 x 81.9 mm, 0.02 x 0.02 mm apart", in the same unit.
 [[nodiscard]] std::string extentText(const ScanThumbnail& picture);
 /// "heights -0.31 to 12.4 mm", "about" where not all was read; empty without heights.
 [[nodiscard]] std::string heightsText(const ScanThumbnail& picture);

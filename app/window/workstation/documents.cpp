@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/files/reading_fields.h"
+#include "app/window/panels/scan_facts.h"
 #include "app/window/scene_edits.h"
 
 namespace fettle::app {
@@ -132,9 +133,8 @@ void Workstation::startDocument(Document document) {
                                   tr("I shows them as they are stored")});
   if (document.recovered)
     p.feedback.notices.push_back({trFormat("{} unsaved steps were restored", client.history().number()), ""});
-  p.feedback.status = trFormat("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width,
-                               grid.height, grid.spacing_x * p.units.length.per_unit,
-                               grid.spacing_y * p.units.length.per_unit, p.units.length.name);
+  p.feedback.status =
+      trFormat("{}: {} x {} samples, {}", p.document.fileName(), grid.width, grid.height, spacingText(grid));
   window_->setTitle(p.document.fileName() + " - Fettle");
 }
 
