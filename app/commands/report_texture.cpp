@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -118,8 +119,8 @@ engine::Status addTexture(ReportDraft& draft, MeasuredStates& found) {
       tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                           reports.back()["tilt_x"].get<double>(), reports.back()["tilt_y"].get<double>());
   }
-  const std::vector<ArealLine> lines =
-      arealLines(reports, unitRead(render::fieldUnits(draft.imported.field.grid(), 0.0, 1.0).length));
+  const std::vector<ArealLine> lines = arealLines(
+      reports, unitRead(render::fieldUnits(draft.imported.field.grid(), 0.0, 1.0).length), std::nullopt);
   addScale(draft.report, draft.options.scale);
   std::string scale = scaleText(draft.report, "; ");
   if (const std::string layer = layerText(layerOver(draft.imported.field)); !layer.empty())

@@ -85,10 +85,45 @@ constexpr ArealGroup kArealGroups[] = {
     {"feature", "Feature", "Spd Svd Spc Svc S5p S5v S10z Sha Sda Shv Sdv"},
 };
 
-// Of the root mean square height: one unit for all rows. The scan's where there is none.
-ReadAs readHeightsAs(const Report& report) {
+// Of the root mean square height. The scan's where there is none.
+ReadAs unitOfSq(const Report& report) {
   const Report& sq = report["sq"];
   return readLengthAs(sq.is_null() ? 0.0 : sq.get<double>(), report["unit_mm"], report["unit"]);
+}
+
+// Whether a number has no exponent with the five digits that rows have, and at most two zeros behind its point.
+bool isReadable(double shown) {
+  return shown >= 1e-3 && shown < 99999.5;
+}
+
+// One unit for all rows of heights, of volumes, which are heights too, and for these of all reports: of those in which the most are
+// readable, `usual` or the nearest to it. Single spikes make Sz thousands of times Sq, and of what a filter leaves Vmp is some
+// hundredths of it.
+ReadAs readHeightsAs(std::span<const Report> reports, const ReadAs& usual) {
+  const double unit_mm = reports.front()["unit_mm"];
+  const std::string unit = reports.front()["unit"];
+  std::vector<double> heights;
+  for (const Report& report : reports) {
+    const auto take = [&heights](const Report& height) {
+      if (!height.is_null() && height.get<double>() != 0.0) heights.push_back(std::abs(height.get<double>()));
+    };
+    for (const ArealRow& row : kArealRows)
+      if ((row.quantity == Quantity::kHeight || row.quantity == Quantity::kVolume) &&
+          report.contains(row.key))
+        take(report[row.key]);
+    if (report.contains("sdc")) take(report["sdc"]["height"]);
+  }
+  const auto readable = [&heights](const ReadAs& as) {
+    return std::ranges::count_if(heights, [&as](double height) { return isReadable(height / as.size); });
+  };
+  const auto away = [&usual](const ReadAs& as) { return std::abs(std::log(as.size / usual.size)); };
+  ReadAs best = usual;
+  for (const double mm : {1e3, 1.0, 1e-3, 1e-6}) {
+    const ReadAs other = readLengthAs(1.5 * mm / unit_mm, unit_mm, unit);
+    const auto more = readable(other) - readable(best);
+    if (more > 0 || (more == 0 && away(other) < away(best))) best = other;
+  }
+  return best;
 }
 
 struct Shown {
@@ -311,7 +346,7 @@ void addNoise(Report& report, const ArealNoise& noise, const engine::Grid& grid)
 }
 
 void printAreal(const Report& report) {
-  const ReadAs height = readHeightsAs(report);
+  const ReadAs height = readHeightsAs({&report, 1}, unitOfSq(report));
   const ReadAs length = readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
   const bool noise = report.contains("noise");
   if (noise)
@@ -366,9 +401,10 @@ void printAreal(const Report& report) {
   }
 }
 
-std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across) {
+std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across,
+                                  const std::optional<ReadAs>& heights) {
   const Report& first = reports.front();
-  const ReadAs height = readHeightsAs(first);
+  const ReadAs height = readHeightsAs(reports, heights ? *heights : unitOfSq(first));
   std::vector<ArealLine> lines;
   for (const ArealGroup& group : kArealGroups) {
     for (const ArealRow& row : kArealRows) {

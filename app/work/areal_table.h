@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,9 +51,11 @@ struct ArealLine {
   std::vector<std::string> values;   ///< one for each report: a figure, or the reason why none is stated
   std::vector<std::string> without;  ///< without noise, "12.3 +- 0.2"; empty where it is not stated
 };
-/// The parameters that the reports of addAreal and addChosen have: heights in the unit in which those of the first read at ease,
-/// lengths across the field in that of everything beside them, `across`.
-[[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across);
+/// The parameters that the reports of addAreal and addChosen have: lengths across the field in the unit of everything beside them,
+/// `across`; heights in one unit, too, which is that of everything beside them, `heights` (nothing: that in which Sq of the first
+/// reads at ease), unless more of them are readable in another.
+[[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports, const ReadAs& across,
+                                                const std::optional<ReadAs>& heights);
 
 /// The same lines without values and units: of parameters that are still to be measured, with Sdc or without.
 enum class WithSdc : std::uint8_t { kNo, kYes };

@@ -194,9 +194,10 @@ engine::Result<MeasuredState> measuredState(const engine::Version& field, const 
 
 }  // namespace
 
-void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across) {
+void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across,
+                          const ReadAs& heights) {
   asked_ = options;
-  work_.begin([field = client.newest(), scan = client.original(), seen, across,
+  work_.begin([field = client.newest(), scan = client.original(), seen, across, heights,
                what = options](engine::JobControl& job) -> engine::Result<Work> {
     Work work{field, {}};
     work.figures.options = what;
@@ -230,7 +231,7 @@ void MeasureTool::measure(const LoopClient& client, const engine::SampleRect& se
     work.figures.samples = state->report["samples"].get<std::int64_t>();
     reports.push_back(std::move(state->report));
     work.figures.curves.push_back(std::move(state->curves));
-    work.figures.lines = arealLines(reports, across);
+    work.figures.lines = arealLines(reports, across, heights);
     return work;
   });
 }

@@ -48,7 +48,9 @@ class MeasureTool {
   };
 
   /// Measures `options` on the newest field; `seen`: the rectangle that is visible. One that is empty is refused by a notice of poll().
-  void measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across);
+  /// `across`, `heights`: the units of the window, as of arealLines().
+  void measure(const LoopClient& client, const engine::SampleRect& seen, const ReadAs& across,
+               const ReadAs& heights);
   void cancel() noexcept { work_.cancel(); }
   /// Takes over results. True when something visible changed.
   [[nodiscard]] bool poll(const LoopClient& client, std::vector<Notice>& notices) {

@@ -279,7 +279,7 @@ void measurePanel(const PanelContext& context, MeasureTool& measure, const Windo
   ImGui::BeginDisabled(measure.busy());
   if (pressButton("Measure now", "Surface texture of the field as it is now, and of the scan beside it."))
     measure.measure(context.client, picture.seenRect(context.client.field().grid()),
-                    unitRead(context.units.length));
+                    unitRead(context.units.length), unitRead(context.units.height));
   ImGui::EndDisabled();
   sameLineIfFits("own ratios", ItemKind::kTick);
   tickBox(

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -28,7 +30,7 @@ TEST(ArealTable, ARoundedDirectionIsBelow180Degrees) {
     addAreal(report, measured, {}, grid);
     report["noise"] = {
         {"figures", Report::array({{{"parameter", "std"}, {"without", 179.96}, {"error", 0.3}}})}};
-    const auto lines = arealLines({report}, {"mm", 1.0});
+    const auto lines = arealLines({report}, {"mm", 1.0}, std::nullopt);
     const auto found = std::ranges::find(lines, "Std", &ArealLine::name);
     ASSERT_NE(found, lines.end());
     EXPECT_EQ(found->values.front(), "0");
@@ -50,11 +52,50 @@ TEST(ArealTable, LengthsAcrossAreInTheUnitOfTheWindow) {
   measured.spatial.sal = 2.5e-5;  // mm
   Report report;
   addAreal(report, measured, {}, grid);
-  const auto lines = arealLines({report}, unitRead({"nm", 1e9}));
+  const auto lines = arealLines({report}, unitRead({"nm", 1e9}), unitRead({"nm", 1e9}));
   const auto found = std::ranges::find(lines, "Sal", &ArealLine::name);
   ASSERT_NE(found, lines.end());
   EXPECT_EQ(found->unit, "nm");
   EXPECT_EQ(found->values.front(), "25");
+}
+
+engine::ArealParameters heightsOf(double sq, double sz, double vmp) {
+  engine::ArealParameters measured;
+  measured.samples = 100;
+  measured.sq = measured.sa = sq;
+  measured.sp = measured.sv = measured.sz = sz;
+  measured.ratio.vmp = vmp;
+  return measured;
+}
+
+// The unit and the numbers of Sq, Sz and Vmp [mm] beside a colour bar in `window`.
+std::vector<std::string> shownHeights(const engine::ArealParameters& measured, const ReadAs& window) {
+  engine::Grid grid;
+  grid.width = grid.height = 10;
+  Report report;
+  addAreal(report, measured, {}, grid);
+  std::vector<std::string> shown;
+  for (const ArealLine& line : arealLines({report}, {"mm", 1.0}, window))
+    for (const char* name : {"Sq", "Sz", "Vmp"})
+      if (line.name == name) shown.push_back(line.values.front() + " " + line.unit);
+  return shown;
+}
+
+// Heights are in the unit of the colour bar, not in one of Sq's own.
+TEST(ArealTable, HeightsAreInTheUnitOfTheWindowWhereAllAreReadableInIt) {
+  EXPECT_EQ(shownHeights(heightsOf(0.5, 12.0, 0.01), {"mm", 1.0}),
+            (std::vector<std::string>{"0.5 mm", "12 mm", "0.01 mm3/mm2"}));
+  EXPECT_EQ(shownHeights(heightsOf(0.5, 12.0, 0.01), {"um", 1e-3}),
+            (std::vector<std::string>{"500 um", "12000 um", "10 um3/um2"}));
+}
+
+TEST(ArealTable, HeightsAreInAnotherUnitWhereMoreAreReadable) {
+  // A filter leaves micrometres of millimetres.
+  EXPECT_EQ(shownHeights(heightsOf(5e-4, 3e-3, 2e-5), {"mm", 1.0}),
+            (std::vector<std::string>{"0.5 um", "3 um", "0.02 um3/um2"}));
+  // One spike.
+  EXPECT_EQ(shownHeights(heightsOf(0.9, 140.0, 0.02), {"um", 1e-3}),
+            (std::vector<std::string>{"0.9 mm", "140 mm", "0.02 mm3/mm2"}));
 }
 
 // What is not stated with noise is not stated without either, for the reason that it has.
