@@ -45,7 +45,7 @@ constexpr Row kRows[] = {
 
     {kAxisX, 0xE2505CFF, 0xE2505CFF},        {kAxisY, 0x74B22AFF, 0x74B22AFF},
     {kAxisZ, 0x428AEEFF, 0x428AEEFF},        {kAxisLetter, 0x0C0E12FF, 0x0C0E12FF},
-    {kAxisPointed, 0xFFFFFFFF, 0xFFFFFFFF},  {kAxisHollow, 0x14161BE6, 0x14161BE6},
+    {kAxisPointed, 0xFFFFFFFF, 0xFFFFFFFF},  {kAxisHollow, 0x14161BFF, 0x14161BFF},
     {kLasso, 0xFFAA28FF, 0xFFAA28FF},        {kLassoRim, 0x000000A0, 0x000000A0},
     {kSplitHandle, 0xFFFFFFDC, 0xFFFFFFDC},
 };
@@ -90,6 +90,9 @@ constexpr PanelPair kPairs[] = {
     {kAxisLetter, kAxisX, kTextContrast},
     {kAxisLetter, kAxisY, kTextContrast},
     {kAxisLetter, kAxisZ, kTextContrast},
+    {kAxisX, kAxisHollow, kTextContrast},
+    {kAxisY, kAxisHollow, kTextContrast},
+    {kAxisZ, kAxisHollow, kTextContrast},
 
     {kTick, kPanel, kLineContrast},
     {kTick, kPopup, kLineContrast},
@@ -118,9 +121,6 @@ constexpr PanelPair kPairs[] = {
     {kProfileBefore, kChart, kLineContrast},
     {kCursors, kChart, kLineContrast},
     {kOtherCursors, kChart, kLineContrast},
-    {kAxisX, kAxisHollow, kLineContrast},
-    {kAxisY, kAxisHollow, kLineContrast},
-    {kAxisZ, kAxisHollow, kLineContrast},
 };
 
 }  // namespace panel_table

@@ -64,7 +64,7 @@ enum class PanelColour : std::uint8_t {
   kAxisZ,
   kAxisLetter,
   kAxisPointed,
-  kAxisHollow,  ///< under what is half transparent
+  kAxisHollow,  ///< of the ends below zero, under letters of the axes' colours
   kLasso,
   kLassoRim,
   kSplitHandle,

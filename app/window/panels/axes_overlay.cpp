@@ -11,16 +11,15 @@ using render::PanelColour;
 // Usual for x, y and z; told apart by the letters, too, where colours are not.
 constexpr PanelColour kAxisColours[] = {PanelColour::kAxisX, PanelColour::kAxisY, PanelColour::kAxisZ};
 constexpr const char* kAxisLetters[] = {"x", "y", "z"};
-constexpr float kFarEnd = 0.35F;  // opacity of the balls at the ends below zero
-
-ImU32 withOpacity(ImU32 colour, float opacity) {
-  ImVec4 c = ImGui::ColorConvertU32ToFloat4(colour);
-  c.w *= opacity;
-  return ImGui::ColorConvertFloat4ToU32(c);
-}
+constexpr const char* kBelowZero[] = {"-x", "-y", "-z"};
 
 ImVec2 pixel(const glm::dvec2& p) {
   return ImVec2(static_cast<float>(p.x), static_cast<float>(p.y));
+}
+
+void letterIn(ImDrawList& list, const ImVec2& middle, const char* letter, ImU32 colour) {
+  const ImVec2 size = ImGui::CalcTextSize(letter);
+  list.AddText(ImVec2(middle.x - 0.5F * size.x, middle.y - 0.55F * size.y), colour, letter);
 }
 
 }  // namespace
@@ -36,15 +35,11 @@ void axesOverlay(const AxesGizmo& gizmo, const glm::dvec2& cursor, float scale) 
     if (ball.positive) {
       list.AddLine(pixel(gizmo.middle()), at, colour, 2.5F * scale);
       list.AddCircleFilled(at, radius, colour);
-      const char* const letter = kAxisLetters[ball.axis];
-      const ImVec2 size = ImGui::CalcTextSize(letter);
-      list.AddText(ImVec2(at.x - 0.5F * size.x, at.y - 0.55F * size.y), colourOf(PanelColour::kAxisLetter),
-                   letter);
+      letterIn(list, at, kAxisLetters[ball.axis], colourOf(PanelColour::kAxisLetter));
     } else {
-      const float opacity = ball.action ? kFarEnd : 0.5F * kFarEnd;
       list.AddCircleFilled(at, radius, colourOf(PanelColour::kAxisHollow));
-      list.AddCircleFilled(at, radius, withOpacity(colour, opacity));
-      list.AddCircle(at, radius, withOpacity(colour, ball.action ? 1.0F : kFarEnd), 0, 1.5F * scale);
+      letterIn(list, at, kBelowZero[ball.axis], colour);
+      list.AddCircle(at, radius, colour, 0, 1.5F * scale);
     }
     if (&ball == meant)
       list.AddCircle(at, radius + 2.0F * scale, colourOf(PanelColour::kAxisPointed), 0, 2.0F * scale);
