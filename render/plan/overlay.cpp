@@ -105,6 +105,34 @@ NoteLines noteLines(Pen& pen, const std::string& note, double room, int px) {
   return {};
 }
 
+struct TitleLines {
+  std::vector<std::string> lines;
+  int px = 0;
+};
+
+// First smaller, then in lines of whole words one below the other, and only what that leaves no room for is cut: two titles that
+// begin alike are told apart by the numbers at their ends.
+TitleLines titleLines(Pen& pen, const std::string& title, double room, int px) {
+  constexpr std::size_t kMost = 3;
+  const int least = std::min(px, std::max(10, static_cast<int>(std::lround(0.7 * px))));
+  if (const int whole = pen.sizeFor({title}, room, px, kBold); whole >= least) return {{title}, whole};
+  TitleLines found{{}, least};
+  std::vector<std::string>& lines = found.lines;
+  for (std::size_t from = 0; from < title.size();) {
+    const std::size_t to = std::min(title.find(' ', from), title.size());
+    const std::string word = title.substr(from, to - from);
+    from = to + 1;
+    const std::string longer = lines.empty() ? std::string() : lines.back() + " " + word;
+    const bool last = lines.size() == kMost;
+    if (!lines.empty() && (last || pen.glyphs().width(longer, least, kBold) <= room))
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+  }
+  for (std::string& line : lines) line = pen.fitted(line, room, least, kBold);
+  return found;
+}
+
 void colourBar(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
                const Palette& palette, std::vector<std::string>& warnings) {
   const double s = layout.scale;
@@ -336,8 +364,12 @@ std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
   Pen pen(quads, glyphs);
   for (std::size_t i = 0; i < layout.plots.size() && i < decorations.titles.size(); ++i) {
     const Rectangle& plot = layout.plots[i];
-    const std::string title = pen.fitted(decorations.titles[i], plot.width, layout.title_px, kBold);
-    pen.text(plot.x, plot.y - layout.title_above, title, layout.title_px, kBold, palette.ink);
+    const TitleLines title = titleLines(pen, decorations.titles[i], plot.width, layout.title_px);
+    double y = plot.y - layout.title_above;
+    for (const std::string& line : title.lines) {
+      pen.text(plot.x, y, line, title.px, kBold, palette.ink);
+      y += 1.2 * title.px;
+    }
   }
   if (decorations.colours) colourBar(pen, layout, view, decorations, palette, warnings);
   bottomLine(pen, layout, view, decorations, palette, warnings);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -32,31 +33,39 @@ void drawLasso(const Lasso& lasso, float scale) {
   }
 }
 
-// Words over the picture, in its middle or over its last plot.
-void labelOver(const char* id, const char* words, const ImVec2& middle) {
+// Words over the picture, in its middle or over its last plot, in lines that are no wider than that.
+void labelOver(const char* id, const char* words, const ImVec2& middle, float widest) {
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, ImVec2(0.5F, 0.0F));
   // A window that takes its size from what is in it is seen a frame later, when the key may have been released.
-  const ImVec2 text = ImGui::CalcTextSize(words), padding = ImGui::GetStyle().WindowPadding;
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const float room = std::max(widest - 2.0F * padding.x, 1.0F);
+  const ImVec2 text = ImGui::CalcTextSize(words, nullptr, false, room);
   ImGui::SetNextWindowSize(ImVec2(text.x + 2.0F * padding.x, text.y + 2.0F * padding.y));
   ImGui::Begin(id, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PushTextWrapPos(padding.x + room);
   ImGui::TextUnformatted(words);
+  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 
 // Of the picture's width, below the titles.
 ImVec2 placeOver(const Parts& parts, double share, float scale) {
   const render::Rectangle area = parts.window.pictureArea();
-  constexpr float kBelow = 12.0F, kBelowTitles = 34.0F;
+  constexpr float kBelow = 12.0F, kBelowTitles = 60.0F;  // of three lines
   return ImVec2(static_cast<float>(area.x) + static_cast<float>(share * area.width),
                 static_cast<float>(area.y) + (share == 0.5 ? kBelow : kBelowTitles) * scale);
 }
 
+float widthOf(const Parts& parts, double share) {
+  return static_cast<float>(share * parts.window.pictureArea().width);
+}
+
 // Who looks at what was must know it.
 void beforeLabel(const Parts& parts, float scale) {
-  labelOver("##before", tr("before: the scan as it was"), placeOver(parts, 0.5, scale));
+  labelOver("##before", tr("before: the scan as it was"), placeOver(parts, 0.5, scale), widthOf(parts, 1.0));
 }
 
 // Means are smoother than what comes of them: who judges a filter by them is misled.
@@ -66,7 +75,8 @@ void coarseLabel(const Parts& parts, float scale) {
   if (plots < 2 || !(filters || heights)) return;
   // What is computed is the last plot; in one plot with a line it is the right part.
   const double share = 1.0 - 0.5 / static_cast<double>(plots);
-  labelOver("##coarse", tr("coarse as yet: smoother than the result"), placeOver(parts, share, scale));
+  labelOver("##coarse", tr("coarse as yet: smoother than the result"), placeOver(parts, share, scale),
+            widthOf(parts, 1.0 / static_cast<double>(plots)));
 }
 
 }  // namespace

@@ -29,15 +29,19 @@ class Decorated {
     warnings.clear();
     return decorationQuads(layout(), view_, content, palette, glyphs_, warnings);
   }
-  [[nodiscard]] Layout layout() const { return layOut(view_, Decoration::kFull, 1, Titles::kAbove); }
+  [[nodiscard]] Layout layout() const { return layOut(view_, Decoration::kFull, panels_, Titles::kAbove); }
   [[nodiscard]] const Palette& palette() const { return palette_; }
-  void setWidth(int width) { view_.width = width; }
+  void setWidth(int width, int panels = 1) {
+    view_.width = width;
+    panels_ = panels;
+  }
 
   DecorationContent content;
   std::vector<std::string> warnings;
 
  private:
   View view_;
+  int panels_ = 1;
   Glyphs glyphs_;
   Palette palette_;
 };
@@ -210,6 +214,35 @@ TEST(Titles, ThatAreTooLongEndWithAnEllipsisAfterAWholeLetter) {
   EXPECT_LE(end, right);
   const double one = cut[1].pixels.x - cut[0].pixels.x;
   EXPECT_GT(end + 1.5 * one, right);
+}
+
+// Beside each other in a narrow window titles become smaller, then several lines, and stay over their own plots.
+TEST(Titles, StayWholeAndOverTheirPlotsWhereTheseAreNarrow) {
+  Decorated picture;
+  int narrowest = 0;
+  for (int width = 1280; width >= 260; width -= 10) {
+    picture.setWidth(width, 3);
+    picture.content.titles = {"", "", ""};
+    const std::size_t others = letters(picture.quads());
+    picture.content.titles = {"unchanged", "Box 13 x 13", "Median 5 x 5, 12 passes"};
+    const std::vector<gpu::Quad> quads = picture.quads();
+    const std::size_t drawn = letters(quads) - others;
+    // As many as the letters that are no blanks.
+    constexpr std::size_t kAll = 9 + 8 + 18;
+    if (drawn == kAll) narrowest = width;
+    std::size_t k = 0;
+    for (const gpu::Quad& q : quads) {
+      if (k == drawn) break;
+      ++k;
+      const bool inside = std::ranges::any_of(picture.layout().plots, [&](const Rectangle& plot) {
+        return q.pixels.x >= static_cast<float>(plot.x) - 1.0F &&
+               q.pixels.z <= static_cast<float>(plot.x + plot.width) + 1.0F;
+      });
+      EXPECT_TRUE(inside) << width << ": " << q.pixels.x << " to " << q.pixels.z;
+    }
+  }
+  // Plots of some 80 pixels.
+  EXPECT_LE(narrowest, 400);
 }
 
 }  // namespace
