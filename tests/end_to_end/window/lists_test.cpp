@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tests/end_to_end/window/window_fixture.h"
+#include "tests/end_to_end/window/work_panels.h"
 
 namespace fettle::tests {
 namespace {
@@ -79,6 +80,32 @@ TEST_F(ListsTest, two_clicks_on_an_entry_of_a_menu_do_nothing_to_the_scan_below_
   EXPECT_TRUE(after["under_cursor"].is_array()) << "no scan lies there";
   EXPECT_EQ(after["steps"], 0);
   quit(user);
+}
+
+TEST_F(WindowTest, the_wheel_goes_on_with_the_panels_where_a_list_ends) {
+  openPanels(folder, {"Steps", "Change since the scan", "Colours", "Display"});
+  const auto program = start({scan});
+  User user(display, *program, "wheel");
+  (void)opened(*program);
+  for (int i = 0; i < 12; ++i) (void)user.key("ctrl+i");
+  const auto undo = [&] {
+    const State now = program->now();
+    for (const State& text : now["texts"])
+      if (text["text"] == "Undo") return User::Place{text["at"][0], text["at"][1]};
+    ADD_FAILURE() << "no button Undo: " << program->now()["texts"].dump();
+    return User::Place{};
+  };
+  // The newest step is at the list's end.
+  const User::Place before = undo();
+  user.at({before.x, before.y + 60});
+  (void)user.wheel(1);
+  EXPECT_EQ(undo().y, before.y) << "the list alone";
+  (void)user.wheel(-1);
+  EXPECT_EQ(undo().y, before.y) << "back to its end";
+  (void)user.look("at its end");
+  (void)user.wheel(-1);
+  EXPECT_LT(undo().y, before.y) << "and on with the panels";
+  (void)quitWithoutSaving(user);
 }
 
 }  // namespace
