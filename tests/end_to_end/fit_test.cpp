@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <regex>
 #include <set>
@@ -32,6 +33,19 @@ void writePart(const std::string& path) {
       out << z << ' ';
     }
     out << '\n';
+  }
+}
+
+// 81 x 61 heights [mm] about the middle of a field, 0.08 mm apart, with normal noise. ESRI ASCII.
+void writeNoisy(const std::string& path, double noise_mm,
+                const std::function<double(double x, double y)>& height) {
+  std::ofstream out(path);
+  out << "ncols 81\nnrows 61\nxllcenter 0\nyllcenter 0\ncellsize 0.08\n";
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, noise_mm);
+  for (int i = 0; i < 81 * 61; ++i) {
+    const double x = 0.08 * (i % 81 - 40), y = 0.08 * (i / 81 - 30);
+    out << height(x, y) + noise(random) << (i % 81 == 80 ? '\n' : ' ');
   }
 }
 
@@ -94,16 +108,7 @@ TEST(FitCommand, FitsBothSidesAndWritesWhatItSays) {
 TEST(FitCommand, WarnsOfWhatNoiseMovesOnAverage) {
   const TempFolder folder;
   const std::string scan = folder.file("ball.asc");
-  {
-    std::ofstream out(scan);
-    out << "ncols 81\nnrows 61\nxllcenter 0\nyllcenter 0\ncellsize 0.08\n";
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> noise(0.0, 0.1);
-    for (int i = 0; i < 81 * 61; ++i) {
-      const double x = 0.08 * (i % 81 - 40), y = 0.08 * (i / 81 - 30);
-      out << std::sqrt(36.0 - x * x - y * y) + noise(random) << (i % 81 == 80 ? '\n' : ' ');
-    }
-  }
+  writeNoisy(scan, 0.1, [](double x, double y) { return std::sqrt(36.0 - x * x - y * y); });
   const std::vector<std::string> words{"fit", scan, "--unit", "mm", "--shape", "sphere"};
   const auto ball = fettleJson(words)["fits"][0];
   EXPECT_LT(ball["radius_bias_mm"].get<double>(), -ball["radius_error_mm"].get<double>());
@@ -121,16 +126,7 @@ TEST(FitCommand, WarnsOfWhatNoiseMovesOnAverage) {
 TEST(FitCommand, DoesNotWarnOfTheLengthOfAnAxis) {
   const TempFolder folder;
   const std::string scan = folder.file("cone.asc");
-  {
-    std::ofstream out(scan);
-    out << "ncols 81\nnrows 61\nxllcenter 0\nyllcenter 0\ncellsize 0.08\n";
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> noise(0.0, 0.003);
-    for (int i = 0; i < 81 * 61; ++i) {
-      const double x = 0.08 * (i % 81 - 40), y = 0.08 * (i / 81 - 30);
-      out << 0.6 * std::hypot(x, y) + noise(random) << (i % 81 == 80 ? '\n' : ' ');
-    }
-  }
+  writeNoisy(scan, 0.003, [](double x, double y) { return 0.6 * std::hypot(x, y); });
   const Outcome cone = fettle({"fit", scan, "--unit", "mm", "--shape", "cone"});
   EXPECT_EQ(cone.status, 0);
   EXPECT_EQ(cone.err.find("noise moves the axis"), std::string::npos) << cone.err;
