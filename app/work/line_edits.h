@@ -18,7 +18,7 @@ namespace fettle::app {
 
 /// A stroke along an edge, and the marks it has set.
 struct LineStroke {
-  std::span<const glm::dvec2> points;     ///< as MarkStroke
+  std::span<const glm::dvec2> points;     ///< as one of MarkStroke::pieces
   const engine::Version &before, &after;  ///< the field before the stroke and at its end
   double mark_radius = 0.0;               ///< of the marking brush [samples]
 };

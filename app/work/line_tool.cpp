@@ -50,9 +50,24 @@ LineFigures figuresOf(const EdgeLine& line, const engine::Grid& grid) {
 // Where a stroke is, in the scan's own coordinates.
 std::string middleOf(const MarkStroke& stroke) {
   const engine::Grid& grid = stroke.after.grid();
-  const glm::dvec2 at = stroke.points[stroke.points.size() / 2];
+  const std::vector<glm::dvec2>& longest =
+      *std::ranges::max_element(stroke.pieces, {}, [](const auto& piece) { return piece.size(); });
+  const glm::dvec2 at = longest[longest.size() / 2];
   return trFormat("at x {:.6g}, y {:.6g}", grid.origin_x + at.x * grid.spacing_x,
                   grid.origin_y + at.y * grid.spacing_y);
+}
+
+// One change of a whole stroke, so that undo, Cancel and notices count what a hand has done and not how many holes it went over.
+engine::Result<engine::Version> linesAlong(const MarkStroke& stroke, const engine::Version& base,
+                                           double radius, const engine::LocateOptions& options,
+                                           engine::JobControl& job) {
+  engine::Version changed = base;
+  for (const auto& piece : stroke.pieces) {
+    auto drawn = drawLine(changed, {piece, stroke.before, stroke.after, radius}, options, job);
+    if (!drawn) return drawn;
+    changed = *std::move(drawn);
+  }
+  return changed;
 }
 
 }  // namespace
@@ -65,7 +80,7 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
     if (stroke->tool == haptic::Tool::kMark)
       edit.ask(std::string(kLineOfStroke),
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
-                 return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
+                 return linesAlong(*stroke, base, radius, options, job);
                },
                {trFormat("no edge was found along the stroke {}", middleOf(*stroke)),
                 textOf("it stays a mark"), textOf("strokes lie along no edge: they stay marks")});
@@ -73,7 +88,9 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
       edit.ask(textOf("Erase edge line"),
                [stroke, radius](const engine::Version& base,
                                 engine::JobControl&) -> engine::Result<engine::Version> {
-                 return eraseLines(base, stroke->points, radius + 1.0);
+                 engine::Version changed = base;
+                 for (const auto& piece : stroke->pieces) changed = eraseLines(changed, piece, radius + 1.0);
+                 return changed;
                });
   }
 }

@@ -314,7 +314,7 @@ void LoopClient::take(haptic::LoopEvent&& event) {
 // The event comes before the step of the stroke, if it makes one.
 void LoopClient::endPath(const haptic::LoopEvent& event) {
   for (StrokePath::Ended& ended : path_.endAt(event.tick))
-    mark_strokes_.push_back({ended.tool, std::move(ended.points), path_base_, upright(event.version)});
+    mark_strokes_.push_back({ended.tool, std::move(ended.pieces), path_base_, upright(event.version)});
 }
 
 void LoopClient::setTool(haptic::Tool tool) {

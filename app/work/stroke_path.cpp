@@ -30,8 +30,11 @@ std::vector<StrokePath::Ended> StrokePath::endAt(std::uint64_t tick) {
   std::vector<Ended> ended;
   for (; !points_.empty() && points_.front().tick < tick; points_.pop_front()) {
     const Point& point = points_.front();
-    if (ended.empty() || point.begins) ended.push_back({point.tool, {}});
-    ended.back().points.push_back(point.at);
+    const bool other_tool = ended.empty() || ended.back().tool != point.tool;
+    if (other_tool) ended.push_back({point.tool, {}});
+    StrokePieces& pieces = ended.back().pieces;
+    if (other_tool || point.begins) pieces.emplace_back();
+    pieces.back().push_back(point.at);
   }
   return ended;
 }

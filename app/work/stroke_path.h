@@ -13,11 +13,14 @@
 
 namespace fettle::app {
 
+/// Paths of the tip, each without a gap as over a hole, in their order; points in the tip's order [samples], multiples of 2^-20, a
+/// quarter of a sample apart at least.
+using StrokePieces = std::vector<std::vector<glm::dvec2>>;
+
 /// A stroke of a tool that edits marks.
 struct MarkStroke {
   haptic::Tool tool = haptic::Tool::kMark;
-  /// Path of the tip, in its order [samples], multiples of 2^-20; a quarter of a sample apart at least.
-  std::vector<glm::dvec2> points;
+  StrokePieces pieces;            ///< one at least, none of them empty
   engine::Version before, after;  ///< upright; the field before the stroke and at its end
 };
 
@@ -27,7 +30,7 @@ class StrokePath {
  public:
   struct Ended {
     haptic::Tool tool = haptic::Tool::kMark;
-    std::vector<glm::dvec2> points;
+    StrokePieces pieces;
   };
 
   /// Keeps nothing.
@@ -36,8 +39,8 @@ class StrokePath {
 
   /// The ticks in their order; `tick` counts from 0.
   void add(std::uint64_t tick, const haptic::TickRecord& record);
-  /// A stroke has ended with the ticks before `tick`: the paths until there, one for each tool in use and each piece
-  /// without a gap, as over a hole.
+  /// A stroke has ended with the ticks before `tick`: the paths until there, those of one tool together until another was in
+  /// use.
   [[nodiscard]] std::vector<Ended> endAt(std::uint64_t tick);
   /// The ticks before `tick` belong to no stroke any more.
   void dropBefore(std::uint64_t tick);

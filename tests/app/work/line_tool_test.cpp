@@ -1,6 +1,8 @@
 // Edge lines drawn with the stylus on the real loop, in real time, and kept in a session.
 #include "app/work/line_tool.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "app/work/open_document.h"
@@ -19,9 +21,12 @@ using app::LoopClient;
 using app::SessionKeeper;
 using haptic::Tool;
 
-// Steps at columns 60.5 and 120.5, ten times the noise.
+// Steps at columns 60.5 and 120.5, ten times the noise; holes on the way along columns 80 and 61.
 engine::Version step() {
-  return engine::edgeField(160, 140, [](int c, int r) {
+  return engine::edgeField(160, 200, [](int c, int r) {
+    const bool beside = c >= 74 && c < 88 && r >= 35 && r % 20 < 10,
+               at_edge = c >= 50 && c < 72 && r >= 130 && r < 142;
+    if (beside || at_edge) return std::numeric_limits<double>::quiet_NaN();
     return (c > 60 ? 0.1 : 0.0) + (c > 120 ? 0.1 : 0.0) + 0.01 * engine::whiteNoise(c, r);
   });
 }
@@ -184,6 +189,26 @@ TEST_F(LineTool, StrokesAwayFromEdgesAreOneLineWithTheirNumber) {
   ASSERT_EQ(notices_.size(), 1U);
   EXPECT_EQ(notices_[0].what, "3 strokes lie along no edge: they stay marks");
   EXPECT_EQ(notices_[0].remedy, "");
+}
+
+// One drag is one stroke, however many holes lie under it.
+TEST_F(LineTool, AStrokeOverHolesAwayFromEdgesIsCountedOnce) {
+  stroke(Tool::kMark, {80, 30}, {81, 100});
+  ASSERT_EQ(notices_.size(), 1U);
+  EXPECT_TRUE(notices_[0].what.starts_with("no edge was found along the stroke at x ")) << notices_[0].what;
+  stroke(Tool::kMark, {82, 30}, {83, 100});
+  ASSERT_EQ(notices_.size(), 1U);
+  EXPECT_EQ(notices_[0].what, "2 strokes lie along no edge: they stay marks");
+}
+
+TEST_F(LineTool, AStrokeAlongAnEdgeOverAHoleIsOneStepOfTwoLines) {
+  stroke(Tool::kMark, {61, 102}, {60.5, 170});
+  EXPECT_EQ(lines(), 2U);
+  EXPECT_EQ(client_->history().number(), 2) << "the marks, and the lines in their place";
+  EXPECT_EQ(notices_.size(), 0U);
+  stroke(Tool::kUnmark, {61, 102}, {60.5, 170});
+  EXPECT_EQ(lines(), 0U);
+  EXPECT_EQ(client_->history().number(), 3);
 }
 
 TEST_F(LineTool, ALineIsChosenAndRemovedOrJoined) {
