@@ -106,11 +106,16 @@ engine::Status warnOfMovedLines(const Levelling& levelling, const engine::Versio
   const auto apart = engine::linesApart(counted, *levelling.lines, job);
   if (!apart) return tl::unexpected(apart.error());
   if (!apart->worse()) return {};
-  const bool from_line_to_line = lines.rows == "difference" || lines.rows == "matching";
-  warn(fmt::format(
-      "{}: lines next to each other lie further apart than before the levelling: {}", shownInput(scan),
-      from_line_to_line ? "they were level already"
-                        : "what is on some of them moves them, take --rows matching or --rows difference"));
+  const bool from_line_to_line = lines.rows == "difference" || lines.rows == "matching",
+             neighbours = apart->lag == 1;
+  warn(fmt::format("{}: {} lie further apart than before the levelling: {}", shownInput(scan),
+                   neighbours ? std::string("lines next to each other")
+                              : fmt::format("a line and the {}th after it", apart->lag),
+                   !from_line_to_line
+                       ? "what is on some of them moves them, take --rows matching or --rows difference"
+                   : neighbours || !(apart->before > apart->least)
+                       ? "they were level already"
+                       : "errors add up from line to line, take --rows median or --keep-form"));
   return {};
 }
 

@@ -66,9 +66,15 @@ std::string apartText(const engine::LinesApart& apart, engine::LineMethod method
   if (!apart.worse()) return {};
   const bool from_line_to_line =
       method == engine::LineMethod::kDifference || method == engine::LineMethod::kMatching;
-  const char* const rather = from_line_to_line ? tr("they were level") : tr("try matching or difference");
-  if (!(apart.before > apart.least)) return trFormat("; neighbours lie further apart now: {}", rather);
-  return trFormat("; neighbours lie {:.2g} times as far apart now: {}", apart.after / apart.before, rather);
+  const bool neighbours = apart.lag == 1, were_level = !(apart.before > apart.least);
+  const char* const rather = !from_line_to_line         ? tr("try matching or difference")
+                             : neighbours || were_level ? tr("they were level")
+                                                        : tr("errors add up, try median");
+  if (were_level) return trFormat("; lines lie further apart now: {}", rather);
+  const double times = apart.after / apart.before;
+  return neighbours ? trFormat("; neighbours lie {:.2g} times as far apart now: {}", times, rather)
+                    : trFormat("; lines lie {:.2g} times as far from the {}th after them now: {}", times,
+                               apart.lag, rather);
 }
 
 // `holes`: samples without a height that are left; `done`: it is a step.

@@ -6,11 +6,12 @@
 #include <limits>
 #include <span>
 
+#include "engine/measure/lines_apart.h"
+
 namespace fettle::engine {
 
 namespace {
 
-constexpr std::array<std::int32_t, 3> kLags{1, 4, 16};
 constexpr std::size_t kFewestInCommon = 8;  // for a median to say something
 
 struct Way {
@@ -52,7 +53,7 @@ class SparseLines {
     double sum = 0.0;
     int lags = 0;
     std::vector<double> differences;
-    for (const std::int32_t lag : kLags) {
+    for (const std::int32_t lag : kLineLags) {
       double all = 0.0;
       std::int64_t pairs = 0;
       for (std::int32_t line = 0; line + lag < lines_; ++line) {

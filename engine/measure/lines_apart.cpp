@@ -27,32 +27,39 @@ Result<LinesApart> linesApart(const Version& field, const LineOffsets& offsets, 
                                                             : reader.heightAt(line, place));
   };
   const std::int32_t step = std::max(1, offsets.length / kMostOfLine);
-  LinesApart apart;
   const HeightBounds bounds = reader.bounds();
-  apart.least =
+  const double least =
       1e-6 * std::max(std::abs(static_cast<double>(bounds.min)), std::abs(static_cast<double>(bounds.max)));
-  std::int64_t pairs = 0;
+  LinesApart worst;
   std::vector<double> before, after;
-  for (std::int32_t line = 0; line + 1 < offsets.lines; ++line) {
-    if (line % 256 == 0 && job.cancelled()) return cancelled();
-    before.clear();
-    after.clear();
-    for (std::int32_t place = 0; place < offsets.length; place += step) {
-      const double d = heightAt(line + 1, place) - heightAt(line, place);
-      if (!std::isfinite(d)) continue;
-      before.push_back(d);
-      after.push_back(d - (offsets.takenAt(line + 1, place) - offsets.takenAt(line, place)));
+  for (const std::int32_t lag : kLineLags) {
+    LinesApart apart{.lag = lag, .least = least};
+    std::int64_t pairs = 0;
+    for (std::int32_t line = 0; line + lag < offsets.lines; ++line) {
+      if (line % 256 == 0 && job.cancelled()) return cancelled();
+      before.clear();
+      after.clear();
+      for (std::int32_t place = 0; place < offsets.length; place += step) {
+        const double d = heightAt(line + lag, place) - heightAt(line, place);
+        if (!std::isfinite(d)) continue;
+        before.push_back(d);
+        after.push_back(d - (offsets.takenAt(line + lag, place) - offsets.takenAt(line, place)));
+      }
+      if (before.size() < kFewestShared) continue;
+      apart.before += std::abs(middleOfPairs(before));
+      apart.after += std::abs(middleOfPairs(after));
+      ++pairs;
     }
-    if (before.size() < kFewestShared) continue;
-    apart.before += std::abs(middleOfPairs(before));
-    apart.after += std::abs(middleOfPairs(after));
-    ++pairs;
+    if (pairs > 0) {
+      apart.before /= static_cast<double>(pairs);
+      apart.after /= static_cast<double>(pairs);
+    }
+    // Of neighbours in any case; of others where levelling made these worse, the more times the more.
+    const bool worse_than_found =
+        apart.worse() && (!worst.worse() || apart.after * worst.before > worst.after * apart.before);
+    if (lag == kLineLags.front() || worse_than_found) worst = apart;
   }
-  if (pairs > 0) {
-    apart.before /= static_cast<double>(pairs);
-    apart.after /= static_cast<double>(pairs);
-  }
-  return apart;
+  return worst;
 }
 
 }  // namespace fettle::engine
