@@ -5,9 +5,9 @@
 namespace fettle::app {
 
 /// Whether frames of one kind are drawn with less, decided by the time that the last ones took. The mean of them counts, the newest
-/// ones most, and a single long one - a pipeline that was compiled - changes nothing.
+/// ones most, and a single one that is longer by far - a pipeline that was compiled - changes nothing.
 ///
-///   all --- mean above slow_ms, `few` frames at least, the last ones (two at most) above it --> less
+///   all --- mean above slow_ms, `few` frames at least, the last ones above it (two; one of one) --> less
 ///    ^--- mean below quick_ms, calm() frames in a row ---'
 ///
 /// Where frames with all are slow again soon after that, calm() doubles: so the picture does not keep changing between the two
@@ -23,6 +23,8 @@ class FrameBudget {
   /// what a busy machine adds.
   static constexpr double kSlowWhole_ms = 33.0, kQuickWhole_ms = 16.0;
   static constexpr int kFew = 3, kCalm = 20, kMostCalm = 320, kSoon = 60;
+  /// So many times slow_ms is longer by far.
+  static constexpr double kFar = 3.0;
   /// The first of them decides: what is drawn with less is sharp a quarter of a second later, and no frame of that takes long.
   static constexpr int kFewWhole = 1;
 
@@ -37,6 +39,7 @@ class FrameBudget {
     mean_ms_ = frames_ == 0 ? counted : mean_ms_ + kWeight * (counted - mean_ms_);
     ++frames_;
     slow_ = ms > slow_ms_ ? slow_ + 1 : 0;
+    last_ms_ = ms;
     if (less_)
       noteLess();
     else
@@ -51,7 +54,8 @@ class FrameBudget {
  private:
   void noteAll() noexcept {
     if (frames_ >= kSoon) calm_ = kCalm;
-    if (frames_ < few_ || slow_ < std::min(few_, 2) || mean_ms_ <= slow_ms_) return;
+    const int needed = last_ms_ > kFar * slow_ms_ ? 2 : std::min(few_, 2);
+    if (frames_ < few_ || slow_ < needed || mean_ms_ <= slow_ms_) return;
     if (returned_ && frames_ < kSoon) calm_ = std::min(2 * calm_, kMostCalm);
     change(true);
   }
@@ -69,7 +73,7 @@ class FrameBudget {
   double slow_ms_, quick_ms_;
   int few_;
   bool less_ = false, returned_ = false;
-  double mean_ms_ = 0.0;
+  double mean_ms_ = 0.0, last_ms_ = 0.0;
   int frames_ = 0;  // since the last change
   int quick_ = 0;   // in a row
   int slow_ = 0;    // in a row

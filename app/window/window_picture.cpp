@@ -186,7 +186,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
   // What a whole frame takes is known before the first key that changes it.
-  const bool whole = sharp_wanted && !rests && !in_bands && !whole_.less() && figures_.redrawn == 1.0 &&
+  const bool whole = sharp_wanted && !rests && !figures_.band && !whole_.less() && figures_.redrawn == 1.0 &&
                      figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
@@ -195,7 +195,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
     if (with_less) sharp_later_.drawnWithLess(drawn_);
   } else if (!sharp_wanted && with_less) {
     measured_ = Measured::kMoving;
-  } else if (!rests && !in_bands && figures_.continued && figures_.redrawn < 1.0) {
+  } else if (!rests && !figures_.band && figures_.continued && figures_.redrawn < 1.0) {
     measured_ = Measured::kStroke;
   }
   if (!with_less) sharp_later_.drawnSharply();

@@ -69,7 +69,7 @@ glm::ivec2 DetailMeasure::patches(int level) const noexcept {
 }
 
 void DetailMeasure::begin(const engine::FieldReader& reader) {
-  state_ = newState();
+  state_ = invalidated_ = newState();
   size_ = glm::ivec2(std::max(2, reader.width()), std::max(2, reader.height()));
   tiles_ = {reader.tileColumns(), reader.tileRows()};
   int top = 0;
@@ -117,7 +117,7 @@ std::vector<glm::ivec2> DetailMeasure::above(int level, std::span<const glm::ive
 void DetailMeasure::invalidate(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
   // A filter's result: what is around each of its tiles is all of the field.
   if (2 * tiles.size() >= tile_errors_.size() && !tiles.empty()) return begin(reader);
-  if (!tiles.empty()) state_ = newState();
+  if (!tiles.empty()) state_ = invalidated_ = newState();
   // Cells reach into the next tile, and the vertex of a hole takes its height from up to one tile away. The
   // last vertices of a tile are the first samples of the next one: where these are holes, the largest stride
   // reads two tiles far.

@@ -62,6 +62,8 @@ class DetailMeasure {
   /// Equal numbers where nothing was measured or invalidated in between, also for copies; never 0 after
   /// begin().
   [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
+  /// The same where nothing was invalidated: what was known then still is, and more may be.
+  [[nodiscard]] std::uint64_t invalidated() const noexcept { return invalidated_; }
   /// Tiles that are not known.
   [[nodiscard]] std::size_t unknown() const noexcept { return waiting_.size(); }
 
@@ -109,6 +111,7 @@ class DetailMeasure {
   std::vector<glm::ivec2> waiting_;  // tiles that are not known, each once
   std::vector<bool> is_waiting_;     // by tile
   std::uint64_t state_ = 0;
+  std::uint64_t invalidated_ = 0;
 };
 
 /// Height of a vertex as shaders/field.glsl computes it (drawnZ): the sample itself, or for a hole the first

@@ -370,7 +370,8 @@ void LiveFrame::beforeResize(const vk::raii::CommandBuffer& commands, const Laye
   before.record(commands);
 }
 
-// Outside of the panels is what a frame of every pixel leaves there: bands of it may follow.
+// Outside of the panels is what a frame of every pixel leaves there: bands of it may follow. Grounds are whole codes, so that both
+// ways of clearing give the same.
 void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
                                std::span<const LivePanel> panels, const glm::vec3& ground) {
   beforeResize(commands, layers, whole_.base);

@@ -287,10 +287,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                      (decorations.empty() || frame.holds(glyphs));
   Reused reused = reuse(holds ? input.redraw : FrameInput::Redraw::kAll, current, chosen, stats);
   stats.select_ms = selecting.ms();
-  // Below them such lines are in the colours already, and there is no depth that could hide them.
-  if (reused.banded && reused.banded->over_fewer_pixels)
+  // Below that such lines are in the colours already, and there is no depth that could hide them.
+  if (reused.banded && reused.banded->depth_end < INT_MAX)
     for (LivePanel& panel : panels)
-      panel.tested = cut(panel.visible, {panel.visible.x, 0, panel.visible.width, reused.banded->end});
+      panel.tested = cut(panel.visible, {panel.visible.x, 0, panel.visible.width, reused.banded->depth_end});
 
   if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
   const bool whole_frame = stereo || head || input.sharpness != Sharpness::kRest;
@@ -338,9 +338,13 @@ LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, co
   Reused reused;
   reused.redraw = LiveFrame::Redraw::kParts;
   if (in_bands && with_less && sameButPixels(*with_less, current)) {
-    reused.banded = BandedFrame{current, std::vector<bool>(panels.size(), true), kSharpBands, 0, true};
+    reused.banded = BandedFrame{.goal = current,
+                                .differs = std::vector<bool>(panels.size(), true),
+                                .all = kSharpBands,
+                                .depth_end = 0};
     reused.parts = nextBand(*reused.banded, chosen);
     reused.redraw = LiveFrame::Redraw::kFirstPartOver;
+    stats.band = true;
   } else if (before == nullptr) {
     return {};
   } else if (const bool same = showTheSame(*before, current);
@@ -349,20 +353,24 @@ LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, co
     for (std::size_t i = 0; i < panels.size(); ++i)
       differs[i] = differs[i] || !sameDetail(before->panels[i], current.panels[i]);
     reused.banded = begun ? std::move(begun) : BandedFrame{};
-    reused.banded->goal = current;
-    reused.banded->differs = std::move(differs);
-    if (!same) reused.banded->drawn = 0;
-    reused.parts = nextBand(*reused.banded, chosen);
-  } else if (canContinue(*before, current)) {
+    BandedFrame& next = *reused.banded;
+    if (next.differs != differs) next.next = 0;
+    if (!same) next.left = next.all;
+    next.goal = current;
+    next.differs = std::move(differs);
+    reused.parts = nextBand(next, chosen);
+    stats.band = true;
+  } else if (canContinue(*before, current) && !(begun && begun->depth_end < INT_MAX)) {
     reused.parts = cutToDamage(*before, current, chosen.queries(),
                                stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
     reused.banded = std::move(begun);
     if (reused.banded) reused.banded->goal = current;
   } else {
+    // Also an edit where rows lack their depth: a stroke may go on for long, and would not be over what is below it.
     return {};
   }
-  if (reused.banded && reused.banded->drawn == reused.banded->all) reused.banded.reset();
-  stats.bands_left = reused.banded ? reused.banded->all - reused.banded->drawn : 0;
+  if (reused.banded && reused.banded->left == 0) reused.banded.reset();
+  stats.bands_left = reused.banded ? reused.banded->left : 0;
   stats.continued = true;
   stats.redrawn = redrawnShare(panels);
   return reused;
@@ -380,12 +388,14 @@ std::vector<PatchChoice> LivePicture::Impl::nextBand(BandedFrame& next, LivePane
   const auto row = [&](int band) {
     return band == next.all ? end : (first + (end - first) * band / next.all) & ~1;
   };
-  const int behind = row(next.drawn + 1);
-  std::vector<PatchChoice> parts = cutToRows(row(next.drawn), behind, chosen.queries(), panels);
-  next.end = std::max(next.end, behind);
+  const int behind = row(next.next + 1);
+  std::vector<PatchChoice> parts = cutToRows(row(next.next), behind, chosen.queries(), panels);
   for (std::size_t i = 0; i < panels.size(); ++i)
     if (!next.differs[i]) panels[i].redraw = {};
-  ++next.drawn;
+  // The first round goes from the top to the bottom.
+  if (next.depth_end < INT_MAX) next.depth_end = behind == end ? INT_MAX : std::max(next.depth_end, behind);
+  next.next = (next.next + 1) % next.all;
+  --next.left;
   return parts;
 }
 

@@ -147,7 +147,7 @@ struct FrameInput {
   /// either way.
   /// kInBands: as kChanged, but where a frame would only show the same more finely it draws one of kDetailBands bands of rows, of
   /// kSharpBands after a frame of kHalf or kQuarter, the frames after it the others, and none of them takes long. An edit in between is
-  /// drawn at once. Only at kFull and kRest.
+  /// drawn at once; before a first sharp picture is there, together with all that is left of it. Only at kFull and kRest.
   enum class Redraw { kChanged, kInBands, kAll } redraw = Redraw::kChanged;
   /// Of a field on demand: whether the frame is drawn with the pages that are on the device, or waits for all
   /// requested pages that the memory holds.
@@ -198,6 +198,7 @@ struct FrameStatistics {
   double redrawn = 1.0;             ///< share of the plots that was drawn again, 0 .. 1
   /// Whether the frame reused the one before and drew only what differs, which may be everything.
   bool continued = false;
+  bool band = false;  ///< it drew one of the bands of Redraw::kInBands
   int bands_left =
       0;  ///< of Redraw::kInBands: frames that must follow until all of the picture is as fine as this one
   /// At Sharpness::kRest: frames that must follow until the picture has four rays per pixel. 0: it has, or the device has no memory

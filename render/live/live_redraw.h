@@ -1,5 +1,6 @@
 #pragma once
 
+#include <climits>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -54,11 +55,10 @@ struct BandedFrame {
   DrawnFrame goal;
   std::vector<bool> differs;  ///< of each panel: from what was shown before
   int all = kDetailBands;     ///< bands
-  int drawn = 0;              ///< of them
-  /// Below the bands that are drawn there are colours of a frame with fewer pixels, with the lines that the surface hides, and no
-  /// depth.
-  bool over_fewer_pixels = false;
-  int end = 0;  ///< row behind the bands that are drawn, or were before they began anew [px]
+  int next = 0;               ///< of them; after the last one the first, where `goal` has changed meanwhile
+  int left = all;             ///< that differ from `goal`
+  /// Row from which on there are only colours of a frame with fewer pixels, with the lines that the surface hides, and no depth [px].
+  int depth_end = INT_MAX;
 };
 
 /// Whether pages that the frame reads are on the device: where some are not, their samples are drawn from coarser ones.

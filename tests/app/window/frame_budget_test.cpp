@@ -41,6 +41,13 @@ TEST(FrameBudget, HasItsOwnLimitsForWholeFrames) {
   once.note(900.0);
   EXPECT_FALSE(once.less());
   EXPECT_EQ(framesUntilChange(once, 20.0), 0);
+  // Not the first one of all, either, where it is longer by far.
+  FrameBudget compiled = fresh;
+  compiled.note(3.1 * FrameBudget::kSlowWhole_ms);
+  EXPECT_FALSE(compiled.less());
+  EXPECT_EQ(framesUntilChange(compiled, 20.0), 0);
+  FrameBudget slow = fresh;
+  EXPECT_EQ(framesUntilChange(slow, 3.1 * FrameBudget::kSlowWhole_ms), 2);
   // The first one decides.
   whole = fresh;
   EXPECT_EQ(framesUntilChange(whole, 80.0), 1);

@@ -1,6 +1,7 @@
 // What DetailMeasure promises, against the two surfaces themselves in double precision.
 #include "render/detail/detail.h"
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -339,6 +340,60 @@ TEST(PatchTreeCache, AreWhatChoosingAgainGivesAfterEveryChange) {
   measure.refresh(shown.reader(), std::span(&tile, 1));
   expectChosen("undone");
   EXPECT_GE(changes, 6);
+}
+
+// In any order: what is found to have no holes is listed first.
+std::set<std::array<int, 4>> patchesOf(const PatchTree& tree) {
+  std::set<std::array<int, 4>> patches;
+  for (const gpu::Patch& p : tree.list().patches)
+    patches.insert({p.place.x, p.place.y, p.place.z, p.place.w});
+  return patches;
+}
+
+TEST(PatchTreeCache, ATreeIsKeptWhileFewOfManyTilesBecomeKnown) {
+  const engine::Version field = fieldOf(gridOf(2600, 2000, 0.1, 0.1), rough);
+  DetailMeasure measure;
+  measure.begin(field.reader());
+  const std::size_t all = measure.unknown();
+  ASSERT_GT(all, 1200U);
+  PatchQuery q = queryOver(field, measure);
+  q.reader = field.reader();
+  PatchTreeCache cached;
+  auto drawn = patchesOf(cached.tree(0, q, field));
+  std::size_t known_then = all;
+  int chosen = 0, frames = 0, others = 0;
+  while (measure.unknown() > 0) {
+    (void)measure.measureSome(field.reader(), 16);
+    ++frames;
+    const bool anew = measure.unknown() < 512 || 8 * measure.unknown() <= 7 * known_then;
+    const auto now = patchesOf(cached.tree(0, q, field)), wanted = patchesOf(PatchTree(q));
+    EXPECT_EQ(now, anew ? wanted : drawn) << measure.unknown();
+    others += wanted != drawn;
+    if (anew) known_then = measure.unknown();
+    chosen += anew && measure.unknown() >= 512;
+    drawn = now;
+  }
+  EXPECT_EQ(numbersOf(cached.tree(0, q, field)), numbersOf(PatchTree(q)));
+  EXPECT_GT(chosen, 4);
+  EXPECT_LT(chosen, frames / 5);
+  EXPECT_GT(others, 10);
+}
+
+TEST(PatchTreeCache, ATreeIsNotKeptWhereTilesBecameUnknown) {
+  const engine::Version field = fieldOf(gridOf(2600, 2000, 0.1, 0.1), rough);
+  DetailMeasure measure;
+  measure.begin(field.reader());
+  (void)measure.measureSome(field.reader(), 300);
+  PatchQuery q = queryOver(field, measure);
+  q.reader = field.reader();
+  PatchTreeCache cached;
+  (void)cached.tree(0, q, field);
+  // One that was known, among the 300 measured; and as many more are known.
+  std::vector<glm::ivec2> tiles;
+  for (int i = 0; i < 10; ++i) tiles.emplace_back(i, 0);
+  measure.invalidate(field.reader(), tiles);
+  (void)measure.measureSome(field.reader(), 12);
+  EXPECT_EQ(numbersOf(cached.tree(0, q, field)), numbersOf(PatchTree(q)));
 }
 
 }  // namespace
