@@ -23,6 +23,7 @@ constexpr auto kNoteEvery = std::chrono::seconds(1);
 constexpr auto kSayWaiting = std::chrono::seconds(1);
 constexpr const char* kFittedNote =
     "fitted scene";  // what of the note "scene" is no choice of the user; empty: all is
+constexpr const char* kPlainNote = "plain scene";  // what was fitted: SceneFit::plain
 constexpr const char* kContactNote = "contact";  // what the words of the note "scene" mean: kContactRevision
 
 // Of the scene that a session notes: none is noted by the programs that had only the first.
@@ -59,7 +60,8 @@ haptic::Scene firstScene(const Document& document, const std::optional<haptic::S
   options.fitting.fits = false;
   if (const auto fitted = sceneNoted(document, kFittedNote)) {
     options.fitting.fits = true;
-    options.fitting.last = SceneFit{scene, *fitted};
+    // Programs that noted no plain scene began with the default one.
+    options.fitting.last = SceneFit{sceneNoted(document, kPlainNote).value_or(scene), *fitted};
   }
   return *kept;
 }
@@ -162,6 +164,7 @@ void ActiveDocument::storeNotes(const render::View& view) {
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
   const std::optional<SceneFit>& fit = loop_->fit();
   keeper_->setNote(kFittedNote, fit ? haptic::sceneText(fit->fitted) : std::string());
+  keeper_->setNote(kPlainNote, fit ? haptic::sceneText(fit->plain) : std::string());
   keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));
   noteDrawn();
 }

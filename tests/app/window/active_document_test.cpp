@@ -154,5 +154,62 @@ TEST(ActiveDocument, ASceneOfANewerContactRevisionIsNotGuessedAt) {
   ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
 }
 
+// "Fit to the scan" keeps force, brush, tip and effects of the user's scene, also for who opens the session again: with a device
+// of the same kind it is the same scene, with another one the same user's.
+TEST(ActiveDocument, AnOwnSceneThatWasFittedIsTheSameWhenItsSessionIsOpenedAgain) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  std::filesystem::copy_file(tests::inSourceTree("tests/haptic/journal/sessions/contact_revision_1.fettle"),
+                             path);
+  haptic::Scene own = haptic::defaultScene();
+  own.force_limit_n = 5.0;
+  own.stiffness_n_per_mm = 0.8;
+  own.brush_radius_samples = 12.0;
+  own.mark_radius_samples = 7.0;
+  own.tip = haptic::TipShape::kSphere;
+  own.effects.push_back(haptic::EffectKind::kFriction);
+  own.params.friction.static_coefficient = 0.8;
+  own.params.sound.knock = 2.5;
+  own.params.velocity.filter_ms = 3.0;
+  LoopClientOptions desk;
+  desk.device = "woodenhaptics";  // not plugged in: the scene is known without it
+  haptic::Scene fitted;
+  {
+    auto document = documentOf(path);
+    ASSERT_TRUE(document) << document.error().line();
+    ActiveDocument active;
+    ASSERT_TRUE(active.open(*document, own, desk));
+    ASSERT_TRUE(active.client()->fitScene());
+    fitted = active.client()->scene();
+    EXPECT_EQ(fitted.force_limit_n, 5.0);
+    EXPECT_EQ(fitted.brush_radius_samples, 12.0);
+    Feedback feedback;
+    active.poll(startView(), feedback);  // notes
+    ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
+  }
+  {
+    auto document = documentOf(path);
+    ASSERT_TRUE(document) << document.error().line();
+    ActiveDocument active;
+    ASSERT_TRUE(active.open(*document, {}, desk));
+    EXPECT_EQ(haptic::sceneText(active.client()->scene()), haptic::sceneText(fitted));
+    EXPECT_TRUE(active.client()->fit());
+    ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
+  }
+  auto document = documentOf(path);
+  ASSERT_TRUE(document) << document.error().line();
+  ActiveDocument active;
+  ASSERT_TRUE(active.open(*document, {}, {}));
+  const haptic::Scene& with_mouse = active.client()->scene();
+  EXPECT_EQ(with_mouse.force_limit_n, 5.0);
+  EXPECT_EQ(with_mouse.brush_radius_samples, 12.0);
+  EXPECT_EQ(with_mouse.mark_radius_samples, 7.0);
+  EXPECT_EQ(with_mouse.tip, haptic::TipShape::kSphere);
+  EXPECT_EQ(with_mouse.params.friction.static_coefficient, 0.8);
+  EXPECT_EQ(with_mouse.params.sound.knock, 2.5);
+  EXPECT_EQ(with_mouse.params.velocity.filter_ms, 3.0);
+  ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
+}
+
 }  // namespace
 }  // namespace fettle::app
