@@ -118,9 +118,11 @@ haptic::Scene fittedFor(const RecordArguments& options, const haptic::DeviceProf
   haptic::Scene fitted = fittedScene(given, profile, grid, options.rate_hz);
   if (!options.fit || !profile.gives_force) return fitted;
   const double scale = options.scale > 0.0 ? options.scale : wholeFieldScale(profile, grid);
-  if (const auto problem = haptic::stabilityProblem(fitted, profile, options.rate_hz, scale)) {
+  const double longest_reach_mm = longestSnapMm(grid);
+  if (const auto problem =
+          haptic::stabilityProblem(fitted, profile, options.rate_hz, scale, longest_reach_mm)) {
     warn(fmt::format("{}: lowered to {}", problem->what, problem->remedy));
-    fitted = haptic::stableScene(std::move(fitted), profile, options.rate_hz, scale);
+    fitted = haptic::stableScene(std::move(fitted), profile, options.rate_hz, scale, longest_reach_mm);
   }
   return fitted;
 }
@@ -159,7 +161,8 @@ engine::Status checkStability(const RecordArguments& options, const engine::Vers
       warn(fmt::format("{}: {}", where, withoutForceText(*problem)));
     return {};
   }
-  const auto problem = haptic::stabilityProblem(scene, profile, options.rate_hz, scale);
+  const double longest_reach_mm = longestSnapMm(felt.grid());
+  const auto problem = haptic::stabilityProblem(scene, profile, options.rate_hz, scale, longest_reach_mm);
   if (!problem) {
     const auto faint = fits(options, profile)
                            ? std::nullopt
@@ -168,7 +171,7 @@ engine::Status checkStability(const RecordArguments& options, const engine::Vers
     return {};
   }
   // Only the requested scale may be wrong.
-  const double largest = haptic::largestStableScale(scene, profile, options.rate_hz);
+  const double largest = haptic::largestStableScale(scene, profile, options.rate_hz, longest_reach_mm);
   if (options.scale > 0.0 && largest > 0.0)
     return engine::inputError(
         problem->what, fmt::format("--scale {:g}", scale),

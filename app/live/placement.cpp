@@ -6,6 +6,7 @@
 
 #include "haptic/devices/known_devices.h"
 #include "haptic/devices/workspace.h"
+#include "haptic/effects/mark_distance.h"
 
 namespace fettle::app {
 
@@ -14,11 +15,17 @@ double reachScale(const haptic::DeviceProfile& profile, const engine::Grid& grid
   return haptic::Workspace::fit(profile, glm::dvec3(0.0), side).scale();
 }
 
+double longestSnapMm(const engine::Grid& grid) {
+  return haptic::MarkDistance::longestReachMm(grid);
+}
+
 double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid, const haptic::Scene& scene,
                    double rate_hz) {
   const double reach = reachScale(profile, grid);
   const double scale =
-      profile.gives_force ? std::min(reach, haptic::largestStableScale(scene, profile, rate_hz)) : reach;
+      profile.gives_force
+          ? std::min(reach, haptic::largestStableScale(scene, profile, rate_hz, longestSnapMm(grid)))
+          : reach;
   return scale > 0.0 ? scale : 1.0;
 }
 
@@ -26,13 +33,14 @@ std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene
                                                              const engine::Grid& grid, double rate_hz) {
   std::optional<haptic::StabilityProblem> best;
   double held = -1.0;  // largest stable scale of the scene over the devices
+  const double longest_reach_mm = longestSnapMm(grid);
   for (const haptic::KnownDevice& known : haptic::knownDevices()) {
     const haptic::DeviceProfile profile = *haptic::knownProfile(known.name);
     const double reach = reachScale(profile, grid);
     const double scale = reach > 0.0 ? std::min(reach, 1.0) : 1.0;
-    auto problem = haptic::stabilityProblem(scene, profile, rate_hz, scale);
+    auto problem = haptic::stabilityProblem(scene, profile, rate_hz, scale, longest_reach_mm);
     if (!problem) return std::nullopt;
-    const double share = haptic::largestStableScale(scene, profile, rate_hz) / scale;
+    const double share = haptic::largestStableScale(scene, profile, rate_hz, longest_reach_mm) / scale;
     if (share <= held) continue;
     held = share;
     best = std::move(problem);

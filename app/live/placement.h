@@ -15,6 +15,9 @@ namespace fettle::app {
 /// of one row or column.
 [[nodiscard]] double reachScale(const haptic::DeviceProfile& profile, const engine::Grid& grid);
 
+/// The longest reach of edge snap on a field, by which its stability is judged (haptic/effects/stability.h).
+[[nodiscard]] double longestSnapMm(const engine::Grid& grid);
+
 /// For a scene that the user gave, which is not fitted (fitted_scene.h): the scale at which the smaller side of the field is within the
 /// device's reach, or for a device that gives force the largest at which the scene is stable
 /// (haptic::stability.h) if that is less; 1 for a field of one row or column. Also 1 for a device on which

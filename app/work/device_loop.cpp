@@ -10,6 +10,7 @@
 
 #include "app/live/placement.h"
 #include "engine/base/stopwatch.h"
+#include "haptic/effects/mark_distance.h"
 #include "haptic/scene/scene_numbers.h"
 
 namespace fettle::app {
@@ -213,7 +214,8 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     settings.options.menu_buttons = setup_.menu_buttons;
   }
   if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
-    haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);
+    haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_,
+                                                haptic::MarkDistance::longestReachMm(grid));
     // For a device that is never stable there is no such scene.
     if (!options_.fitting.lowers || stabilityProblem(lowered, options_.rate_hz))
       return engine::inputError(problem->what, "scene", problem->remedy);
@@ -300,7 +302,8 @@ std::optional<haptic::StabilityProblem> DeviceLoop::stabilityProblem(const hapti
                                                                      double rate_hz) const {
   const haptic::DeviceProfile& profile = device_->profile();
   if (!profile.gives_force) return std::nullopt;
-  return haptic::stabilityProblem(scene, profile, rate_hz, scale_at_start_);
+  return haptic::stabilityProblem(scene, profile, rate_hz, scale_at_start_,
+                                  haptic::MarkDistance::longestReachMm(grid_));
 }
 
 double DeviceLoop::scaleFor(const haptic::Scene& scene) const {

@@ -27,7 +27,8 @@ namespace fettle::haptic {
 /// Rosenberg, "Virtual fixtures" (1993).
 /// Stability: restoring stiffness is at most 4 F / R along any sample row or column (a minimum of functions
 /// curves upwards no more than they do, and a B-spline's second differences are averages of theirs): across
-/// the edge b > T / 2 * 4 F / R, together with the other stiffness along the surface (friction).
+/// the edge b > T / 2 * 4 F / R, together with the other stiffness along the surface (friction). R is the reach that there is,
+/// MarkDistance::reachMm(): a fine field cuts that of the scene, and the pull is stiffer.
 /// Cost: nine distances, some 60 multiplications, and up to one slice of MarkDistance. Memory: MarkDistance.
 class EdgeSnap {
  public:

@@ -31,6 +31,10 @@ engine::LineCuts::TileSamples samplesOf(const engine::LineCuts* lines, std::int3
 
 }  // namespace
 
+double MarkDistance::longestReachMm(const engine::Grid& grid) noexcept {
+  return kMostReach * std::min(grid.spacingXMm(), grid.spacingYMm());
+}
+
 MarkDistance::MarkDistance(const engine::FieldReader& reader, const engine::LineCuts* lines, double reach_mm)
     : tile_columns_(reader.tileColumns()),
       tile_rows_(reader.tileRows()),
@@ -38,7 +42,7 @@ MarkDistance::MarkDistance(const engine::FieldReader& reader, const engine::Line
       height_(reader.height()),
       sx_(reader.grid().spacingXMm()),
       sy_(reader.grid().spacingYMm()),
-      reach_mm_(std::min(reach_mm, kMostReach * std::min(sx_, sy_))),
+      reach_mm_(std::min(reach_mm, longestReachMm(reader.grid()))),
       far_(static_cast<float>(reach_mm_)),
       reach_columns_(std::min(static_cast<int>(reach_mm_ / sx_), kMostReach)),
       reach_rows_(std::min(static_cast<int>(reach_mm_ / sy_), kMostReach)) {

@@ -35,9 +35,12 @@ class MarkDistance {
   static constexpr int kRowsASlice = 4;
   static constexpr int kTilesASlice = 64;
 
-  /// `reach_mm` > 0; clamped to 63 samples of the finer spacing.
+  /// `reach_mm` > 0; clamped to longestReachMm().
   /// `lines`: of the field, null without edge lines.
   MarkDistance(const engine::FieldReader& reader, const engine::LineCuts* lines, double reach_mm);
+
+  /// 63 samples of the finer spacing.
+  [[nodiscard]] static double longestReachMm(const engine::Grid& grid) noexcept;
 
   [[nodiscard]] double reachMm() const noexcept { return reach_mm_; }
   /// Distance of a sample of the field [mm]; the reach (rounded up to a float) when it is at least that far.

@@ -69,7 +69,8 @@ double damping(const Scene& scene) noexcept {
 // What part of a scene is stable on a device, in the field's millimetres.
 class Hold {
  public:
-  Hold(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale)
+  Hold(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale,
+       double longest_reach_mm)
       : scene_(scene),
         felt_(scene),
         device_(profile.name),
@@ -78,6 +79,7 @@ class Hold {
         stiffness_(profile.max_stiffness_n_per_mm * rate_hz_ / 1000.0 / scale),
         damping_(profile.max_damping_n_s_per_mm / scale) {
     felt_.force_limit_n = std::min(scene.force_limit_n, profile.max_force_n);
+    felt_.params.edge_snap.reach_mm = std::min(scene.params.edge_snap.reach_mm, longest_reach_mm);
   }
 
   [[nodiscard]] std::optional<StabilityProblem> problem() const {
@@ -156,7 +158,7 @@ class Hold {
     StabilityProblem p = tooMuch("edge snap with a stiffness of", snap, "N/mm");
     const double held = std::min(grip, roundedDown(0.5 * stiffness_));
     p.largest = p.corrected.params.edge_snap.force_n =
-        roundedDown(0.25 * scene_.params.edge_snap.reach_mm * (stiffness_ - held));
+        roundedDown(0.25 * felt_.params.edge_snap.reach_mm * (stiffness_ - held));
     p.remedy = fmt::format("a force of at most {:.4g} N ([edge_snap] force_n)", p.largest);
     if (grip > 0.0) {
       p.corrected.params.friction.stiffness_n_per_mm = held;
@@ -179,7 +181,7 @@ class Hold {
   }
 
   const Scene& scene_;
-  Scene felt_;  // with the force that the device gives at most
+  Scene felt_;  // with the force that the device gives at most, and the reach that the field has
   std::string device_;
   double rate_hz_, scale_;
   double stiffness_, damping_;  // held
@@ -208,26 +210,28 @@ StabilityNeed stabilityNeed(const Scene& scene, double rate_hz) noexcept {
 }
 
 std::optional<StabilityProblem> stabilityProblem(const Scene& scene, const DeviceProfile& profile,
-                                                 double rate_hz, double scale) {
-  return Hold(scene, profile, rate_hz, scale).problem();
+                                                 double rate_hz, double scale, double longest_reach_mm) {
+  return Hold(scene, profile, rate_hz, scale, longest_reach_mm).problem();
 }
 
 double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale) {
-  return roundedDown(Hold(scene, profile, rate_hz, scale).stiffnessLeft());
+  return roundedDown(Hold(scene, profile, rate_hz, scale, kAnyReach_mm).stiffnessLeft());
 }
 
-Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, double scale) {
+Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, double scale,
+                  double longest_reach_mm) {
   // Across, along, damping: each is corrected in one step, and none causes another again.
   for (int i = 0; i < 3; ++i) {
-    auto problem = stabilityProblem(scene, profile, rate_hz, scale);
+    auto problem = stabilityProblem(scene, profile, rate_hz, scale, longest_reach_mm);
     if (!problem) break;
     scene = std::move(problem->corrected);
   }
   return scene;
 }
 
-double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz) {
-  return Hold(scene, profile, rate_hz, 1.0).largestScale();
+double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz,
+                          double longest_reach_mm) {
+  return Hold(scene, profile, rate_hz, 1.0, longest_reach_mm).largestScale();
 }
 
 }  // namespace fettle::haptic

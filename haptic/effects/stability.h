@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -7,6 +8,9 @@
 #include "haptic/scene/scene.h"
 
 namespace fettle::haptic {
+
+/// Where no field is known: edge snap has the reach that its scene states.
+inline constexpr double kAnyReach_mm = std::numeric_limits<double>::infinity();
 
 /// What a scene needs of the device's own damping, by the conditions that each effect's header states.
 struct StabilityNeed {
@@ -35,14 +39,16 @@ struct StabilityProblem {
 /// proportional to the rate (2 b / T). A rate above the device's own gives no more than that: between two
 /// inputs the force is constant. `scale` [mm of the field per mm of the hand, > 0]: stiffness and damping of
 /// the scene are felt that many times as large (Workspace). With a texture the force goes up to the scene's
-/// limit or the device's, whichever is less.
+/// limit or the device's, whichever is less. `longest_reach_mm`: of edge snap on the field (MarkDistance::longestReachMm), whose
+/// pull is as stiff as the reach is short.
 ///
 /// Where two numbers share what is held - stiffness and a texture, friction and edge snap - the largest
 /// stiffness with the other unchanged is named as long as that is at least a tenth of what is held; otherwise
 /// the largest value of the other, with the stiffness at most half of what is held.
 [[nodiscard]] std::optional<StabilityProblem> stabilityProblem(const Scene& scene,
                                                                const DeviceProfile& profile, double rate_hz,
-                                                               double scale = 1.0);
+                                                               double scale = 1.0,
+                                                               double longest_reach_mm = kAnyReach_mm);
 
 /// To four digits, so that a value typed as it is displayed is not above a limit; 0 of one that is not above 0.
 [[nodiscard]] double roundedDown(double value) noexcept;
@@ -53,11 +59,12 @@ struct StabilityProblem {
                                       double scale = 1.0);
 
 /// The scene with every problem corrected (StabilityProblem::corrected): unchanged when there is none.
-[[nodiscard]] Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz,
-                                double scale = 1.0);
+[[nodiscard]] Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, double scale = 1.0,
+                                double longest_reach_mm = kAnyReach_mm);
 
 /// The largest scale at which the device holds the scene as it is, rounded down to four digits: infinite for
 /// a scene without stiffness and damping, 0 for a device that holds none.
-[[nodiscard]] double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz);
+[[nodiscard]] double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz,
+                                        double longest_reach_mm = kAnyReach_mm);
 
 }  // namespace fettle::haptic

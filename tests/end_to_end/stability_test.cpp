@@ -46,6 +46,11 @@ TEST_F(Stability, RecordRefusesWhatTheHandDoesNotHoldAndNamesTheLargestThatItDoe
   expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"viscosity\"]\n"
                                                   "[viscosity]\ndamping_n_s_per_mm = 0.5\n")}),
                 "at most 0.3 N s/mm");
+  // 4 F over the reach of this scene would be nothing, but the field cuts it to 63 samples.
+  expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"friction\", \"edge_snap\"]\n"
+                                                  "[friction]\nstiffness_n_per_mm = 5.9\n"
+                                                  "[edge_snap]\nforce_n = 20\nreach_mm = 1000000\n")}),
+                "5.9 N/mm with this edge snap");
   // What is named is taken.
   const Outcome held = record("hand:", {"--scene", scene("[force]\nstiffness_n_per_mm = 6\n")});
   EXPECT_EQ(held.status, 0) << held.err;

@@ -15,14 +15,16 @@ constexpr const char* kDesk = "woodenhaptics";
 
 class SceneFitTest : public ::testing::Test {
  protected:
-  static engine::Version fieldOf(double side_mm) {
+  static engine::Version fieldOf(double side_mm, int samples = 65) {
+    const double cell_mm = side_mm / (samples - 1);
     return tests::fieldOf(
-        65, 65, [](int, int) { return 0.0; }, side_mm / 64.0, side_mm / 64.0);
+        samples, samples, [](int, int) { return 0.0; }, cell_mm, cell_mm);
   }
   static std::unique_ptr<LoopClient> start(double side_mm, const std::string& device,
                                            const SceneFitting& fitting,
-                                           const haptic::Scene& scene = haptic::defaultScene()) {
-    const engine::Version plate = fieldOf(side_mm);
+                                           const haptic::Scene& scene = haptic::defaultScene(),
+                                           int samples = 65) {
+    const engine::Version plate = fieldOf(side_mm, samples);
     LoopClientOptions options;
     options.device = device;
     options.fitting = fitting;
@@ -147,6 +149,43 @@ TEST_F(SceneFitTest, AKeptFitIsFittedAnewAndAKeptSceneWithoutOneIsNot) {
   const auto as_it_is = start(5e-3, kDesk, {.fits = false, .lowers = true}, kept);
   ASSERT_TRUE(as_it_is);
   EXPECT_EQ(as_it_is->scene(), kept);
+}
+
+// Edge snap on a fine scan: the pull is that of a reach of 63 samples, whatever the scene states.
+TEST_F(SceneFitTest, EdgeSnapThatIsTakenIsStableWithTheReachThatTheScanHas) {
+  constexpr int kSamples = 1025;
+  haptic::Scene own = haptic::defaultScene();
+  own.effects.push_back(haptic::EffectKind::kEdgeSnap);
+  own.params.edge_snap = {10.0, 30.0};
+  const double cut_mm = 63.0 * 100.0 / (kSamples - 1);
+  // As felt, by a largest stiffness that is rounded down to four digits: up to a thousandth more than it is.
+  constexpr double kMost = 1.0 + 1e-3;
+  const auto pull = [&](const LoopClient& client) {
+    const double force_n = client.scene().params.edge_snap.force_n;
+    return 4.0 * force_n / cut_mm * felt(client) / client.scene().stiffness_n_per_mm;
+  };
+  // Ticked on in the window: refused with the force that is held, which is taken.
+  const auto client = start(100.0, kDesk, {}, haptic::defaultScene(), kSamples);
+  ASSERT_TRUE(client);
+  const engine::Status set = client->setScene(own);
+  ASSERT_FALSE(set);
+  const std::string remedy = set.error().remedy;
+  ASSERT_NE(remedy.find("a force of at most "), std::string::npos) << remedy;
+  own.params.edge_snap.force_n = std::stod(remedy.substr(remedy.find_first_of("0123456789")));
+  ASSERT_TRUE(client->setScene(own)) << remedy;
+  EXPECT_LE(pull(*client), kMost);
+  EXPECT_GT(pull(*client), 0.99);
+  // Given at the start: at the scale at which it is held.
+  own.params.edge_snap.force_n = 10.0;
+  const auto given = start(100.0, kDesk, {.fits = false}, own, kSamples);
+  ASSERT_TRUE(given);
+  EXPECT_LE(pull(*given), kMost);
+  EXPECT_GT(pull(*given), 0.99);
+  // From another device: lowered to what is held.
+  const auto kept = start(100.0, kDesk, {.fits = true, .last = client->fit(), .lowers = true}, own, kSamples);
+  ASSERT_TRUE(kept);
+  EXPECT_LE(pull(*kept), kMost);
+  EXPECT_EQ(kept->scene().params.edge_snap.force_n, client->scene().params.edge_snap.force_n);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "haptic/effects/stability.h"
 #include "tests/engine/filter/edge_line_of.h"
 #include "tests/haptic/effects/touch.h"
 
@@ -234,23 +235,57 @@ TEST(EdgeSnap, RestoringStiffnessIsAtMostFourForcesOverTheReach) {
   EXPECT_GT(stiffest, 1.5);
 }
 
-// The stated condition at work: a mass next to a marked line, device damping b, 4 F / R around 2 b / T.
+// A mass of device damping b next to a marked line: whether it swings ever wider.
+bool buzzesOnTheLine(const Scene& scene, double b, double rate) {
+  Touch touch(line(), scene, rate);
+  HeldMass mass{0.05, b};
+  mass.x_mm = {5.002, 5.03, -0.5};
+  double early = 0.0, late = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::dvec3 force = touch.at(mass.x_mm).force_n;
+    mass.advance({force.x, 0.0, 0.0}, touch.period_s);
+    double& most = i < 300 ? early : late;
+    if (i < 300 || i >= 1700) most = std::max(most, std::abs(mass.x_mm.x - 5.0));
+  }
+  return !(late < early);
+}
+
+// The stated condition at work: 4 F / R around 2 b / T.
 TEST(EdgeSnap, HoldsATipOnTheLineWithoutBuzzUpToItsCondition) {
   const double b = 0.001, rate = 1000.0;
-  for (const double factor : {0.85, 1.2}) {
-    const double reach = 1.0;
-    Scene scene = snapping(factor * 2.0 * b * rate * reach / 4.0, reach);
-    Touch touch(line(), scene, rate);
-    HeldMass mass{0.05, b};
-    mass.x_mm = {5.002, 5.03, -0.5};
-    double early = 0.0, late = 0.0;
-    for (int i = 0; i < 2000; ++i) {
-      const glm::dvec3 force = touch.at(mass.x_mm).force_n;
-      mass.advance({force.x, 0.0, 0.0}, touch.period_s);
-      double& most = i < 300 ? early : late;
-      if (i < 300 || i >= 1700) most = std::max(most, std::abs(mass.x_mm.x - 5.0));
-    }
-    EXPECT_EQ(late < early, factor < 1.0) << factor << ' ' << early << ' ' << late;
+  for (const double reach : {1.0, 3.0})
+    for (const double factor : {0.85, 1.2})
+      EXPECT_EQ(buzzesOnTheLine(snapping(factor * 2.0 * b * rate * reach / 4.0, reach), b, rate),
+                factor > 1.0)
+          << reach << ' ' << factor;
+}
+
+// A reach of more than 63 samples is cut, and the pull stiffer than 4 F over the reach of the scene: what is taken for stable does
+// not buzz, whatever reach a scene states.
+TEST(EdgeSnap, DoesNotBuzzWithTheLargestForceThatIsNamedWhereTheFieldCutsTheReach) {
+  const double b = 0.001, rate = 1000.0;
+  DeviceProfile device;
+  device.gives_force = true;
+  device.max_stiffness_n_per_mm = 0.85 * 2.0 * b * rate;
+  device.max_force_n = 20.0;
+  const double longest_mm = MarkDistance::longestReachMm(line().grid());
+  EXPECT_DOUBLE_EQ(longest_mm, 63 * 0.05);
+  for (const double reach : {2.0, 5.0, 40.0}) {
+    Scene scene = snapping(20.0, reach);
+    scene.stiffness_n_per_mm = 1.0;
+    const auto problem = stabilityProblem(scene, device, rate, 1.0, longest_mm);
+    ASSERT_TRUE(problem) << reach;
+    EXPECT_EQ(problem->corrected.params.edge_snap.reach_mm, reach) << "what is not named stays";
+    EXPECT_DOUBLE_EQ(problem->largest, roundedDown(0.85 * 0.5 * std::min(reach, longest_mm)));
+    EXPECT_FALSE(buzzesOnTheLine(problem->corrected, b, rate)) << reach;
+    EXPECT_EQ(stabilityProblem(problem->corrected, device, rate, 1.0, longest_mm), std::nullopt) << reach;
+    Scene stronger = problem->corrected;
+    stronger.params.edge_snap.force_n *= 1.2 / 0.85;
+    EXPECT_TRUE(buzzesOnTheLine(stronger, b, rate)) << reach;
+    EXPECT_NE(stabilityProblem(stronger, device, rate, 1.0, longest_mm), std::nullopt) << reach;
+    // And at the largest scale, as at 1:1.
+    EXPECT_NEAR(largestStableScale(problem->corrected, device, rate, longest_mm), 1.0, 2e-3) << reach;
+    EXPECT_EQ(stableScene(scene, device, rate, 1.0, longest_mm), problem->corrected) << reach;
   }
 }
 
