@@ -161,7 +161,8 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
 
 void ActiveDocument::storeNotes(const render::View& view) {
   keeper_->setNote("camera", viewText(view));
-  keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
+  // Of the user, not as lowered to what a device holds: the next one may hold more.
+  keeper_->setNote("scene", haptic::sceneText(loop_->unlowered()));
   const std::optional<SceneFit>& fit = loop_->fit();
   keeper_->setNote(kFittedNote, fit ? haptic::sceneText(fit->fitted) : std::string());
   keeper_->setNote(kPlainNote, fit ? haptic::sceneText(fit->plain) : std::string());

@@ -94,6 +94,16 @@ void DeviceLoop::fit(haptic::Scene& scene, Fitted fitted) {
   last = SceneFit{plain, pure};
 }
 
+haptic::Scene DeviceLoop::unlowered(const haptic::Scene& scene) const {
+  const std::optional<SceneFit>& lowering = options_.fitting.lowering;
+  return lowering ? withEdits(plainOf(scene, *lowering), scene, lowering->fitted) : scene;
+}
+
+void DeviceLoop::undoLowering(haptic::Scene& scene) {
+  scene = unlowered(scene);
+  options_.fitting.lowering.reset();
+}
+
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   const engine::Grid& grid = grid_;
   if (driver_ != nullptr && driver_->needs_window) {
@@ -171,6 +181,7 @@ engine::Status DeviceLoop::startOn(const std::string& device, const Start& start
   driver_ = haptic::driverNamed(device).driver;
   setup_ = {};
   mouse_ = nullptr;
+  undoLowering(*start.scene);
   engine::Status status = openDevice(*start.scene);
   if (status) status = this->start(start, notices);
   if (status) return status;
@@ -186,6 +197,8 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   const engine::Grid& grid = grid_;
   const haptic::DeviceProfile& profile = device_->profile();
   haptic::Scene& scene = *start.scene;
+  const haptic::Scene before = scene;
+  undoLowering(scene);  // another setup or rate may hold more
   haptic::HapticLoop::Settings settings;
   settings.rate_hz = options_.rate_hz;
   settings.sounds = start.sounds;
@@ -219,8 +232,10 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     // For a device that is never stable there is no such scene.
     if (!options_.fitting.lowers || stabilityProblem(lowered, options_.rate_hz))
       return engine::inputError(problem->what, "scene", problem->remedy);
+    options_.fitting.lowering = SceneFit{scene, lowered};
     scene = std::move(lowered);
-    notices.push_back({problem->what, "lowered to " + problem->remedy});
+    // Not again where the same was lowered at the start before.
+    if (scene != before) notices.push_back({problem->what, "lowered to " + problem->remedy});
   }
   if (const auto problem = feltProblem(scene))
     notices.push_back(

@@ -52,6 +52,8 @@ struct SceneFitting {
   /// Values with which the device is not stable (haptic::stabilityProblem) are lowered to the largest stable
   /// ones, with a notice; otherwise such a scene is refused.
   bool lowers = false;
+  /// The last lowering, also for another device: `plain` before and `fitted` after it. It is undone for the next start.
+  std::optional<SceneFit> lowering = {};
 };
 
 struct LoopClientOptions {
@@ -104,6 +106,8 @@ class DeviceLoop {
   /// From the next start on.
   void setFitting(const SceneFitting& fitting) { options_.fitting = fitting; }
   [[nodiscard]] const SceneFitting& fitting() const noexcept { return options_.fitting; }
+  /// A scene as its user has it: without the lowering, with what was changed since.
+  [[nodiscard]] haptic::Scene unlowered(const haptic::Scene& scene) const;
   /// Whether another scene of the user is felt at another scale than that of the start.
   [[nodiscard]] bool movesOtherwise(const haptic::Scene& scene) const;
   /// feltProblem() of a scene that was not fitted, at the scale of the start.
@@ -178,6 +182,7 @@ class DeviceLoop {
   /// `fitted`: of the scene as it was before a fit. What the user changed since the last fit stays.
   template <class Fitted>
   void fit(haptic::Scene& scene, Fitted fitted);
+  void undoLowering(haptic::Scene& scene);
   [[nodiscard]] bool simulatesHand() const { return driver_ != nullptr && driver_->simulates_hand; }
   void armByItself(const haptic::LoopState& state);
   void watch(const haptic::LoopState& state, std::vector<Notice>& notices);

@@ -139,7 +139,7 @@ engine::Status LoopClient::openScene(const haptic::Scene& scene) {
 }
 
 engine::Status LoopClient::fitScene() {
-  return startWith(scene_, {.fits = true, .lowers = true});
+  return startWith(loop_.unlowered(scene_), {.fits = true, .lowers = true});
 }
 
 engine::Status LoopClient::startWith(const haptic::Scene& scene, const SceneFitting& fitting) {

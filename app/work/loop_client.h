@@ -97,6 +97,8 @@ class LoopClient final {
   /// Fits the lengths of the scene, those of the default scene, to field and device, and what that is not stable with is lowered; as
   /// openScene().
   [[nodiscard]] engine::Status fitScene();
+  /// scene() as its user has it, also where it is lowered to what the device holds.
+  [[nodiscard]] haptic::Scene unlowered() const { return loop_.unlowered(scene_); }
   /// The fit in force; nothing where the user gave the scene.
   [[nodiscard]] const std::optional<SceneFit>& fit() const noexcept { return loop_.fitting().last; }
   /// Why a scene that the user gave is felt badly; nothing where it is not.

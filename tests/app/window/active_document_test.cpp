@@ -211,5 +211,35 @@ TEST(ActiveDocument, AnOwnSceneThatWasFittedIsTheSameWhenItsSessionIsOpenedAgain
   ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
 }
 
+// What one device does not hold is lowered for it; who opens the session with another has it as it was.
+TEST(ActiveDocument, ASessionKeepsWhatADeviceDidNotHold) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  std::filesystem::copy_file(tests::inSourceTree("tests/haptic/journal/sessions/contact_revision_1.fettle"),
+                             path);
+  haptic::Scene edited;
+  {
+    auto document = documentOf(path);
+    ASSERT_TRUE(document) << document.error().line();
+    ActiveDocument active;
+    ASSERT_TRUE(active.open(*document, {}, {}));
+    edited = active.client()->scene();
+    edited.effects.push_back(haptic::EffectKind::kEdgeSnap);
+    edited.params.edge_snap = {5.0, 1e-3};
+    ASSERT_TRUE(active.client()->setScene(edited));
+    ASSERT_TRUE(active.client()->setDevice("woodenhaptics"));
+    EXPECT_LT(active.client()->scene().params.edge_snap.force_n, 1.0);
+    Feedback feedback;
+    active.poll(startView(), feedback);  // notes
+    ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
+  }
+  auto document = documentOf(path);
+  ASSERT_TRUE(document) << document.error().line();
+  ActiveDocument active;
+  ASSERT_TRUE(active.open(*document, {}, {}));
+  EXPECT_EQ(active.client()->scene().params.edge_snap.force_n, 5.0);
+  ASSERT_TRUE(active.close(SessionKeeper::Afterwards::kKeep));
+}
+
 }  // namespace
 }  // namespace fettle::app

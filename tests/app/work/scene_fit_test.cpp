@@ -151,6 +151,40 @@ TEST_F(SceneFitTest, AKeptFitIsFittedAnewAndAKeptSceneWithoutOneIsNot) {
   EXPECT_EQ(as_it_is->scene(), kept);
 }
 
+// What a device does not hold is lowered for it alone: with the next one it is as its user had it.
+TEST_F(SceneFitTest, WhatWasLoweredForADeviceIsAsBeforeWithTheNextOne) {
+  const auto client = start(5e-3, "mouse", {});
+  ASSERT_TRUE(client);
+  haptic::Scene edited = client->scene();
+  edited.effects.push_back(haptic::EffectKind::kEdgeSnap);
+  edited.params.edge_snap.force_n = 0.9;
+  ASSERT_TRUE(client->setScene(edited));
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(client->setDevice(kDesk));
+    EXPECT_TRUE(says(client->takeNotices(), "edge snap"));
+    const double lowered_n = client->scene().params.edge_snap.force_n;
+    EXPECT_NEAR(lowered_n, 0.25, 1e-3) << "4 F over 1 mm of the hand, of 1 N/mm";
+    EXPECT_EQ(client->unlowered().params.edge_snap.force_n, 0.9);
+    ASSERT_TRUE(client->setRate(2000.0));
+    EXPECT_EQ(client->scene().params.edge_snap.force_n, lowered_n);
+    EXPECT_FALSE(says(client->takeNotices(), "edge snap")) << "it was said";
+    ASSERT_TRUE(client->setRate(1000.0));
+    ASSERT_TRUE(client->setDevice("mouse"));
+    EXPECT_EQ(client->scene(), edited);
+  }
+  ASSERT_TRUE(client->setDevice(kDesk));
+  ASSERT_TRUE(client->fitScene());
+  EXPECT_EQ(client->unlowered().params.edge_snap.force_n, 0.9);
+  // What the user typed meanwhile stays.
+  haptic::Scene typed = client->scene();
+  typed.params.edge_snap.force_n = 0.1;
+  typed.brush_radius_samples = 11.0;
+  ASSERT_TRUE(client->setScene(typed));
+  ASSERT_TRUE(client->setDevice("mouse"));
+  EXPECT_EQ(client->scene().params.edge_snap.force_n, 0.1);
+  EXPECT_EQ(client->scene().brush_radius_samples, 11.0);
+}
+
 // Edge snap on a fine scan: the pull is that of a reach of 63 samples, whatever the scene states.
 TEST_F(SceneFitTest, EdgeSnapThatIsTakenIsStableWithTheReachThatTheScanHas) {
   constexpr int kSamples = 1025;
