@@ -230,7 +230,7 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
     haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_,
                                                 haptic::MarkDistance::longestReachMm(grid));
     // For a device that is never stable there is no such scene.
-    if (!options_.fitting.lowers || stabilityProblem(lowered, options_.rate_hz))
+    if (!lowers() || stabilityProblem(lowered, options_.rate_hz))
       return engine::inputError(problem->what, "scene", problem->remedy);
     options_.fitting.lowering = SceneFit{scene, lowered};
     scene = std::move(lowered);

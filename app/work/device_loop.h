@@ -50,7 +50,7 @@ struct SceneFitting {
   /// The last fit, also of another device: what of it is still in the scene is fitted anew.
   std::optional<SceneFit> last = {};
   /// Values with which the device is not stable (haptic::stabilityProblem) are lowered to the largest stable
-  /// ones, with a notice; otherwise such a scene is refused.
+  /// ones, with a notice, as they are in a scene that is fitted; otherwise such a scene is refused.
   bool lowers = false;
   /// The last lowering, also for another device: `plain` before and `fitted` after it. It is undone for the next start.
   std::optional<SceneFit> lowering = {};
@@ -106,6 +106,8 @@ class DeviceLoop {
   /// From the next start on.
   void setFitting(const SceneFitting& fitting) { options_.fitting = fitting; }
   [[nodiscard]] const SceneFitting& fitting() const noexcept { return options_.fitting; }
+  /// Whether values with which a device is not stable are lowered at a start (SceneFitting).
+  [[nodiscard]] bool lowers() const noexcept { return options_.fitting.fits || options_.fitting.lowers; }
   /// A scene as its user has it: without the lowering, with what was changed since.
   [[nodiscard]] haptic::Scene unlowered(const haptic::Scene& scene) const;
   /// Whether another scene of the user is felt at another scale than that of the start.

@@ -99,7 +99,8 @@ engine::Status LoopClient::setRate(double rate_hz) {
   if (finished() || rate_hz == rate()) return {};
   if (!(rate_hz >= haptic::Pacer::kLowestRate_hz && rate_hz <= haptic::Pacer::kHighestRate_hz))
     return engine::inputError("a loop runs at 1000 to 10000 ticks per second", "rate");
-  if (const auto problem = loop_.stabilityProblem(scene_, rate_hz))
+  // What is lowered at a start is not refused before it.
+  if (const auto problem = loop_.stabilityProblem(scene_, rate_hz); problem && !loop_.lowers())
     return engine::inputError(problem->what, "rate", "first take " + problem->remedy);
   const bool disarmed = loop_.disarmed();
   const double before_hz = rate();

@@ -154,7 +154,7 @@ class LoopClient final {
   void calibrate() { loop_.calibrate(); }
   [[nodiscard]] const DeviceSetup& deviceSetup() const noexcept { return loop_.setup(); }
   /// Uses the device so from now on: ends the loop and starts another, as setRate() does. Errors: those of start(), after which the
-  /// device is used as before, or the loop is finished(); a scene that is not stable so, likewise.
+  /// device is used as before, or the loop is finished(); a scene that was given and is not stable so, likewise.
   [[nodiscard]] engine::Status setDeviceSetup(const DeviceSetup& setup);
   /// The words of the device (haptic::openDevice).
   [[nodiscard]] const std::string& deviceWords() const noexcept { return loop_.deviceWords(); }
@@ -183,8 +183,8 @@ class LoopClient final {
   /// A force device must be armed again; a disarmed one stays disarmed. Timing figures restart at zero, and a
   /// simulated hand restarts its path. A running filter is cancelled, and results computed before must not be
   /// adopted afterwards: the journal no longer has their base. Errors: a rate out of range, or one at which
-  /// the device is not stable with the scene, with nothing changed; those of start(), after which it runs at
-  /// the old rate, or is finished().
+  /// the device is not stable with a scene that was given, with nothing changed (a fitted one is lowered); those of start(), after
+  /// which it runs at the old rate, or is finished().
   [[nodiscard]] engine::Status setRate(double rate_hz);
 
   [[nodiscard]] std::vector<Notice> takeNotices() { return std::exchange(notices_, {}); }

@@ -1,11 +1,13 @@
 // Whose scene the loop takes: the default one is fitted to every device, one that the user gave is not.
 #include <algorithm>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "app/work/loop_client.h"
 #include "haptic/devices/known_devices.h"
 #include "tests/haptic/support/fields.h"
+#include "tests/support/temp_folder.h"
 
 namespace fettle::app {
 namespace {
@@ -183,6 +185,46 @@ TEST_F(SceneFitTest, WhatWasLoweredForADeviceIsAsBeforeWithTheNextOne) {
   ASSERT_TRUE(client->setDevice("mouse"));
   EXPECT_EQ(client->scene().params.edge_snap.force_n, 0.1);
   EXPECT_EQ(client->scene().brush_radius_samples, 11.0);
+}
+
+// The scale follows the reach that was measured, whatever the user typed for another: it is lowered, and not the setup refused.
+TEST_F(SceneFitTest, ADeviceIsSetUpWithTheLargestStiffnessForAnotherReach) {
+  const auto client = start(100.0, kDesk, {});
+  ASSERT_TRUE(client);
+  haptic::Scene edited = client->scene();
+  edited.stiffness_n_per_mm = *client->largestStiffness();
+  ASSERT_TRUE(client->setScene(edited));
+  EXPECT_NEAR(felt(*client), 1.0, 1e-3);
+  DeviceSetup setup = client->deviceSetup();
+  setup.reach = DeviceReach{glm::dvec3(-25.0), glm::dvec3(25.0)};
+  const engine::Status set = client->setDeviceSetup(setup);
+  ASSERT_TRUE(set) << set.error().line();
+  EXPECT_TRUE(says(client->takeNotices(), "is more than the"));
+  EXPECT_NEAR(felt(*client), 1.0, 1e-3);
+  EXPECT_NEAR(client->scene().stiffness_n_per_mm, 0.5, 1e-3) << "2 mm of the field for one of the hand";
+  setup.reach.reset();
+  ASSERT_TRUE(client->setDeviceSetup(setup));
+  EXPECT_EQ(client->scene(), edited);
+  EXPECT_NEAR(felt(*client), 1.0, 1e-3);
+}
+
+// Another rate holds less: a scene that is fitted is lowered for it, and as before with the first.
+TEST_F(SceneFitTest, ASlowerLoopLowersAFittedSceneAndRefusesOneThatWasGiven) {
+  tests::TempFolder folder;
+  const std::string strokes = folder.file("strokes.csv");
+  std::ofstream(strokes) << "t,x,y,z,tool\n0,5,5,1,feel\n60,5,5,1,feel\n";
+  for (const bool fits : {true, false}) {
+    const auto client = start(12.0, "hand:" + strokes, {.fits = fits});
+    ASSERT_TRUE(client);
+    ASSERT_TRUE(client->setRate(2000.0));
+    haptic::Scene stiff = client->scene();
+    stiff.stiffness_n_per_mm = 10.0;
+    ASSERT_TRUE(client->setScene(stiff));
+    EXPECT_EQ(static_cast<bool>(client->setRate(1000.0)), fits);
+    EXPECT_EQ(client->scene().stiffness_n_per_mm, fits ? 6.0 : 10.0);
+    ASSERT_TRUE(client->setRate(2000.0));
+    EXPECT_EQ(client->scene(), stiff);
+  }
 }
 
 // Edge snap on a fine scan: the pull is that of a reach of 63 samples, whatever the scene states.
