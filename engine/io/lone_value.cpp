@@ -356,6 +356,8 @@ std::vector<LoneValue> doubtLoneValues(const Version& field, const HeightRule& r
   Tally tally;
   for (int pass = 0; pass < kMostPasses; ++pass) {
     tally = tallyOf(field, suspects);
+    // What is said below is of these counts.
+    if (pass + 1 == kMostPasses) break;
     // Heights that the lattice has missed may make the range larger.
     bool reach = true;
     for (Suspect& one : suspects) {

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "engine/filter/filter.h"
+#include "engine/io/lone_value.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 
@@ -116,6 +118,41 @@ TEST(UndeclaredHoles, TheOptionIsInTheNumbersThatTheFileStores) {
   FETTLE_LOAD(scan, folder.file("counts.xyz"), options);
   EXPECT_TRUE(warned(scan.warnings, "exactly -3200 mm"));
   EXPECT_TRUE(warned(scan.warnings, "--no-data -32000"));
+}
+
+// Each of the rare numbers above the others makes the range smaller once it is left out, and with it what is near; they are more than
+// the passes over the field.
+TEST(UndeclaredHoles, WhatIsSaidToBeNearWasCountedSo) {
+  const TempFolder folder;
+  constexpr int kSide = 512;
+  std::mt19937 random(11);
+  std::vector<float> z;
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) {
+      const float noise = static_cast<float>(random() % 30000) * 1e-5F;
+      z.push_back((r * 7 + c) % 100 == 0 ? 0.5F : noise + (random() % 2 == 0 ? 0.0F : 0.69F));
+    }
+  // By the rule below 1e20 and more, which stand for holes.
+  for (int i = 0; i < 6; ++i)
+    z[static_cast<std::size_t>(200 * kSide + 40 + 7 * i)] = 1.1F + 0.1F * static_cast<float>(i);
+  for (int i = 0; i < 30; ++i)
+    z[static_cast<std::size_t>(300 * kSide + 40 + 7 * i)] = 0.5025F + 0.005F * static_cast<float>(i);
+  const Version field = makeField(gridOf(kSide, kSide), z);
+  HeightRule rule;
+  rule.scale = 1e-20;
+  std::vector<std::string> warnings;
+  const auto lone = doubtLoneValues(field, rule, warnings);
+  ASSERT_EQ(lone.size(), 1U);
+  ASSERT_EQ(warnings.size(), 1U);
+  int others = 0;
+  double within = 0.0;
+  const std::size_t at = warnings[0].find("only ");
+  ASSERT_NE(at, std::string::npos) << warnings[0];
+  ASSERT_EQ(std::sscanf(warnings[0].c_str() + at, "only %d others are within %lf", &others, &within), 2)
+      << warnings[0];
+  int counted = 0;
+  for (const float height : z) counted += height != 0.5F && std::abs(double{height} - 0.5) < within ? 1 : 0;
+  EXPECT_EQ(others, counted) << warnings[0];
 }
 
 TEST(UndeclaredHoles, SurfacesThatHaveAFlatAreNotDoubted) {
