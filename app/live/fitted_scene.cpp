@@ -113,14 +113,14 @@ std::optional<FeltProblem> feltProblem(const haptic::Scene& scene, const haptic:
     return std::nullopt;
   const double whole = reachScale(profile, grid);
   const double stiffness = scene.stiffness_n_per_mm;
-  if (scale < kMostOfReach * whole) {
-    const auto unstable = haptic::stabilityProblem(scene, profile, rate_hz, whole);
+  // Where the device holds the scene with the whole field, a smaller scale is the user's choice.
+  const auto unstable =
+      scale < kMostOfReach * whole ? haptic::stabilityProblem(scene, profile, rate_hz, whole) : std::nullopt;
+  if (unstable)
     return FeltProblem{
         fmt::format("the hand reaches {:.3g} of {:.3g} mm of the field, with the whole of which {}",
-                    2.0 * profile.workspace_radius_mm * scale, sidesOf(grid).smaller_mm,
-                    unstable ? unstable->what : "the scene is not stable"),
-        unstable ? unstable->remedy : ""};
-  }
+                    2.0 * profile.workspace_radius_mm * scale, sidesOf(grid).smaller_mm, unstable->what),
+        unstable->remedy};
   const double faint = std::min(kFaint_n_per_mm, 0.5 * profile.max_stiffness_n_per_mm);
   if (stiffness * scale >= faint) return std::nullopt;
   const double held = haptic::largestStiffness(scene, profile, rate_hz, scale);

@@ -210,6 +210,19 @@ TEST(FittedScene, AnOwnSceneThatIsFeltBadlyIsSaidWithAStiffnessThatIsFelt) {
   EXPECT_FALSE(feltProblem(own, DeviceProfile{}, gridOfSide(5e-3), kRate_hz, 1e-5)) << "it gives no force";
 }
 
+// A user may look closer than the device needs: nothing is wrong then, until the spring is not felt.
+TEST(FittedScene, AScaleBelowWhatTheDeviceHoldsIsNoProblemOfTheScene) {
+  const DeviceProfile falcon = *haptic::knownProfile("falcon");
+  const engine::Grid grid = gridOfSide(100.0);
+  const Scene own = haptic::defaultScene();
+  ASSERT_FALSE(haptic::stabilityProblem(own, falcon, kRate_hz, reachScale(falcon, grid)));
+  EXPECT_FALSE(feltProblem(own, falcon, grid, kRate_hz, 0.4));
+  const auto faint = feltProblem(own, falcon, grid, kRate_hz, 0.01);
+  ASSERT_TRUE(faint);
+  EXPECT_NE(faint->what.find("hardly felt"), std::string::npos) << faint->what;
+  EXPECT_NE(faint->remedy, "");
+}
+
 // A hand at a device on the desk, which presses on a place, waits there, and slides on.
 class PressingHand final : public haptic::Device {
  public:
