@@ -115,9 +115,9 @@ bool fits(const RecordArguments& options, const haptic::DeviceProfile& profile) 
 // A scene of the user keeps its effects, which the device holds with lower numbers.
 haptic::Scene fittedFor(const RecordArguments& options, const haptic::DeviceProfile& profile,
                         const engine::Grid& grid, const haptic::Scene& given) {
-  haptic::Scene fitted = fittedScene(given, profile, grid, options.rate_hz);
-  if (!options.fit || !profile.gives_force) return fitted;
   const double scale = options.scale > 0.0 ? options.scale : wholeFieldScale(profile, grid);
+  haptic::Scene fitted = fittedScene(given, profile, grid, options.rate_hz, scale);
+  if (!options.fit || !profile.gives_force) return fitted;
   const double longest_reach_mm = longestSnapMm(grid);
   if (const auto problem =
           haptic::stabilityProblem(fitted, profile, options.rate_hz, scale, longest_reach_mm)) {
@@ -138,9 +138,9 @@ std::string sceneOut(const RecordArguments& options, const haptic::Scene& felt, 
 engine::Result<haptic::Workspace> place(const RecordArguments& options, const engine::Version& felt,
                                         const haptic::DeviceProfile& profile, const haptic::Scene& scene) {
   if (profile.space == haptic::DeviceSpace::kField) {
-    if (options.scale != 0.0)
+    if (options.scale != 0.0 || options.fit)
       return engine::inputError(fmt::format("{} moves in millimetres of the field already", profile.name),
-                                "--scale", "omit it");
+                                options.fit ? "--fit" : "--scale", "omit it");
     return haptic::Workspace{};
   }
   const engine::Grid& grid = felt.grid();
@@ -451,8 +451,9 @@ void addRecord(Command root, Chosen& chosen) {
        .otherwise = "the default one, fitted to scan and device"},
       {.name = "--fit",
        .to = &options->fit,
-       .text = "Take stiffness, damping and lengths of the scene from the default one, fitted to scan and "
-               "device"},
+       .text =
+           "Take stiffness, damping and lengths of the scene from the default one, fitted to scan, device "
+           "and --scale"},
       {.name = "--scene-out",
        .to = &options->scene_out,
        .text = "Write the scene that was felt, for fettle replay",

@@ -91,6 +91,11 @@ double wholeFieldScale(const haptic::DeviceProfile& profile, const engine::Grid&
 
 haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfile& profile,
                           const engine::Grid& grid, double rate_hz) {
+  return fittedScene(scene, profile, grid, rate_hz, wholeFieldScale(profile, grid));
+}
+
+haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfile& profile,
+                          const engine::Grid& grid, double rate_hz, double scale) {
   const haptic::Scene plain = haptic::defaultScene();
   const haptic::Scene usual = withLengthsOf(scene, plain);
   const double ordinary = ordinaryScale(profile, sidesOf(grid).smaller_mm);
@@ -98,7 +103,6 @@ haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfil
                           ? std::min(ordinary, haptic::largestStableScale(plain, profile, rate_hz))
                           : ordinary;
   if (!(felt > 0.0)) return usual;
-  const double scale = wholeFieldScale(profile, grid);
   if (felt == scale) return usual;
   haptic::Scene fitted = magnified(usual, scale / felt);
   fitted.tip_radius_mm =

@@ -37,9 +37,12 @@ struct SceneFit {
 /// a field of one sample.
 [[nodiscard]] double wholeFieldScale(const haptic::DeviceProfile& profile, const engine::Grid& grid);
 
-/// The scene with the default scene's lengths, fitted to be felt at wholeFieldScale() or less. Stable there with the effects of the
-/// default scene; with others as at 1:1, see its stabilityProblem. A value out of a scene's range is the nearest in it. With the
-/// default's lengths as they are for a device that holds no stiffness at all.
+/// The scene with the default scene's lengths, fitted to be felt at `scale` [mm of the field per mm of the hand] or less. Stable
+/// there with the effects of the default scene; with others as at 1:1, see its stabilityProblem. A value out of a scene's range is
+/// the nearest in it. With the default's lengths as they are for a device that holds no stiffness at all.
+[[nodiscard]] haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfile& profile,
+                                        const engine::Grid& grid, double rate_hz, double scale);
+/// The same at wholeFieldScale().
 [[nodiscard]] haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfile& profile,
                                         const engine::Grid& grid, double rate_hz);
 

@@ -86,6 +86,20 @@ TEST_F(Stability, RecordSaysWhyAGivenSceneIsFeltBadlyAndFitsItWhenAsked) {
   EXPECT_EQ(text.find("stiffness_n_per_mm = 20"), std::string::npos) << text;
 }
 
+TEST_F(Stability, FitIsRefusedWhereNothingIsFittedAndIsForTheScaleThatIsGiven) {
+  expectRefused(record("hand:", {"--fit"}), "--fit");
+  const auto stiffnessAt = [&](const std::string& scale) {
+    const Outcome done = fettle({"record", scan, recorded, "--device", "woodenhaptics", "--seconds", "0.1",
+                                 "--json", "--fit", "--scale", scale});
+    const auto report = nlohmann::json::parse(done.out);
+    EXPECT_FALSE(report.contains("warnings")) << report["warnings"];
+    return report["felt_stiffness_n_per_mm"].get<double>();
+  };
+  const double coarse = stiffnessAt("0.5");
+  EXPECT_GT(coarse, 0.2);
+  EXPECT_NEAR(stiffnessAt("0.05") / coarse, 1.0, 2e-3);
+}
+
 TEST_F(Stability, RecordSaysThatItWaitsForADeviceThatIsNotThereAndHowToEnd) {
   const Outcome waited =
       fettle({"record", scan, recorded, "--device", "woodenhaptics", "--seconds", "0.3", "-q", "--json"});

@@ -223,6 +223,23 @@ TEST(FittedScene, AScaleBelowWhatTheDeviceHoldsIsNoProblemOfTheScene) {
   EXPECT_NE(faint->remedy, "");
 }
 
+// At a scale of the user as at that of the whole field: in the hand it is the same.
+TEST(FittedScene, IsFittedToTheScaleThatItIsFeltAt) {
+  onKnownDevices([](const DeviceProfile& profile) {
+    for (const SizedField& field : sizedFields()) {
+      SCOPED_TRACE(field.name);
+      const double whole = wholeFieldScale(profile, field.grid);
+      const Scene plain = haptic::defaultScene();
+      const double felt = whole * fittedScene(plain, profile, field.grid, kRate_hz).stiffness_n_per_mm;
+      for (const double scale : {0.1 * whole, 3.0 * whole}) {
+        const Scene scene = fittedScene(plain, profile, field.grid, kRate_hz, scale);
+        EXPECT_NEAR(scale * scene.stiffness_n_per_mm / felt, 1.0, 2e-3);
+        EXPECT_FALSE(haptic::stabilityProblem(scene, profile, kRate_hz, scale));
+      }
+    }
+  });
+}
+
 // A hand at a device on the desk, which presses on a place, waits there, and slides on.
 class PressingHand final : public haptic::Device {
  public:
