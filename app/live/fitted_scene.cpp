@@ -57,7 +57,8 @@ haptic::Scene magnified(haptic::Scene scene, double magnification) {
     const int power = haptic::lengthPower(number);
     if (power == 0) continue;
     const double value = number.of(scene);
-    // What is felt as stiff or damping is rounded to the side that is stable.
+    // Stiffness and damping are rounded to the side that is stable; lengths, which bound a stiffness by way of a force, to the
+    // nearest: what is then over by a two-thousandth is left to stabilityProblem.
     const double fitted =
         power > 0 ? toFourDigits(value * magnification) : haptic::roundedDown(value / magnification);
     number.set(scene, std::clamp(fitted, number.low, number.high));
