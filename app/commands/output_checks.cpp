@@ -7,10 +7,10 @@
 
 namespace fettle::app {
 
-void addForceOption(Command command, Replacing& replacing) {
+void addForceOption(Command command, Replacing& replacing, const std::string& replaces) {
   command.add({{.name = "--force",
                 .to = [&replacing] { replacing = Replacing::kAnything; },
-                .text = "Replace a session that has a journal"}});
+                .text = "Replace a session that has a journal" + replaces}});
 }
 
 engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs,

@@ -13,7 +13,8 @@ enum class Replacing {
   kNoWork,   ///< any file but a session that has a journal
   kAnything  ///< --force
 };
-void addForceOption(Command command, Replacing& replacing);
+/// `replaces`: more that the command replaces with it, ", and ...".
+void addForceOption(Command command, Replacing& replacing, const std::string& replaces = {});
 
 /// checkPlaces() for a command, which cannot ask: also refuses to replace a session that has a journal,
 /// unless `replacing` allows it. Where an output replaces the scan of another session, that session stores

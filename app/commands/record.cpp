@@ -3,6 +3,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,7 +21,9 @@
 #include "app/live/live_session.h"
 #include "app/live/placement.h"
 #include "app/terminal.h"
+#include "app/work/outputs.h"
 #include "app/work/scene_text_file.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/io/raster/marks.h"
 #include "haptic/base/strokes.h"
 #include "haptic/devices/enumerate.h"
@@ -127,10 +134,41 @@ haptic::Scene fittedFor(const RecordArguments& options, const haptic::DeviceProf
   return fitted;
 }
 
-// What is recorded is replayed with the scene that was felt: beside the strokes, unless a place is given.
-std::string sceneOut(const RecordArguments& options, const haptic::Scene& felt, const haptic::Scene& given) {
-  if (!options.scene_out.empty() || felt == given) return options.scene_out;
-  return std::filesystem::path(options.strokes).replace_extension(".scene.toml").string();
+// Files of the scene that was felt, with which the recording is replayed.
+struct SceneOutputs {
+  std::string named;                 // in the report; empty: it is the one that was given
+  std::vector<std::string> written;  // where another lies, or none
+};
+
+bool isSamePlace(const std::string& a, const std::string& b) {
+  std::error_code none;
+  return !a.empty() &&
+         std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none);
+}
+
+// Where it was asked for, else beside the strokes unless it is the one that was given. A replay takes whichever lies beside the
+// strokes: that of the recording which is replaced goes with it; what somebody wrote there stays, unless --force.
+engine::Result<SceneOutputs> sceneOutputs(const RecordArguments& options, const haptic::Scene& felt,
+                                          const haptic::Scene& given) {
+  SceneOutputs outputs;
+  if (!options.scene_out.empty()) outputs.written.push_back(outputs.named = options.scene_out);
+  const std::string beside = sceneBeside(options.strokes);
+  if (isSamePlace(options.scene_out, beside)) return outputs;
+  std::error_code none;
+  const bool lies = std::filesystem::exists(beside, none);
+  if (!lies && (felt == given || !options.scene_out.empty())) return outputs;
+  if (outputs.named.empty()) outputs.named = beside;
+  if (lies) {
+    const auto lying = haptic::loadScene(beside);
+    if (lying && *lying == felt) return outputs;
+    const bool of_replaced =
+        std::filesystem::exists(options.strokes, none) && lying && isAsWritten(beside, *lying);
+    if (!of_replaced && options.replacing == Replacing::kNoWork)
+      return engine::inputError("another scene lies there, which a replay of these strokes would take",
+                                beside, "name other strokes, move it, or let --force replace it");
+  }
+  outputs.written.push_back(beside);
+  return outputs;
 }
 
 // Placement of the device in the field: --scale, or the whole field within reach unless the device cannot
@@ -292,17 +330,34 @@ engine::Result<Field> load(const RecordArguments& options, engine::JobControl& j
   return Field{*std::move(original), *std::move(marked)};
 }
 
-// The recording is stored first, regardless of other errors, and cannot be cancelled.
+// The recording is stored first, regardless of other errors, and cannot be cancelled. Its scenes together with it, once all of
+// its rows are written: earlier recordings and their scenes stay where it fails.
 engine::Status save(const RecordArguments& options, const engine::Version& field,
-                    const engine::Version& original, haptic::StrokesWriter& strokes) {
+                    const engine::Version& original, haptic::StrokesWriter& strokes,
+                    std::vector<engine::AtomicFile>& scenes) {
   engine::JobControl job;
+  if (engine::Status status = strokes.flush(); !status) return status;
+  engine::Status with_scenes;
+  for (engine::AtomicFile& scene : scenes)
+    if (engine::Status status = scene.commit(); !status) with_scenes = std::move(status);
   if (engine::Status status = strokes.commit(); !status) return status;
+  if (!with_scenes) return with_scenes;
   if (!options.out.empty())
     if (engine::Status status = saveField(field, options.out, job, beginningWith(original)); !status)
       return status;
   if (!options.marks_out.empty())
     if (engine::Status status = engine::exportMarks(field, options.marks_out); !status) return status;
   return {};
+}
+
+engine::Status checkFiles(const RecordArguments& options, const ChosenDevice& chosen,
+                          const std::vector<std::string>& scenes, engine::JobControl& job) {
+  std::vector<Output> outputs = {{options.strokes, OutputKind::kText},
+                                 {options.out, OutputKind::kField},
+                                 {options.marks_out, OutputKind::kMarks}};
+  for (const std::string& scene : scenes) outputs.push_back({scene, OutputKind::kText});
+  return checkOutputs(outputs, {options.scan, options.scene, options.marks, options.original, chosen.file},
+                      options.replacing, job);
 }
 
 engine::Result<Report> record(const RecordArguments& options, engine::JobControl& job) {
@@ -312,12 +367,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
     return tl::unexpected(status.error());
   auto chosen = choose(options, *given);
   if (!chosen) return tl::unexpected(chosen.error());
-  if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
-                                  {options.out, OutputKind::kField},
-                                  {options.marks_out, OutputKind::kMarks}},
-                                 {options.scan, options.scene, options.marks, options.original, chosen->file},
-                                 options.replacing, job);
-      !status)
+  if (auto status = checkFiles(options, *chosen, {options.scene_out}, job); !status)
     return tl::unexpected(status.error());
   const auto field = load(options, job);
   if (!field) return tl::unexpected(field.error());
@@ -327,15 +377,15 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
     scene = fittedFor(options, profile, felt.grid(), *given);
   const auto settings = settingsFor(options, *chosen, felt, scene);
   if (!settings) return tl::unexpected(settings.error());
-  const std::string scene_out = sceneOut(options, scene, *given);
-  if (!scene_out.empty()) {
-    if (auto status =
-            checkOutputs({{scene_out, OutputKind::kText}},
-                         {options.scan, options.scene, options.strokes, options.out}, options.replacing, job);
-        !status)
-      return tl::unexpected(status.error());
-    // Before the recording, which is not to be replayed without it.
-    if (auto status = writeScene(scene_out, scene); !status) return tl::unexpected(status.error());
+  const auto scene_files = sceneOutputs(options, scene, *given);
+  if (!scene_files) return tl::unexpected(scene_files.error());
+  if (auto status = checkFiles(options, *chosen, scene_files->written, job); !status)
+    return tl::unexpected(status.error());
+  std::vector<engine::AtomicFile> scenes;
+  for (const std::string& path : scene_files->written) {
+    auto file = prepareScene(path, scene);
+    if (!file) return tl::unexpected(file.error());
+    scenes.push_back(*std::move(file));
   }
   auto strokes = haptic::StrokesWriter::create(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
@@ -344,7 +394,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
   SessionLog log(*strokes);
   auto outcome = runLive(field->start, field->original, scene, device, *settings, log, job);
   if (!outcome) return tl::unexpected(outcome.error());
-  if (auto status = save(options, outcome->field, field->original, *strokes); !status)
+  if (auto status = save(options, outcome->field, field->original, *strokes, scenes); !status)
     return tl::unexpected(status.error());
 
   // Verifies that the recording is complete: the file, read back and replayed, gives the same field.
@@ -393,7 +443,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"safety", safetyOf(*outcome, log.given(), settings->loop.options.limits)},
                 {"device", deviceOf(device, outcome->device)},
                 {"events", eventsOf(outcome->events)}};
-  if (!scene_out.empty()) report["scene"] = scene_out;
+  if (!scene_files->named.empty()) report["scene"] = scene_files->named;
   return report;
 }
 
@@ -409,13 +459,16 @@ constexpr const char* kRecordNotes =
     "end.\n"
     "Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, "
     "in a "
-    "temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene "
+    "temporary file next to STROKES, and its scene in another. Bit-identical: fettle replay SCAN STROKES "
+    "OUT, "
+    "with the same --scene "
     "and --marks.\n"
     "Without --scene and --scale the default scene is fitted to scan and device: all of the scan is within "
     "the hand's reach, and "
-    "is felt as a part of ordinary size. The scene that was felt is written beside STROKES, as STROKES with "
-    ".scene.toml, where it is not "
-    "the one that was given: --scene of fettle replay takes it.";
+    "is felt as a part of ordinary size. The scene that was felt is written beside STROKES, as "
+    "STROKES.scene.toml, where it is not "
+    "the one that was given: fettle replay takes it by itself. A scene that somebody wrote there is replaced "
+    "with --force only.";
 
 }  // namespace
 
@@ -508,7 +561,8 @@ void addRecord(Command root, Chosen& chosen) {
        .text = "Read keys from standard input that is not a terminal"},
   });
   addOriginalOption(command, options->original);
-  addForceOption(command, options->replacing);
+  addForceOption(command, options->replacing,
+                 ", and a scene beside STROKES that fettle record did not write");
   addScanOptions(command, options->reading);
   command.notes(fmt::format(kRecordNotes, toolKeys(", ")));
   command.examples({{"fettle record scan.tif again.csv touched.tif --device hand:strokes.csv --seconds 1",

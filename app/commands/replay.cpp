@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <span>
@@ -22,6 +23,7 @@
 #include "app/work/filter_compute.h"
 #include "app/work/memory_places.h"
 #include "app/work/open_document.h"
+#include "app/work/scene_text_file.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/piece.h"
@@ -227,6 +229,13 @@ engine::Status settleNames(ReplayArguments& options) {
   return {};
 }
 
+// The scene of a recording that was felt with another than the one that was given: with the default one its bits are others.
+std::string sceneThatLiesBeside(const std::string& strokes) {
+  std::string path = sceneBeside(strokes);
+  std::error_code none;
+  return std::filesystem::exists(path, none) ? path : std::string();
+}
+
 engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& job) {
   ReplayArguments options = given;
   if (auto named = settleNames(options); !named) return tl::unexpected(named.error());
@@ -234,6 +243,8 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (isStream(options.strokes))
     return engine::inputError("STROKES takes no -, standard input", "-",
                               "name a file, ./- for one of that name");
+  const std::string beside = options.scene.empty() ? sceneThatLiesBeside(options.strokes) : std::string();
+  if (!beside.empty()) options.scene = beside;
   if (auto status =
           checkOutputs({{options.out, OutputKind::kField, options.to},
                         {options.marks_out, OutputKind::kMarks, kMarksStream},
@@ -266,8 +277,8 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
   if (options.certify) replay_options.measure = haptic::MeasureContact::kYes;
   // Without a device or force nothing can be unstable, and the bits do not depend on it. On a device the
-  // scene would be refused, so a warning is given here first.
-  if (!options.scene.empty())
+  // scene would be refused, so a warning is given here first. What lies beside strokes was felt on its own.
+  if (!options.scene.empty() && beside.empty())
     if (const auto problem =
             problemOnEveryDevice(*scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
       warn(fmt::format("{}: {}", options.scene, withoutForceText(*problem)));
@@ -303,6 +314,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
                 {"seconds", r.seconds},
                 {"ticks_per_second", r.ticks_per_second},
                 {"hash", hashOf(result->field)}};
+  if (!beside.empty()) report["scene"] = beside;
   if (auto status = saveSound(sound, options.sound, report); !status) return tl::unexpected(status.error());
   if (options.certify) {
     report["above_certified"] = r.above_certified;
@@ -340,7 +352,8 @@ void addReplay(Command root, Chosen& chosen) {
       {.name = "--scene",
        .to = &options->scene,
        .text = "Scene file: tip, stiffness, brush, effects (TOML)",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kFile,
+       .otherwise = "STROKES.scene.toml where fettle record wrote it, else the default one"},
       {.name = "--marks",
        .to = &options->marks,
        .text = "Picture of marks to start from",

@@ -1,6 +1,9 @@
 #include "app/work/scene_text_file.h"
 
-#include "engine/io/files/atomic_file.h"
+#include <fstream>
+#include <iterator>
+#include <utility>
+
 #include "haptic/contact/sphere_tip.h"
 
 namespace fettle::app {
@@ -14,8 +17,25 @@ engine::Result<haptic::Scene> readSceneFor(const std::string& path, const engine
 }
 
 engine::Status writeScene(const std::string& path, const haptic::Scene& scene) {
+  auto file = prepareScene(path, scene);
+  return file ? file->commit() : tl::unexpected(file.error());
+}
+
+engine::Result<engine::AtomicFile> prepareScene(const std::string& path, const haptic::Scene& scene) {
   if (auto problem = haptic::sceneProblem(scene)) return engine::inputError(*std::move(problem), path);
-  return engine::writeFileAtomically(path, haptic::sceneText(scene));
+  auto file = engine::AtomicFile::create(path);
+  if (!file) return file;
+  if (auto status = file->write(haptic::sceneText(scene)); !status) return tl::unexpected(status.error());
+  return file;
+}
+
+bool isAsWritten(const std::string& path, const haptic::Scene& scene) {
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), {}) == haptic::sceneText(scene);
+}
+
+std::string sceneBeside(const std::string& strokes) {
+  return strokes + ".scene.toml";
 }
 
 }  // namespace fettle::app

@@ -1,6 +1,7 @@
 // Scenes that ask more of a device than it holds: refused where force goes to a hand, said where none does.
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,7 @@ TEST_F(Stability, RecordSaysWhyAGivenSceneIsFeltBadlyAndFitsItWhenAsked) {
   EXPECT_NE(said.find("the hand reaches"), std::string::npos) << said;
   EXPECT_NE(said.find("give --fit, or at most"), std::string::npos) << said;
   EXPECT_FALSE(corner.contains("scene"));
-  EXPECT_FALSE(std::filesystem::exists(folder.file("recorded.scene.toml")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("recorded.csv.scene.toml")));
   const auto fitted =
       nlohmann::json::parse(recordWith({"--scene", own, "--fit", "--scene-out", out + ".toml"}).out);
   EXPECT_FALSE(fitted.contains("warnings")) << fitted["warnings"];
@@ -84,6 +85,81 @@ TEST_F(Stability, RecordSaysWhyAGivenSceneIsFeltBadlyAndFitsItWhenAsked) {
   const std::string text((std::istreambuf_iterator<char>(written)), std::istreambuf_iterator<char>());
   EXPECT_NE(text.find("radius_samples = 3"), std::string::npos) << text;
   EXPECT_EQ(text.find("stiffness_n_per_mm = 20"), std::string::npos) << text;
+}
+
+std::string textIn(const std::string& path) {
+  std::ifstream file(path);
+  return {(std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>()};
+}
+
+class SceneBeside : public Stability {
+ protected:
+  [[nodiscard]] Outcome onADesk(std::vector<std::string> more, const ProcessOptions& how = {}) const {
+    std::vector<std::string> all{"record", scan, recorded, "--device", "woodenhaptics"};
+    all.insert(all.end(), more.begin(), more.end());
+    return fettle(all, how);
+  }
+  [[nodiscard]] nlohmann::json replayed() const { return fettleJson({"replay", scan, recorded, out}); }
+  std::string beside = recorded + ".scene.toml";
+};
+
+TEST_F(SceneBeside, AReplayTakesItAndSaysSo) {
+  const auto report = nlohmann::json::parse(onADesk({"--json", "--seconds", "0.1"}).out);
+  EXPECT_EQ(report["scene"], beside);
+  const auto again = replayed();
+  EXPECT_EQ(again["scene"], beside);
+  EXPECT_EQ(again["hash"], report["hash"]);
+  EXPECT_FALSE(fettleJson({"replay", scan, recorded, out, "--scene", beside}).contains("scene"));
+  // It is read, and so not replaced by what is written.
+  expectRefused(fettle({"replay", scan, recorded, out, "--forces", beside}), "would replace an input");
+}
+
+TEST_F(SceneBeside, ItIsReplacedTogetherWithItsRecordingOrNot) {
+  ASSERT_EQ(onADesk({"--seconds", "0.1"}).status, 0);
+  const std::string fitted = textIn(beside), strokes = textIn(recorded);
+  const std::string own = scene("[force]\nstiffness_n_per_mm = 0.9\n[brush]\nradius_samples = 3\n");
+  ProcessOptions full;
+  full.file_limit = 8192;
+  ASSERT_LT(fitted.size(), *full.file_limit);
+  const Outcome failed = onADesk({"--scene", own, "--fit", "--seconds", "1"}, full);
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_NE(failed.err.find("limit on file sizes"), std::string::npos) << failed.err;
+  EXPECT_EQ(textIn(beside), fitted);
+  EXPECT_EQ(textIn(recorded), strokes);
+  // One that was not fitted lies there as well, instead of that of the recording before.
+  const auto plain =
+      nlohmann::json::parse(onADesk({"--json", "--scene", own, "--scale", "0.5", "--seconds", "0.1"}).out);
+  EXPECT_EQ(plain["scene"], beside);
+  EXPECT_NE(textIn(beside), fitted);
+  EXPECT_NE(textIn(beside).find("stiffness_n_per_mm = 0.9"), std::string::npos) << textIn(beside);
+  EXPECT_EQ(replayed()["scene"], beside);
+  // And is the scene of another recording, where it lies.
+  EXPECT_EQ(onADesk({"--scene", beside, "--scale", "0.5", "--seconds", "0.1"}).status, 0);
+}
+
+TEST_F(SceneBeside, WhatSomebodyWroteThereIsReplacedWithForceAlone) {
+  const std::string text = "# by hand\n[force]\nstiffness_n_per_mm = 0.25\n";
+  std::ofstream(beside) << text;
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{}, {"--scene-out", folder.file("other.toml")}}) {
+    std::vector<std::string> arguments = {"--seconds", "0.1"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    expectRefused(onADesk(arguments), beside);
+    EXPECT_EQ(textIn(beside), text);
+    EXPECT_FALSE(std::filesystem::exists(recorded));
+  }
+  EXPECT_EQ(onADesk({"--seconds", "0.1", "--force"}).status, 0);
+  EXPECT_NE(textIn(beside), text);
+  // By its name it is replaced as other outputs are.
+  std::ofstream(beside) << text;
+  EXPECT_EQ(onADesk({"--seconds", "0.1", "--scene-out", beside}).status, 0);
+  EXPECT_NE(textIn(beside), text);
+}
+
+TEST_F(SceneBeside, IsNeverWrittenOverWhatIsRead) {
+  const std::string strokes = textIn(path);
+  expectRefused(record("hand:", {"--scene-out", path}), "would replace an input");
+  EXPECT_EQ(textIn(path), strokes);
 }
 
 TEST_F(Stability, FitIsRefusedWhereNothingIsFittedAndIsForTheScaleThatIsGiven) {

@@ -87,7 +87,7 @@ TEST_P(LiveSession, AScanOfMicrometresOrKilometresIsFeltKeptAndReplayedToTheSame
     EXPECT_GT(report["marked"], 20);
     EXPECT_NEAR(report["scale"].get<double>() / (side_mm / 200.0), 1.0, 1e-6);
     EXPECT_NEAR(report["felt_stiffness_n_per_mm"].get<double>(), 1.0, 1e-3);
-    EXPECT_EQ(report["scene"], session->folder.file("session.scene.toml"));
+    EXPECT_EQ(report["scene"], session->folder.file("session.csv.scene.toml"));
   }
 }
 
