@@ -79,6 +79,13 @@ std::optional<double> largestHeld(const LoopClient& client, const haptic::SceneN
   return held < number.high ? std::optional(held) : std::nullopt;
 }
 
+double unlessSaid(const LoopClient& client, const haptic::SceneNumber& number) {
+  const auto& fit = client.fit();
+  const double plain = number.of(haptic::defaultScene());
+  const bool fitted = fit && (haptic::lengthPower(number) != 0 || number.of(fit->plain) == plain);
+  return fitted ? number.of(fit->fitted) : plain;
+}
+
 void listEffect(LoopClient& client, haptic::EffectKind kind, bool on, std::vector<Notice>& notices) {
   haptic::Scene scene = client.scene();
   if (scene.lists(kind) == on) return;

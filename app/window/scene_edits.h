@@ -24,6 +24,8 @@ void setNumber(LoopClient& client, const haptic::SceneNumber& number, double typ
                std::vector<Notice>& notices);
 /// The largest value that the device holds with the rest of the scene; nothing where it holds the whole range.
 [[nodiscard]] std::optional<double> largestHeld(const LoopClient& client, const haptic::SceneNumber& number);
+/// What a number is where no scene says otherwise: in a scene that is fitted, its lengths are those of the fit.
+[[nodiscard]] double unlessSaid(const LoopClient& client, const haptic::SceneNumber& number);
 /// Lists an effect or leaves it out; the spring comes before those that depend on it.
 void listEffect(LoopClient& client, haptic::EffectKind kind, bool on, std::vector<Notice>& notices);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/live/fitted_scene.h"
 #include "app/texts/texts.h"
 #include "app/work/scene_text_file.h"
 #include "app/work/session_guard.h"
@@ -31,6 +32,7 @@ haptic::Scene withToolsOf(haptic::Scene scene, const haptic::Scene& other) {
 void SceneFiles::begin(const LoopClient& client, std::string path) {
   path_ = std::move(path);
   saved_ = client.scene();
+  saved_fit_ = client.fit();
 }
 
 bool SceneFiles::open(const std::string& path, LoopClient& client, Feedback& feedback) {
@@ -79,7 +81,12 @@ std::string SceneFiles::title(const LoopClient& client) const {
 }
 
 bool SceneFiles::changed(const LoopClient& client) const {
-  return withToolsOf(client.scene(), saved_) != saved_;
+  haptic::Scene saved = saved_;
+  if (const auto& fit = client.fit(); fit && saved_fit_) {
+    saved = withEdits(fit->fitted, saved_, saved_fit_->fitted);
+    saved.effects = saved_.effects;
+  }
+  return withToolsOf(client.scene(), saved) != saved;
 }
 
 }  // namespace fettle::app

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "app/window/questions.h"
 #include "app/work/loop_client.h"
@@ -24,19 +26,20 @@ class SceneFiles {
   /// Writes the scene, whole or not at all, in place of a file that is there. False, with a message: it could not be written.
   bool save(const std::string& path, const LoopClient& client, Feedback& feedback);
   /// Whoever asked whether to save was told not to.
-  void leave(const LoopClient& client) { saved_ = client.scene(); }
+  void leave(const LoopClient& client) { begin(client, std::move(path_)); }
 
   /// Of the file; empty without one.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// "listen.toml", "listen.toml, changed", "no file".
   [[nodiscard]] std::string title(const LoopClient& client) const;
   /// Whether effects, their numbers or the force are others than in the file, or than at the beginning. Brushes and tips belong
-  /// to the tools, which everybody changes.
+  /// to the tools, which everybody changes; what was fitted anew to another device was changed by nobody.
   [[nodiscard]] bool changed(const LoopClient& client) const;
 
  private:
   std::string path_;
   haptic::Scene saved_;
+  std::optional<SceneFit> saved_fit_;  // in force then
 };
 
 }  // namespace fettle::app

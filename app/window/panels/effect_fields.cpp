@@ -22,7 +22,7 @@ std::string titleOfEffect(std::string_view word) {
 
 std::string numberTip(const LoopClient& client, const haptic::SceneNumber& number) {
   std::string tip = trFormat("{} {}; {:.4g} unless a scene says otherwise.", tr(number.says),
-                             rangeInWords(number), number.of(haptic::defaultScene()));
+                             rangeInWords(number), unlessSaid(client, number));
   if (const auto held = largestHeld(client, number))
     tip += trFormat(" The {} holds {:.4g} {} at most with the rest of the scene.",
                     client.device().profile().name, *held, number.unit);
