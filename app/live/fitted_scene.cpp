@@ -119,8 +119,9 @@ std::optional<FeltProblem> feltProblem(const haptic::Scene& scene, const haptic:
   const double whole = reachScale(profile, grid);
   const double stiffness = scene.stiffness_n_per_mm;
   // Where the device holds the scene with the whole field, a smaller scale is the user's choice.
-  const auto unstable =
-      scale < kMostOfReach * whole ? haptic::stabilityProblem(scene, profile, rate_hz, whole) : std::nullopt;
+  const auto unstable = scale < kMostOfReach * whole
+                            ? haptic::stabilityProblem(scene, profile, rate_hz, whole, longestSnapMm(grid))
+                            : std::nullopt;
   if (unstable)
     return FeltProblem{
         fmt::format("the hand reaches {:.3g} of {:.3g} mm of the field, with the whole of which {}",
