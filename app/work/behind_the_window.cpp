@@ -29,8 +29,9 @@ std::atomic<bool> window_is_before{false};
 }  // namespace
 
 void goBehindTheWindow() noexcept {
-  // Where it is refused all threads are as before.
-  static_cast<void>(setNice(window_is_before.load(std::memory_order_relaxed) ? 0 : 10));
+  const int behind = window_is_before.load(std::memory_order_relaxed) ? 0 : 10;
+  // Where it is refused all threads are as before. Who was started as less important stays that.
+  if (getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())) < behind) static_cast<void>(setNice(behind));
 }
 
 bool comeBeforeOtherWork() noexcept {
