@@ -98,7 +98,7 @@ haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfil
 haptic::Scene fittedScene(const haptic::Scene& scene, const haptic::DeviceProfile& profile,
                           const engine::Grid& grid, double rate_hz, double scale) {
   const haptic::Scene plain = haptic::defaultScene();
-  const haptic::Scene usual = withLengthsOf(scene, plain);
+  haptic::Scene usual = withLengthsOf(scene, plain);
   const double ordinary = ordinaryScale(profile, sidesOf(grid).smaller_mm);
   const double felt = profile.gives_force
                           ? std::min(ordinary, haptic::largestStableScale(plain, profile, rate_hz))

@@ -330,6 +330,7 @@ std::vector<Suspect> suspectsOf(const Version& field, const HeightRule& rule) {
   }
   std::vector<Suspect> suspects;
   const std::vector<float> numbers = holeNumbers(sketch.levels, rule);
+  suspects.reserve(numbers.size());
   for (const float value : numbers)
     suspects.push_back({.value = value, .least_ranges = kWrittenForHoles, .hole_number = true});
   if (rule.user_no_data) return suspects;

@@ -310,8 +310,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
   banded = std::move(reused.banded);
-  if (reusable && !banded) drawn = std::move(current);
-  if (one_eye && with_less) drawn_with_less = std::move(current);
+  if (reusable && !banded)
+    drawn = std::move(current);
+  else if (one_eye && with_less)
+    drawn_with_less = std::move(current);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.contour_step = plan.contour_step;
@@ -345,10 +347,8 @@ LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, co
     reused.parts = nextBand(*reused.banded, chosen);
     reused.redraw = LiveFrame::Redraw::kFirstPartOver;
     stats.band = true;
-  } else if (before == nullptr) {
-    return {};
-  } else if (const bool same = showTheSame(*before, current);
-             in_bands && sameButDetail(*before, current) && (begun || !same)) {
+  } else if (const bool same = before != nullptr && showTheSame(*before, current);
+             before != nullptr && in_bands && sameButDetail(*before, current) && (begun || !same)) {
     std::vector<bool> differs = begun ? begun->differs : std::vector<bool>(panels.size());
     for (std::size_t i = 0; i < panels.size(); ++i)
       differs[i] = differs[i] || !sameDetail(before->panels[i], current.panels[i]);
@@ -360,7 +360,7 @@ LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, co
     next.differs = std::move(differs);
     reused.parts = nextBand(next, chosen);
     stats.band = true;
-  } else if (canContinue(*before, current) && !(begun && begun->depth_end < INT_MAX)) {
+  } else if (before != nullptr && canContinue(*before, current) && !(begun && begun->depth_end < INT_MAX)) {
     reused.parts = cutToDamage(*before, current, chosen.queries(),
                                stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
     reused.banded = std::move(begun);
