@@ -20,7 +20,6 @@ namespace fettle::render {
 namespace {
 
 constexpr float kText_px = 15.0F;
-constexpr double kLongAgo_s = -1e9;
 
 // ImGui's back end reports errors through a function without a context argument; this room throws.
 void check(VkResult result) {
@@ -113,7 +112,6 @@ std::vector<Rectangle> outside(const Rectangle& place, const Rectangle& other) {
 
 UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_file)
     : window_(window), layout_file_(layout_file) {
-  pressed_s_.fill(kLongAgo_s);
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -303,7 +301,7 @@ std::vector<int> UiLayer::holdShortPresses() {
   return changed;
 }
 
-void UiLayer::noteButton(int button, bool down, float x, float y, double at_s) {
+void UiLayer::noteButton(int button, bool down, float x, float y) {
   leaving_ = 0;  // a click may enter another field
   if (button < 0 || button >= static_cast<int>(down_.size())) return;
   // What is dragged follows to where it is let go, before it is let go.
@@ -311,10 +309,6 @@ void UiLayer::noteButton(int button, bool down, float x, float y, double at_s) {
   const bool held = clicks_.empty() ? down_[static_cast<std::size_t>(button)] : clicks_.back().down;
   if (!down && held && (last.x != x || last.y != y)) clicks_.push_back({button, true, x, y});
   clicks_.push_back({button, down, x, y});
-  if (!down) return;
-  double& before_s = pressed_s_[static_cast<std::size_t>(button)];
-  clicks_.back().soon = at_s - before_s < static_cast<double>(ImGui::GetIO().MouseDoubleClickTime);
-  before_s = glfwGetTime();
 }
 
 // A click that came and went in one slow frame, its cursor somewhere else by now, is a press in this frame and a release in
@@ -337,9 +331,6 @@ bool UiLayer::holdClick() {
     clicks_.erase(clicks_.begin());
     down_[static_cast<std::size_t>(click.button)] = click.down;
     io.MousePos = ImVec2(click.x, click.y);
-    if (click.down)
-      io.MouseClickedTime[click.button] =
-          click.soon ? ImGui::GetTime() + static_cast<double>(io.DeltaTime) : kLongAgo_s;
   }
   std::copy(down_.begin(), down_.end(), std::begin(io.MouseDown));
   return acts || std::any_of(down_.begin(), down_.end(), [](bool down) { return down; });

@@ -54,10 +54,8 @@ class UiLayer {
   /// gets keys that were released by then, for one frame.
   void notePress(int key, int modifiers);
   /// A mouse button (GLFW's number) went down or up at this place of the window. ImGui reads buttons and place when a frame
-  /// begins: with this call it gets each press and each release where it was, one a frame. `at_s`: when that was, at the earliest
-  /// [GLFW's clock]. Two presses are a double click by these times: by ImGui's, those of frames, a slow frame that the first one
-  /// began would part it from the second.
-  void noteButton(int button, bool down, float x, float y, double at_s);
+  /// begins: with this call it gets each press and each release where it was, one a frame.
+  void noteButton(int button, bool down, float x, float y);
   /// A pointer in the mouse's place until it leaves (Window::point): where it is (GLFW's coordinates), whether its button went
   /// down or up there, and steps of its wheel. A frame takes one press or release, the next the next one. Neither it nor the
   /// mouse moves what the other holds, and where both wait the mouse is first. A press that waits while a dialog opens is dropped.
@@ -115,7 +113,6 @@ class UiLayer {
     int button;
     bool down;
     float x, y;
-    bool soon = false;  // a press so soon after the one before that both may be a double click
   };
   void makeStyle(double scale);
   [[nodiscard]] std::vector<Rectangle> changedPlaces(const ImDrawData& panels, const Below& below);
@@ -135,12 +132,11 @@ class UiLayer {
   int leaving_ = 0;  // frames until a field that a key leaves has the keyboard no more
   GLFWwindow* window_;
   std::unique_ptr<UiFrame> frame_;
-  std::vector<Press> pressed_;         // since the last frame began, or waiting for the next one
-  std::vector<Click> clicks_;          // the same
-  bool dialog_ = false;                // one was open when the last frame began
-  std::array<double, 5> pressed_s_{};  // when the last press of each button was heard of [GLFW's clock]
-  std::array<bool, 5> down_{};         // of the buttons, after the clicks that had their frame
-  std::vector<ImWchar> waiting_;       // characters that wait for the next frame
+  std::vector<Press> pressed_;                  // since the last frame began, or waiting for the next one
+  std::vector<Click> clicks_;                   // the same
+  bool dialog_ = false;                         // one was open when the last frame began
+  std::array<bool, 5> down_{};                  // of the buttons, after the clicks that had their frame
+  std::vector<ImWchar> waiting_;                // characters that wait for the next frame
   std::deque<std::optional<Pointed>> pointed_;  // not taken by a frame yet; nothing: it left
   std::optional<Pointed> pointer_;              // in the last frame
   std::string layout_file_;                     // ImGui keeps a pointer to its text

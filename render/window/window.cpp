@@ -101,8 +101,6 @@ struct Window::Impl {
   std::vector<InputEvent> input;
   WindowShape shape;
   std::vector<std::string> drops;
-  double looking_s = 0.0,
-         looked_s = 0.0;  // when events were last looked for, and when that ended before [GLFW's clock]
   std::function<void()> while_waiting;
 
   std::array<double, 2> cursorOfEvent() {
@@ -111,13 +109,6 @@ struct Window::Impl {
       glfwGetCursorPos(glfw.window, &(*shape.cursor)[0], &(*shape.cursor)[1]);
     }
     return *shape.cursor;
-  }
-  // When an event that is heard of now was, at the earliest: one that was there already when it was looked for came at any time
-  // since one looked before.
-  [[nodiscard]] double earliestOfEvent() const {
-    constexpr double kAtOnce_s = 2e-3;
-    const double now_s = glfwGetTime();
-    return now_s - looking_s < kAtOnce_s ? looked_s : now_s;
   }
   // Of the frame, for each of GLFW's units.
   [[nodiscard]] glm::dvec2 framePixels() const {
@@ -227,8 +218,7 @@ void Window::Impl::listen() {
                                                         : MouseButton::kOther;
     event.modifiers = modifiersOf(mods);
     const auto [x, y] = of(w).cursorOfEvent();
-    of(w).ui->noteButton(button, action == GLFW_PRESS, static_cast<float>(x), static_cast<float>(y),
-                         of(w).earliestOfEvent());
+    of(w).ui->noteButton(button, action == GLFW_PRESS, static_cast<float>(x), static_cast<float>(y));
     of(w).note(event);
   });
   glfwSetCursorPosCallback(glfw.window, [](GLFWwindow* w, double x, double y) {
@@ -343,12 +333,10 @@ engine::Status Window::renew() {
 
 void Window::poll(double wait_s) {
   if (displayIsLost()) return;
-  impl_->looking_s = glfwGetTime();
   if (wait_s > 0.0)
     glfwWaitEventsTimeout(wait_s);
   else
     glfwPollEvents();
-  impl_->looked_s = glfwGetTime();
 }
 
 void Window::setSeenElsewhere(bool seen) noexcept {

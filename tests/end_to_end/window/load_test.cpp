@@ -5,7 +5,6 @@
 
 #include "tests/end_to_end/window/frame_gate.h"
 #include "tests/end_to_end/window/window_fixture.h"
-#include "tests/end_to_end/window/work_panels.h"
 
 namespace fettle::tests {
 namespace {
@@ -117,32 +116,6 @@ TEST_F(LoadTest, keys_show_with_fewer_pixels_while_frames_take_long_and_sharply_
   EXPECT_TRUE(pressSlowly(user).contains("half"));
   EXPECT_EQ(user.rest("after the keys")["sharpness"], "full");
   (void)user.same("as before", before);
-  quit(user);
-}
-
-// The first press moves the slider, and what it moves is drawn: the second one comes before that is seen.
-TEST_F(LoadTest, a_double_click_is_one_however_long_frames_take) {
-  openPanels(folder, {"Tool"});
-  const auto program = start({scan}, gate_.environment());
-  User user(display, *program, "double click");
-  const State shown = opened(*program);
-  State at;
-  for (const State& text : shown["texts"])
-    if (text["text"] == "6 samples") at = text["at"];
-  ASSERT_TRUE(at.is_array()) << shown["texts"].dump();
-  user.at({at[0].get<int>() + 2, at[1].get<int>() + at[3].get<int>() / 2});
-  (void)user.rest();
-  ASSERT_TRUE(gate_.hold());
-  display.hands({"click", "--repeat", "2", "--delay", "90", "1"});
-  constexpr auto kLong = 300ms;  // of which the release between has one, too
-  for (int frame = 0; frame < 3; ++frame) {
-    std::this_thread::sleep_for(kLong);
-    ASSERT_TRUE(gate_.step());
-  }
-  gate_.release();
-  EXPECT_EQ(user.rest()["text_field"], true) << "the slider is typed into";
-  (void)user.look("typing");
-  (void)user.press("Escape");
   quit(user);
 }
 
