@@ -206,6 +206,9 @@ class MonkeyTest : public WindowTest {
         }
         (void)user.press("Escape");
       }
+      // A field, a dialog and the panels that have the keyboard are left one after the other.
+      (void)user.press("Escape");
+      (void)user.rest();
       if (program_->now().contains("tool")) {
         (void)user.press("s");
         program_->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
