@@ -21,7 +21,7 @@ namespace fettle::app {
 // changed for a square one that the device holds. Smaller and larger fields are felt at 1:1 (f = 1): from the size where the
 // ordinary ends f goes there as fast as the size leaves it, so that no two sizes next to each other differ much.
 
-/// A scene before a fit, as the program begins with it, and after it. A number or word that is still that of the fit is fitted anew for
+/// A scene before a fit, as the program begins with it, and after it. A number or word that is still that of the fit is fitted again for
 /// another device, any other is the user's.
 struct SceneFit {
   haptic::Scene plain, fitted;

@@ -33,7 +33,7 @@ class SceneFiles {
   /// "listen.toml", "listen.toml, changed", "no file".
   [[nodiscard]] std::string title(const LoopClient& client) const;
   /// Whether effects, their numbers or the force are others than in the file, or than at the beginning. Brushes and tips belong
-  /// to the tools, which everybody changes; what was fitted anew to another device was changed by nobody.
+  /// to the tools, which everybody changes; what was fitted again to another device was changed by nobody.
   [[nodiscard]] bool changed(const LoopClient& client) const;
 
  private:

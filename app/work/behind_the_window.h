@@ -4,7 +4,7 @@ namespace fettle::app {
 
 /// The calling thread has the processor only where the window leaves it, as far as the system keeps to that (a ninth of what
 /// that gets): for work that a person may wait for, but that must not delay the picture. Its priority is normal where the window comes
-/// before other work, else nice 10. For good: without privileges a thread cannot go back.
+/// before other work, else nice 10. It stays so: without privileges a thread cannot go back.
 ///
 /// Not farther behind than it has to be: who adds a page or maps memory holds a lock of the process meanwhile, and the window waits for
 /// it. Of nice 10 beside processes that spin such a thread does not get on for a tenth of a second.

@@ -47,7 +47,7 @@ struct SceneFitting {
   /// It is fitted to field and device: for a mouse spring and depth follow the field's spacing, for a device on the desk all
   /// lengths the field's size (fittedScene). Off when the user gave the scene.
   bool fits = true;
-  /// The last fit, also of another device: what of it is still in the scene is fitted anew.
+  /// The last fit, also of another device: what of it is still in the scene is fitted again.
   std::optional<SceneFit> last = {};
   /// Values with which the device is not stable (haptic::stabilityProblem) are lowered to the largest stable
   /// ones, with a notice, as they are in a scene that is fitted; otherwise such a scene is refused.
