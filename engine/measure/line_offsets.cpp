@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -188,33 +190,44 @@ double medianStep(ScanLine a, ScanLine b, const Places& places, std::vector<doub
   return scratch.empty() ? 0.0 : median(scratch);
 }
 
+// What a step between two lines is found from, kept from line to line so that memory is asked for once.
+struct StepSamples {
+  std::vector<double> steps;       // of the samples that count
+  std::vector<double> alike;       // of each of them: how alike the slopes are there, 0 .. 1
+  std::vector<double> for_median;  // is reordered
+};
+
 // The same by a weighted mean: less of a sample whose difference is far from most others', or where the slopes differ.
-double matchedStep(ScanLine a, ScanLine b, const Places& places, std::vector<double>& scratch) {
-  double now = medianStep(a, b, places, scratch);
-  if (scratch.empty()) return now;
-  for (double& d : scratch) d = std::abs(d - now);
-  const double scale = kOfGaussian * median(scratch);
+double matchedStep(ScanLine a, ScanLine b, const Places& places, StepSamples& samples) {
+  double now = medianStep(a, b, places, samples.for_median);
+  if (samples.for_median.empty()) return now;
+  for (double& d : samples.for_median) d = std::abs(d - now);
+  const double scale = kOfGaussian * median(samples.for_median);
   if (scale == 0.0) return now;  // half of the samples agree to the last bit
+  samples.steps.clear();
+  samples.alike.clear();
   const std::size_t last = a.size() - 1;
-  const auto unlike = [&](std::size_t i) {
-    const double d =
-        i == 0 || i == last ? 0.0 : (double{b[i + 1]} - b[i - 1]) - (double{a[i + 1]} - a[i - 1]);
-    return std::isnan(d) ? 0.0 : d;
-  };
   double squares = 0.0;
-  places.each([&](std::size_t i) { squares += unlike(i) * unlike(i); });
+  places.each([&](std::size_t i) {
+    double unlike = 0.0;
+    if (i != 0 && i != last) unlike = (double{b[i + 1]} - b[i - 1]) - (double{a[i + 1]} - a[i - 1]);
+    if (std::isnan(unlike)) unlike = 0.0;
+    squares += unlike * unlike;
+    const double step = double{b[i]} - a[i];
+    if (std::isnan(step)) return;
+    samples.steps.push_back(step);
+    samples.alike.push_back(unlike);
+  });
+  // The rounds ask for the same weights of slopes: an exponential for each sample, once.
   const double variance = squares / static_cast<double>(places.count());
+  for (double& d : samples.alike) d = variance > 0.0 ? std::exp(-d * d / (2.0 * variance)) : 1.0;
   for (int round = 0; round < kMostRounds; ++round) {
     double sum = 0.0, weights = 0.0;
-    places.each([&](std::size_t i) {
-      const double step = double{b[i]} - a[i];
-      if (std::isnan(step)) return;
-      const double d = unlike(i);
-      const double weight = biweight((step - now) / (kReach * scale)) *
-                            (variance > 0.0 ? std::exp(-d * d / (2.0 * variance)) : 1.0);
-      sum += weight * step;
+    for (std::size_t k = 0; k < samples.steps.size(); ++k) {
+      const double weight = biweight((samples.steps[k] - now) / (kReach * scale)) * samples.alike[k];
+      sum += weight * samples.steps[k];
       weights += weight;
-    });
+    }
     if (weights == 0.0) return now;
     const double better = sum / weights;
     const double change = std::abs(better - now);
@@ -247,13 +260,17 @@ class LineSearch {
 
   Result<LineOffsets> run() {
     const bool chain = options_.method == LineMethod::kDifference || options_.method == LineMethod::kMatching;
-    overStrips([&](std::int32_t first, std::int32_t count) { countAndFit(first, count, !chain); });
+    overStrips([&](std::int32_t first, std::int32_t count) {
+      if (chain)
+        countAndStep(first, count);
+      else
+        countAndFit(first, count);
+    });
     if (job_.cancelled()) return cancelled();
     found_.empty = static_cast<std::int32_t>(std::ranges::count(counts_, 0));
     if (found_.empty == found_.lines) return nothingIn(options_.region, "");
     if (chain) {
-      findSources();
-      overStrips([&](std::int32_t first, std::int32_t count) { fitSteps(first, count); });
+      if (found_.empty > 0) stepOverEmpty();
       if (job_.cancelled()) return cancelled();
       double sum = 0.0;
       for (std::int32_t l = 0; l < found_.lines; ++l)
@@ -305,17 +322,21 @@ class LineSearch {
                                    static_cast<std::size_t>(found_.length));
   }
 
-  void countAndFit(std::int32_t first, std::int32_t count, bool fit) {
+  [[nodiscard]] std::int64_t countIn(ScanLine line) const noexcept {
+    std::int64_t there = 0;
+    places_.each([&](std::size_t i) { there += std::isnan(line[i]) ? 0 : 1; });
+    return there;
+  }
+
+  void countAndFit(std::int32_t first, std::int32_t count) {
     std::vector<float> lines;
     readLines(first, count, lines);
     LineSamples samples;
     for (std::int32_t l = 0; l < count; ++l) {
       const ScanLine line = lineOf(lines, l);
       const auto at = static_cast<std::size_t>(first + l);
-      std::int64_t there = 0;
-      places_.each([&](std::size_t i) { there += std::isnan(line[i]) ? 0 : 1; });
-      counts_[at] = there;
-      if (!fit || counts_[at] == 0) continue;
+      counts_[at] = countIn(line);
+      if (counts_[at] == 0) continue;
       take(line, places_, samples);
       Terms c{};
       if (options_.method == LineMethod::kMedian)
@@ -330,31 +351,46 @@ class LineSearch {
     }
   }
 
-  // The line that each one with samples is compared to: the last one before it with samples.
-  void findSources() {
-    sources_.assign(static_cast<std::size_t>(found_.lines), -1);
-    std::int32_t last = -1;
-    for (std::int32_t l = 0; l < found_.lines; ++l) {
-      if (counts_[static_cast<std::size_t>(l)] == 0) continue;
-      sources_[static_cast<std::size_t>(l)] = last;
-      last = l;
+  double stepBetween(ScanLine a, ScanLine b, StepSamples& samples) const {
+    return options_.method == LineMethod::kDifference ? medianStep(a, b, places_, samples.for_median)
+                                                      : matchedStep(a, b, places_, samples);
+  }
+
+  // Of each line the step from the one before it: no other where no line is empty, so that one pass is enough.
+  void countAndStep(std::int32_t first, std::int32_t count) {
+    std::vector<float> lines, before;
+    readLines(first, count, lines);
+    if (first > 0) readLines(first - 1, 1, before);
+    StepSamples samples;
+    for (std::int32_t l = 0; l < count; ++l) {
+      const ScanLine line = lineOf(lines, l);
+      const auto at = static_cast<std::size_t>(first + l);
+      counts_[at] = countIn(line);
+      if (counts_[at] == 0 || at == 0) continue;
+      found_.coefficients[at] = stepBetween(l == 0 ? ScanLine(before) : lineOf(lines, l - 1), line, samples);
     }
   }
 
-  void fitSteps(std::int32_t first, std::int32_t count) {
-    std::vector<float> lines, before;
-    readLines(first, count, lines);
-    std::vector<double> scratch;
-    for (std::int32_t l = 0; l < count; ++l) {
-      const std::int32_t source = sources_[static_cast<std::size_t>(first + l)];
-      if (source < 0) continue;
-      if (source < first) readLines(source, 1, before);
-      const ScanLine a = source < first ? ScanLine(before) : lineOf(lines, source - first);
-      const ScanLine b = lineOf(lines, l);
-      found_.coefficients[static_cast<std::size_t>(first + l)] = options_.method == LineMethod::kDifference
-                                                                     ? medianStep(a, b, places_, scratch)
-                                                                     : matchedStep(a, b, places_, scratch);
+  // After empty lines the step is from the last line that has samples.
+  void stepOverEmpty() {
+    std::vector<std::pair<std::int32_t, std::int32_t>> steps;  // from, to
+    std::int32_t last = -1;
+    for (std::int32_t l = 0; l < found_.lines; ++l) {
+      if (counts_[static_cast<std::size_t>(l)] == 0) continue;
+      if (last >= 0 && last != l - 1) steps.emplace_back(last, l);
+      last = l;
     }
+    job_.begin("levelling lines", steps.size());
+    tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t k) {
+      if (job_.cancelled()) return;
+      std::vector<float> from, to;
+      readLines(steps[k].first, 1, from);
+      readLines(steps[k].second, 1, to);
+      StepSamples samples;
+      found_.coefficients[static_cast<std::size_t>(steps[k].second)] =
+          stepBetween(lineOf(from, 0), lineOf(to, 0), samples);
+      job_.advance();
+    });
   }
 
   void fillEmpty() {
@@ -392,9 +428,8 @@ class LineSearch {
   JobControl& job_;
   LineOffsets found_;
   Places places_;
-  std::vector<std::uint8_t> read_;     // of each place along a line: whether it is read
-  std::vector<std::int64_t> counts_;   // samples that count, of each line
-  std::vector<std::int32_t> sources_;  // -1: none
+  std::vector<std::uint8_t> read_;    // of each place along a line: whether it is read
+  std::vector<std::int64_t> counts_;  // samples that count, of each line
 };
 
 }  // namespace

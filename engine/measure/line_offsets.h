@@ -74,7 +74,7 @@ struct LineOffsets {
 
 /// Finds the offset or drift of each line of a line scanner.
 ///
-/// Bit-identical for any number of threads. Cost: one pass, with the differences two. Errors: kInput for a degree of either kind out of
+/// Bit-identical for any number of threads. Cost: one pass; with the differences lines that follow empty ones are read once more. Errors: kInput for a degree of either kind out of
 /// range or a region without samples; kCancelled. Throws std::bad_alloc. Thread: any; a long job on all workers of the calling
 /// arena.
 [[nodiscard]] Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options,
