@@ -1,5 +1,6 @@
 #include "engine/field/node_pool.h"
 
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
@@ -17,9 +18,13 @@ namespace {
 void* slabMemory(std::size_t bytes, bool whole) noexcept {
   void* memory = std::aligned_alloc(bytes, bytes);
   if (memory == nullptr || !whole) return memory;
-  // Requests that may be refused.
-  (void)madvise(memory, bytes, MADV_HUGEPAGE);
-  (void)madvise(memory, bytes, MADV_POPULATE_WRITE);
+  (void)madvise(memory, bytes, MADV_HUGEPAGE);  // may be refused
+  // By writing, not by MADV_POPULATE_WRITE: that holds the lock of the process's memory map while a page is cleared, and a thread
+  // that maps memory waits for it, as a driver's does that loads code: for half a second beside a filter. Since Linux 6.4 a
+  // fault holds a lock of its own area alone.
+  constexpr std::size_t kSmallestPage = 4096;
+  for (std::size_t i = 0; i < bytes; i += kSmallestPage)
+    static_cast<volatile std::byte*>(memory)[i] = std::byte{0};
   return memory;
 }
 

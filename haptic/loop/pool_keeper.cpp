@@ -14,11 +14,10 @@ namespace fettle::haptic {
 
 namespace {
 
-// Populates the pages of the newest slab: the object on top of the free list lies in it, and a slab lies at a
-// multiple of its size. An older kernel refuses; then the loop takes a page fault when it first writes to a
-// page.
+// Populates the pages of the only slab, which alone does not come with them: the object on top of the free list lies in it, and a
+// slab lies at a multiple of its size. An older kernel refuses; then the loop takes a page fault when it first writes to a page.
 template <class T, std::size_t kSlabBytes>
-void populateNewest(engine::ObjectPool<T, kSlabBytes>& pool) noexcept {
+void populateFirst(engine::ObjectPool<T, kSlabBytes>& pool) noexcept {
   T* object = pool.tryAcquire();
   if (object == nullptr) return;
   const std::uintptr_t slab = reinterpret_cast<std::uintptr_t>(object) & ~std::uintptr_t{kSlabBytes - 1};
@@ -27,12 +26,12 @@ void populateNewest(engine::ObjectPool<T, kSlabBytes>& pool) noexcept {
   if (engine::ObjectPool<T, kSlabBytes>::dropLast(object)) engine::ObjectPool<T, kSlabBytes>::recycle(object);
 }
 
-// Grows slab by slab, so that each is populated.
 template <class T, std::size_t kSlabBytes>
 bool fill(engine::ObjectPool<T, kSlabBytes>& pool, std::size_t level, bool& grew) noexcept {
   for (std::size_t free = pool.freeObjects(); free < level; free = pool.freeObjects()) {
+    const bool first = free + pool.liveObjects() == 0;
     if (!pool.reserve(free + 1)) return false;
-    populateNewest(pool);
+    if (first) populateFirst(pool);
     grew = true;
   }
   return true;
