@@ -26,11 +26,6 @@ void takeMiddle(render::FrameInput& input) {
   input.part = render::Rectangle{x, y, width, height};
 }
 
-struct Scene {
-  render::Shown shown;
-  render::FrameInput input;
-};
-
 // A pen in contact, a line through the surface and one over it.
 void addStylus(const engine::Version& field, render::Overlays& overlays) {
   const engine::Grid& grid = field.grid();
@@ -41,8 +36,17 @@ void addStylus(const engine::Version& field, render::Overlays& overlays) {
     overlays.lines.push_back({.from_mm = middle, .to_mm = middle + glm::dvec3(1.0), .depth = depth});
 }
 
+render::LiveOptions smallOptions() {
+  render::LiveOptions options;
+  options.memory_budget_bytes = kDeviceBytes;
+  return options;
+}
+
+}  // namespace
+
 // What a few keys and a wheel make of this picture, the likeliest first; each while something moves and at rest.
-std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput& look) {
+std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Shown& shown,
+                                                                const render::FrameInput& look) {
   Scene now{shown, look};
   takeMiddle(now.input);
   now.input.panel_vertices.clear();  // those were of the window's last frame
@@ -75,20 +79,19 @@ std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput
   return scenes;
 }
 
-}  // namespace
-
 void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, render::FrameInput look) {
   end();
   stage_ = std::make_shared<Stage>();
-  stage_->window = &window;
-  render::LiveOptions options;
+  stage_->window = window_ = &window;
+  std::vector<Scene> scenes = scenesOf(shown, look);
+  left_.assign(scenes.rbegin(), scenes.rend());
+  render::LiveOptions options = smallOptions();
   options.device = window.device();
   options.colour_format = render::Window::pictureFormat();
-  options.memory_budget_bytes = kDeviceBytes;
-  work_.replace([options = std::move(options), shown = std::move(shown), look = std::move(look),
+  work_.replace([options = std::move(options), scenes = std::move(scenes),
                  stage = stage_](engine::JobControl& job) -> engine::Result<Nothing> {
     if (const auto picture = render::LivePicture::create(options))
-      for (const Scene& scene : scenesOf(shown, look)) {
+      for (const Scene& scene : scenes) {
         if (job.cancelled()) return engine::cancelled();
         if ((*picture)->update(scene.shown)) (void)(*picture)->drawAndWait(scene.input);
         prepare(*stage, **picture);
@@ -106,8 +109,20 @@ void PictureRehearsal::prepare(Stage& stage, const render::LivePicture& rehearse
   }
 }
 
+void PictureRehearsal::drawNext() {
+  if (!drawsNext()) return;
+  if (!beside_)
+    if (auto made = render::LivePicture::createBeside(*window_, smallOptions())) beside_ = std::move(*made);
+  if (beside_ && beside_->update(left_.back().shown)) (void)beside_->drawAndWait(left_.back().input);
+  left_.pop_back();
+  if (left_.empty()) beside_.reset();
+}
+
 void PictureRehearsal::end() noexcept {
   work_.cancel();
+  left_.clear();
+  beside_.reset();
+  window_ = nullptr;
   const std::scoped_lock lock(stage_->mutex);
   stage_->window = nullptr;
 }

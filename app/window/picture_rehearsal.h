@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "app/work/background.h"
 #include "render/live/live_picture.h"
@@ -12,19 +13,30 @@ namespace fettle::app {
 /// Draws out of sight what keys may ask for next: contours, marks, deviations, another way of shading, nearer and farther
 /// away. A driver compiles a shader when something is first drawn with it - on a processor that takes up to two seconds, in
 /// which the window stands still - and keeps the result in its folder of compiled shaders, where every device of this machine
-/// finds it. That is done once a machine; what is then left for each device, some tens of milliseconds for each kind of
-/// picture, is done for the window's, too.
+/// finds it. That is done once a machine, on a device of its own and behind the window (Background), in a small part of the picture.
 ///
-/// On a device of its own and behind the window (Background), in a small part of the picture. What fails here is tried again
-/// when it is drawn, and reported then. Threading: main.
+/// What is then left for the window's device: making the pipelines, which that thread does as well, and loading the code, which a
+/// driver does when something is drawn: 20 to 80 ms for a key, and more where a filter fills memory meanwhile. So the same is drawn
+/// once more with the window's own programs (LivePicture::createBeside), a scene at a time while nothing else is to be drawn.
+///
+/// What fails here is tried again when it is drawn, and reported then. Threading: main.
 class PictureRehearsal {
  public:
   /// `look`: a frame of what is `shown` by `window`, which lives until end(). What was begun before is given up.
   void begin(render::LivePicture& window, render::Shown shown, render::FrameInput look);
+  /// Draws the next scene with the window's programs, 5 to 100 ms, when those behind the window are done; for a time in which nobody
+  /// waits for the window.
+  void drawNext();
+  /// Whether drawNext() has something to draw.
+  [[nodiscard]] bool drawsNext() const noexcept {
+    return !left_.empty() && stage_->done.load(std::memory_order_relaxed);
+  }
   /// The window's picture is not used any more: waits for the one thing that is being made for it.
   void end() noexcept;
   /// Whether all that was begun is drawn, or could not be.
-  [[nodiscard]] bool done() const noexcept { return stage_->done.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool done() const noexcept {
+    return left_.empty() && stage_->done.load(std::memory_order_relaxed);
+  }
 
  private:
   struct Nothing {};
@@ -36,6 +48,15 @@ class PictureRehearsal {
   };
   static void prepare(Stage& stage, const render::LivePicture& rehearsed);
 
+  struct Scene {
+    render::Shown shown;
+    render::FrameInput input;
+  };
+  static std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput& look);
+
+  render::LivePicture* window_ = nullptr;  // until end()
+  std::vector<Scene> left_;                // for drawNext(), the next one last
+  std::unique_ptr<render::LivePicture> beside_;
   std::shared_ptr<Stage> stage_ = std::make_shared<Stage>();
   Background<Nothing> work_;
 };

@@ -134,7 +134,12 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 void Workstation::runFrame() {
-  window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
+  parts_.picture.computes(parts_.filters.computing());
+  window_->poll(actsNow(parts_, input_)                          ? 0.0
+                : parts_.picture.active()                        ? parts_.picture.restsFor_s()
+                : working(parts_) || parts_.picture.rehearsing() ? kBusy_s
+                                                                 : kIdle_s);
+  window_->keepPace();
   input_.beginFrame();
   whileWaiting();
   handleInput();
@@ -178,6 +183,7 @@ void Workstation::handleInput() {
     parts_.stylus.follow(io.KeyShift && !io.WantTextInput, client->state().contact, *client);
   }
   while (const auto event = input_.next(parts_)) {
+    parts_.picture.noteHand();
     const Input::Request request = Input::handle(*event, parts_);
     if (request.action) app::carryOut(*request.action, parts_);
     if (request.open) askToOpen(*request.open);
