@@ -1,8 +1,8 @@
 #include "render/live/overlay_places.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -64,18 +64,28 @@ Rectangle placeOf(const LivePanel& panel, const gpu::Line& line) {
 Rectangle placeOf(const LivePanel& panel, const gpu::Stylus& stylus) {
   const glm::dmat4 clip_from_scene(panel.uniforms.views[0].clip_from_scene);
   const glm::dvec3 ball(stylus.ball), tail(stylus.tail), light(panel.uniforms.light);
-  const double far = stylus.shadow.y;
-  const double wide =
-      2.0 * std::max({double{stylus.tail.w}, double{stylus.ball.w}, double{stylus.shadow.w}}) + 0.2 * far;
-  const std::array<glm::dvec3, 6> middles{
-      glm::dvec3(stylus.point),        ball, tail, ball - far * light, tail - far * light,
-      ball - glm::dvec3(0.0, 0.0, far)};
+  const double thick = std::max({double{stylus.tail.w}, double{stylus.ball.w}, double{stylus.shadow.w}});
+  double wide = 2.0 * thick;
+  std::vector<glm::dvec3> middles{glm::dvec3(stylus.point), ball, tail};
+  if (stylus.shadow.x > 0.0F) {
+    const double most = stylus.shadow.y, plate = stylus.point.w;
+    const double down = std::clamp(ball.z - plate, 0.0, most);
+    glm::dvec2 reach(most);
+    if (light.z > 1e-3) {
+      reach = glm::max(glm::dvec2(ball.z, tail.z) - plate, 0.0) / light.z;
+      if (std::max(reach.x, reach.y) >= 0.999 * most) reach = glm::dvec2(most);
+    }
+    wide += 0.2 * std::max({down, reach.x, reach.y}) + 2.0 * stylus.shadow.z;
+    middles.push_back(ball - reach.x * light);
+    middles.push_back(tail - reach.y * light);
+    middles.push_back(ball - glm::dvec3(0.0, 0.0, down));
+  }
   Around around(panel);
   for (const glm::dvec3& middle : middles)
     for (int k = 0; k < 8; ++k) {
       const glm::dvec3 corner = middle + wide * (2.0 * glm::dvec3(k & 1, k >> 1 & 1, k >> 2) - 1.0);
       const glm::dvec4 clip = clip_from_scene * glm::dvec4(corner, 1.0);
-      if (clip.w > 0.0 && clip.z > 0.0)
+      if (clip.w > 0.0)
         around.add(clip, kRounding_px);
       else
         around.addAll();  // beside or behind the viewer: anywhere

@@ -25,13 +25,13 @@ Overlays overlaysAt(std::mt19937& random) {
     if (random() % 2 == 0) overlays.stylus->ball_radius_mm = 1.5;
     if (random() % 2 == 0) overlays.stylus->to_tail = near();
   }
-  for (unsigned int i = random() % 6; i > 0; --i) {
+  for (auto i = random() % 6; i > 0; --i) {
     const glm::dvec3 from = near();
     const glm::dvec3 to = random() % 5 == 0 ? glm::dvec3(far(random), far(random), far(random)) : near();
     overlays.lines.push_back(
         {.from_mm = from,
          .to_mm = to,
-         .width_px = 1.0 + static_cast<double>(random() % 5),
+         .width_px = 1.0F + static_cast<float>(random() % 5),
          .depth = random() % 2 == 0 ? OverlayLine::Depth::kInScene : OverlayLine::Depth::kOnTop});
   }
   return overlays;

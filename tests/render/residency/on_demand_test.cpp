@@ -38,6 +38,7 @@ TEST(Residency, AVersionThatJoinsBringsALittleAtOnce) {
   ASSERT_TRUE(picture->update(shown));
   // 1 MiB of coarse samples, a page, and the other one's edge.
   EXPECT_LT(shoot(*picture, bareAt(1)).stats.upload.bytes, std::int64_t{3} << 19);
+  picture->refreshRanges();
   const Shot joined = drawComplete(*picture, bareAt(1));
   auto fresh = makePicture();
   ASSERT_TRUE(fresh->update(shown));
