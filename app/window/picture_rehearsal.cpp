@@ -47,7 +47,7 @@ render::LiveOptions smallOptions() {
 // What a few keys and a wheel make of this picture, the likeliest first; each while something moves and at rest.
 std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Shown& shown,
                                                                 const render::FrameInput& look) {
-  Scene now{shown, look};
+  Scene now{.input = look};
   takeMiddle(now.input);
   now.input.panel_vertices.clear();  // those were of the window's last frame
   std::vector<Scene> scenes;
@@ -69,14 +69,20 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
             scene.input.view.projection = look.view.projection == render::Projection::kPerspective
                                               ? render::Projection::kOrthographic
                                               : render::Projection::kPerspective;
-          if (deviation && !scene.shown.original) scene.shown.original = shown.versions.front();
+          scene.deviation = deviation;
           scene.input.view.zoom *= nearer;
           if (contours) scene.input.contours = render::Contours::kShow;
           add(std::move(scene));
         }
-  now.shown.marks = render::MarksOverlay::kHide;
+  now.without_marks = true;
   add(std::move(now));
   return scenes;
+}
+
+render::Shown PictureRehearsal::Scene::of(render::Shown shown) const {
+  if (deviation && !shown.original) shown.original = shown.versions.front();
+  if (without_marks) shown.marks = render::MarksOverlay::kHide;
+  return shown;
 }
 
 void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, render::FrameInput look) {
@@ -85,18 +91,19 @@ void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, r
   stage_->window = window_ = &window;
   std::vector<Scene> scenes = scenesOf(shown, look);
   left_.assign(scenes.rbegin(), scenes.rend());
+  versions_ = shown.versions.size();
   render::LiveOptions options = smallOptions();
   options.device = window.device();
   options.colour_format = render::Window::pictureFormat();
-  work_.replace([options = std::move(options), scenes = std::move(scenes),
+  work_.replace([options = std::move(options), scenes = std::move(scenes), shown = std::move(shown),
                  stage = stage_](engine::JobControl& job) -> engine::Result<Nothing> {
+    const Done done(*stage, job);
     if (const auto picture = render::LivePicture::create(options))
       for (const Scene& scene : scenes) {
         if (job.cancelled()) return engine::cancelled();
-        if ((*picture)->update(scene.shown)) (void)(*picture)->drawAndWait(scene.input);
+        if ((*picture)->update(scene.of(shown))) (void)(*picture)->drawAndWait(scene.input);
         prepare(*stage, **picture);
       }
-    stage->done.store(true, std::memory_order_relaxed);
     return Nothing{};
   });
 }
@@ -109,11 +116,13 @@ void PictureRehearsal::prepare(Stage& stage, const render::LivePicture& rehearse
   }
 }
 
-void PictureRehearsal::drawNext() {
+void PictureRehearsal::drawNext(const render::Shown& shown) {
   if (!drawsNext()) return;
+  if (shown.versions.size() != versions_) left_.clear();  // another picture
+  if (left_.empty()) return beside_.reset();
   if (!beside_)
     if (auto made = render::LivePicture::createBeside(*window_, smallOptions())) beside_ = std::move(*made);
-  if (beside_ && beside_->update(left_.back().shown)) (void)beside_->drawAndWait(left_.back().input);
+  if (beside_ && beside_->update(left_.back().of(shown))) (void)beside_->drawAndWait(left_.back().input);
   left_.pop_back();
   if (left_.empty()) beside_.reset();
 }

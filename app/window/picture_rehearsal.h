@@ -24,9 +24,11 @@ class PictureRehearsal {
  public:
   /// `look`: a frame of what is `shown` by `window`, which lives until end(). What was begun before is given up.
   void begin(render::LivePicture& window, render::Shown shown, render::FrameInput look);
-  /// Draws the next scene with the window's programs, 5 to 100 ms, when those behind the window are done; for a time in which nobody
-  /// waits for the window.
-  void drawNext();
+  /// Draws the next scene of what is `shown` now with the window's programs, 5 to 100 ms, when those behind the window are done; for
+  /// a time in which nobody waits for the window.
+  void drawNext(const render::Shown& shown);
+  /// Keeps no version of the field until the next scene.
+  void release() noexcept { beside_.reset(); }
   /// Whether drawNext() has something to draw.
   [[nodiscard]] bool drawsNext() const noexcept {
     return !left_.empty() && stage_->done.load(std::memory_order_relaxed);
@@ -46,16 +48,34 @@ class PictureRehearsal {
     render::LivePicture* window = nullptr;  // under `mutex`; null: gone
     std::atomic<bool> done{false};
   };
+  // At its end all is drawn, or could not be: also without memory.
+  class Done {
+   public:
+    Done(Stage& stage, const engine::JobControl& job) noexcept : stage_(stage), job_(job) {}
+    ~Done() {
+      if (!job_.cancelled()) stage_.done.store(true, std::memory_order_relaxed);
+    }
+    Done& operator=(Done&&) = delete;
+
+   private:
+    Stage& stage_;
+    const engine::JobControl& job_;
+  };
   static void prepare(Stage& stage, const render::LivePicture& rehearsed);
 
+  // How what is shown is drawn.
   struct Scene {
-    render::Shown shown;
     render::FrameInput input;
+    bool deviation = false;
+    bool without_marks = false;
+
+    [[nodiscard]] render::Shown of(render::Shown shown) const;
   };
   static std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput& look);
 
   render::LivePicture* window_ = nullptr;  // until end()
   std::vector<Scene> left_;                // for drawNext(), the next one last
+  std::size_t versions_ = 0;               // for which they are
   std::unique_ptr<render::LivePicture> beside_;
   std::shared_ptr<Stage> stage_ = std::make_shared<Stage>();
   Background<Nothing> work_;

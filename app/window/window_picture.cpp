@@ -19,6 +19,9 @@ namespace {
 constexpr double kMeasuring_ms = 20.0;
 constexpr std::chrono::milliseconds kShownMeanwhile{250};
 
+// Between two frames of a preview: what else the window does waits no longer.
+constexpr double kMostRest_ms = 50.0;
+
 // Since something was drawn, and since the last input: nobody waits for a rehearsal, and much else begins with a field.
 constexpr std::chrono::seconds kRehearsedAfter{1};
 
@@ -88,6 +91,7 @@ engine::Status WindowPicture::show(render::Shown shown) {
   if (other_form) live_->refreshRanges();
   results_came_ = results_came_ || previewsDiffer(shown, shown_);
   const bool more_of_them = onlyPreviewsDiffer(shown, shown_);
+  rehearsal_.release();  // it may hold the version of before
   shown_ = std::move(shown);
   (more_of_them ? results_wait_ : needs_redraw_) = true;
   return {};
@@ -111,16 +115,17 @@ void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kStroke) strokes_.note(ms);
   if (measured_ == Measured::kWhole || measured_ == Measured::kWholeWithLess) whole_.note(ms);
   if (measured_ == Measured::kSharpBand) {
-    // As long as a whole frame would have taken, so that the first key knows.
+    // As long as a whole frame would have taken, so that the first key knows: that has panels and presenting once.
+    constexpr double kOfBands = 0.75;
     banded_share_ += figures_.redrawn;
-    banded_ms_ += ms;
+    banded_ms_ += kOfBands * ms;
     if (banded_share_ > 0.99) whole_.note(banded_ms_);
   }
   if (measured_ != Measured::kSharpBand || banded_share_ > 0.99) banded_share_ = banded_ms_ = 0.0;
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
-    results_due_ = Clock::now() +
-                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(ms));
+    results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double, std::milli>(std::min(ms, kMostRest_ms)));
 }
 
 bool WindowPicture::takeDue(Draws draws) {
@@ -128,8 +133,8 @@ bool WindowPicture::takeDue(Draws draws) {
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool refines = draws == Draws::kRefined;
   if (refines && measuresFirst(now)) return false;
-  const bool results =
-      (results_wait_ || figures_.upload.pending_tiles > 0) && !(computes_ && now < results_due_);
+  const bool results = (results_wait_ || figures_.upload.pending_tiles > 0) &&
+                       !(computes_ && figures_.upload.pending_of_first == 0 && now < results_due_);
   const bool changes =
       needs_redraw_ || results ||
       (refines && (refinement_.due(now) || sharp_later_.due(now) || figures_.bands_left > 0));
@@ -140,7 +145,7 @@ bool WindowPicture::takeDue(Draws draws) {
     if (!std::exchange(rehearses_, true))
       rehearsal_.begin(*live_, shown_, *look_);
     else
-      rehearsal_.drawNext();
+      rehearsal_.drawNext(shown_);
   }
   return due;
 }

@@ -63,7 +63,7 @@ class WindowPicture {
   /// Whether frames with nothing to draw are used for a rehearsal.
   [[nodiscard]] bool rehearsing() const noexcept { return rehearsal_.drawsNext(); }
   void requestRedraw() noexcept { needs_redraw_ = true; }
-  void skipRedraw() noexcept { needs_redraw_ = false; }
+  void skipRedraw() noexcept { needs_redraw_ = results_wait_ = false; }
   /// Whether something must be drawn without waiting.
   [[nodiscard]] bool active() const noexcept {
     return needs_redraw_ || results_wait_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0 ||
@@ -74,7 +74,8 @@ class WindowPicture {
   void computes(bool previews) noexcept { computes_ = previews; }
   /// How long nothing has to be drawn although active() [s].
   [[nodiscard]] double restsFor_s() const noexcept {
-    const bool only_results = !needs_redraw_ && !motion_.sharpPending() && figures_.bands_left == 0;
+    const bool only_results = !needs_redraw_ && !motion_.sharpPending() && figures_.bands_left == 0 &&
+                              figures_.upload.pending_of_first == 0;
     return computes_ && only_results
                ? std::max(0.0, std::chrono::duration<double>(results_due_ - Clock::now()).count())
                : 0.0;

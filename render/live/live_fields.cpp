@@ -269,7 +269,7 @@ std::size_t LiveFields::measureInFrame(DetailMeasure& measure, const engine::Fie
   return measured;
 }
 
-// Uploads the permanent pages, in submissions before the frame's where the ring has no room for all.
+// Uploads the permanent pages, in submissions before the frame's.
 void LiveFields::uploadFixed(UploadStatistics& all) {
   const auto left = [this] {
     return original_.fixedLeft() > 0 ||
@@ -282,17 +282,16 @@ void LiveFields::uploadFixed(UploadStatistics& all) {
     if (texture.fixedLeft() > 0)
       texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), {}, count, moved);
   };
-  for (bool first = true; left(); first = false) {
-    if (!first) {
-      submissions_.submit({});
-      (void)submissions_.begin();
-      staging_.release(submissions_.done());
-    }
+  while (left()) {
     for (Field& f : fields_) {
       upload(f.texture);
       if (!moved.empty()) f.measure.invalidate(f.texture.version().reader(), moved);
     }
     upload(original_);
+    // By themselves: of a frame that fails later nothing is submitted, but pages count as there.
+    submissions_.submit({});
+    (void)submissions_.begin();
+    staging_.release(submissions_.done());
   }
   all.tiles += count.tiles;
   all.bytes += count.bytes;
@@ -301,13 +300,15 @@ void LiveFields::uploadFixed(UploadStatistics& all) {
 
 void LiveFields::uploadPending(UploadStatistics& all) {
   const engine::Stopwatch watch;
-  const UploadBudget budget{options_.upload_bytes_per_frame, options_.uploading_ms};
+  // Each has its share of the time, whatever others need and measuring takes.
+  const double share_ms = options_.uploading_ms / static_cast<double>(fields_.size() + 1);
+  const auto budget = [&] { return UploadBudget{options_.upload_bytes_per_frame, share_ms}; };
   UploadStatistics count;
   uploadFixed(uploaded_);
   std::vector<glm::ivec2> moved;
   for (Field& f : fields_) {
     moved.clear();
-    f.texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget, count, moved);
+    f.texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget(), count, moved);
     const engine::FieldReader reader = f.texture.version().reader();
     if (!moved.empty()) f.measure.invalidate(reader, moved);
     count.measured_tiles += static_cast<std::int64_t>(measureInFrame(f.measure, reader));
@@ -315,12 +316,13 @@ void LiveFields::uploadPending(UploadStatistics& all) {
   }
   moved.clear();
   if (!original_.version().empty())
-    original_.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget, count, moved);
-  left_ = {budget.bytes - count.bytes, budget.ms};
+    original_.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget(), count, moved);
+  bytes_left_ = options_.upload_bytes_per_frame - count.bytes;
   all = uploaded_;
   all.tiles += count.tiles;
   all.bytes += count.bytes;
   all.changed_samples += count.changed_samples;
+  all.pending_of_first = fields_.empty() ? 0 : static_cast<std::int64_t>(fields_.front().texture.pending());
   all.measured_tiles = count.measured_tiles;
   all.unmeasured_tiles = count.unmeasured_tiles;
   all.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
@@ -343,7 +345,8 @@ void LiveFields::uploadPages(PageDemand& demand, FrameStatistics& stats) {
   UploadStatistics count;
   ResidencyStatistics& r = stats.residency;
   const PageDemand::Outcome outcome =
-      demand.upload(*pool_, staging_, submissions_.next(), submissions_.commands(), left_, count);
+      demand.upload(*pool_, staging_, submissions_.next(), submissions_.commands(),
+                    {bytes_left_, options_.uploading_ms}, count);
   stats.upload.bytes += count.bytes;
   stats.upload.pending_tiles += count.pending_tiles;
   r.on_demand = true;

@@ -85,9 +85,9 @@ class LiveFields {
   std::uint64_t pool_budget_ = 0;   // budget of the pool [bytes]
   std::vector<Field> fields_;
   LiveTexture original_;
-  UploadStatistics uploaded_;  // since the last frame
-  UploadBudget left_;          // of this frame
-  bool broken_ = false;        // an upload was not completed
+  UploadStatistics uploaded_;    // since the last frame
+  std::int64_t bytes_left_ = 0;  // of this frame
+  bool broken_ = false;          // an upload was not completed
 };
 
 }  // namespace fettle::render

@@ -433,9 +433,9 @@ LiveFrame::Copied LiveFrame::copiedTo(const LiveTarget& target, const GpuImage& 
   // All overlays are drawn again, each over what was copied below it.
   Places overlays;
   addOverlays(panels, overlays);
-  held_ = Held{target.kept, target.extent, &base, overlays.take()};
-  if (!changed || !before || before->kept != target.kept || before->extent != target.extent ||
-      before->base != &base)
+  held_ = Held{target.kept, target.image, target.extent, &base, overlays.take()};
+  if (!changed || !before || before->kept != target.kept || before->image != target.image ||
+      before->extent != target.extent || before->base != &base)
     return {base, {all}};
   for (const Rectangle& place : before->overlays) changed->add(place);
   for (const Rectangle& place : held_->overlays) changed->add(place);

@@ -167,6 +167,7 @@ class LiveFrame {
   // The target that holds the last frame.
   struct Held {
     std::uint64_t kept = 0;
+    vk::Image image;
     vk::Extent2D extent;
     const GpuImage* base = nullptr;
     std::vector<Rectangle> overlays;

@@ -1,5 +1,6 @@
 #include "app/window/workstation/workstation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -134,11 +135,13 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 void Workstation::runFrame() {
-  parts_.picture.computes(parts_.filters.computing());
-  window_->poll(actsNow(parts_, input_)                          ? 0.0
-                : parts_.picture.active()                        ? parts_.picture.restsFor_s()
-                : working(parts_) || parts_.picture.rehearsing() ? kBusy_s
-                                                                 : kIdle_s);
+  WindowPicture& picture = parts_.picture;
+  picture.computes(parts_.filters.computing());
+  const bool rehearses = picture.rehearsing() && !window_->minimised();
+  window_->poll(actsNow(parts_, input_)        ? 0.0
+                : picture.active()             ? std::min(picture.restsFor_s(), kBusy_s)
+                : working(parts_) || rehearses ? kBusy_s
+                                               : kIdle_s);
   window_->keepPace();
   input_.beginFrame();
   whileWaiting();
@@ -182,6 +185,7 @@ void Workstation::handleInput() {
     const ImGuiIO& io = ImGui::GetIO();
     parts_.stylus.follow(io.KeyShift && !io.WantTextInput, client->state().contact, *client);
   }
+  if (parts_.held()) parts_.picture.noteHand();
   while (const auto event = input_.next(parts_)) {
     parts_.picture.noteHand();
     const Input::Request request = Input::handle(*event, parts_);
