@@ -11,6 +11,7 @@ namespace {
 
 // Not a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
 constexpr int kSide_px = 62;
+constexpr int kWholeSide_px = 190;
 // Samples of a field of any size: 4 times what such a part of a picture can ask for.
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
 // From one end of how near a field is seen to the other.
@@ -59,7 +60,14 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
   };
   Scene pen = now;
   addStylus(shown.versions.front(), pen.input.overlays);
-  add(std::move(pen));
+  add(pen);
+  pen.input.part.reset();
+  pen.input.view.width = pen.input.view.height = kWholeSide_px;
+  for (const render::Sharpness sharpness : {render::Sharpness::kQuarter, render::Sharpness::kFull,
+                                            render::Sharpness::kRest, render::Sharpness::kRest}) {
+    pen.input.sharpness = sharpness;
+    scenes.push_back(pen);
+  }
   for (const bool other_projection : {false, true})
     for (const bool deviation : {false, true})
       for (const double nearer : {1.0, kNear, 1.0 / kNear})
@@ -75,7 +83,19 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
           add(std::move(scene));
         }
   now.without_marks = true;
-  add(std::move(now));
+  add(now);
+  // Bands over frames with fewer pixels are drawn of whole pictures alone.
+  now.without_marks = false;
+  now.input.part.reset();
+  now.input.view.width = now.input.view.height = kWholeSide_px;
+  for (const render::Sharpness fewer : {render::Sharpness::kHalf, render::Sharpness::kQuarter}) {
+    now.input.sharpness = fewer;
+    scenes.push_back(now);
+    now.input.sharpness = render::Sharpness::kFull;
+    now.input.redraw = render::FrameInput::Redraw::kInBands;
+    scenes.push_back(now);
+    scenes.push_back(now);
+  }
   return scenes;
 }
 
