@@ -74,7 +74,7 @@ inline constexpr std::size_t kMeasuredPerFrame = 256, kMeasuredAtOnce = 64;
 inline constexpr double kWindowMeasuringMs = 4.0;
 /// The same of what a window's frame uploads (LiveOptions::uploading_ms): memory that a filter has just filled is read at 0.5 GB/s
 /// beside it.
-inline constexpr double kWindowUploadingMs = 6.0;
+inline constexpr double kWindowUploadingMs = 3.0;
 
 // Computing.
 

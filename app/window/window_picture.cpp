@@ -119,7 +119,9 @@ void WindowPicture::noteFrame(double ms) noexcept {
     constexpr double kOfBands = 0.75;
     banded_share_ += figures_.redrawn;
     banded_ms_ += kOfBands * ms;
-    if (banded_share_ > 0.99) whole_.note(banded_ms_);
+    // Four frames are no single long one.
+    constexpr double kMost_ms = FrameBudget::kFar * FrameBudget::kSlowWhole_ms;
+    if (banded_share_ > 0.99) whole_.note(std::min(banded_ms_, kMost_ms));
   }
   if (measured_ != Measured::kSharpBand || banded_share_ > 0.99) banded_share_ = banded_ms_ = 0.0;
   measured_ = Measured::kNothing;
@@ -135,9 +137,9 @@ bool WindowPicture::takeDue(Draws draws) {
   if (refines && measuresFirst(now)) return false;
   const bool results = (results_wait_ || figures_.upload.pending_tiles > 0) &&
                        !(computes_ && figures_.upload.pending_of_first == 0 && now < results_due_);
-  const bool changes =
-      needs_redraw_ || results ||
-      (refines && (refinement_.due(now) || sharp_later_.due(now) || figures_.bands_left > 0));
+  const bool changes = needs_redraw_ || results ||
+                       (refines && (refinement_.due(now) || (sharp_later_.due(now) && !samplesCome()) ||
+                                    figures_.bands_left > 0));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
   if (due) needs_redraw_ = results_wait_ = false;
@@ -160,11 +162,17 @@ bool WindowPicture::measuresFirst(Refinement::Clock::time_point now) {
   return live_->measureFor(kMeasuring_ms) > 0;
 }
 
+// Whether samples that are shown are still to be uploaded: a sharp picture could not come in bands, and would be drawn again.
+bool WindowPicture::samplesCome() const noexcept {
+  const render::UploadStatistics& upload = figures_.upload;
+  return upload.pending_tiles > upload.unmeasured_tiles + figures_.residency.pages_waiting;
+}
+
 // Whether the next frame has half the resolution since whole frames take long; `changes_whole`: it is one.
 bool WindowPicture::drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept {
   if (!adapts_ || !may_be_half_ || !whole_.less()) return false;
   // The frame after one of half the resolution is whole, too.
-  return changes_whole || (sharp_later_.pending() && !sharp_later_.due(now));
+  return changes_whole || (sharp_later_.pending() && (!sharp_later_.due(now) || samplesCome()));
 }
 
 bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& status) {

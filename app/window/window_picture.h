@@ -157,6 +157,7 @@ class WindowPicture {
 
  private:
   [[nodiscard]] bool drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept;
+  [[nodiscard]] bool samplesCome() const noexcept;
   [[nodiscard]] bool measuresFirst(Refinement::Clock::time_point now);
   [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
