@@ -91,9 +91,9 @@ struct Window::Impl {
   std::unique_ptr<Presenter> presenter;
   GpuImage picture;
   LiveTarget target;
-  bool drawn = false;            // something was drawn to `picture`
-  bool usable = false;           // according to the last present()
-  bool seen = false;             // the window is on the screen
+  bool drawn = false;   // something was drawn to `picture`
+  bool usable = false;  // according to the last present()
+  bool seen = false;    // the window is on the screen
   bool seen_elsewhere = false;
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
