@@ -9,8 +9,8 @@
 namespace fettle::app {
 namespace {
 
-// Not a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
-constexpr int kSide_px = 62;
+// Neither it nor half, a quarter or twice of it is a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
+constexpr int kSide_px = 78;
 constexpr int kWholeSide_px = 190;
 // Samples of a field of any size: 4 times what such a part of a picture can ask for.
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
@@ -53,14 +53,17 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
   now.input.panel_vertices.clear();  // those were of the window's last frame
   std::vector<Scene> scenes;
   const auto add = [&scenes](Scene scene) {
-    scene.input.sharpness = render::Sharpness::kHalf;
-    scenes.push_back(scene);
+    for (const render::Sharpness fewer : {render::Sharpness::kHalf, render::Sharpness::kQuarter}) {
+      scene.input.sharpness = fewer;
+      scenes.push_back(scene);
+    }
     scene.input.sharpness = render::Sharpness::kFine;
     scenes.push_back(std::move(scene));
   };
   Scene pen = now;
   addStylus(shown.versions.front(), pen.input.overlays);
   add(pen);
+  // Drawn over what is there, of whole pictures alone.
   pen.input.part.reset();
   pen.input.view.width = pen.input.view.height = kWholeSide_px;
   for (const render::Sharpness sharpness : {render::Sharpness::kQuarter, render::Sharpness::kFull,
@@ -83,19 +86,7 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
           add(std::move(scene));
         }
   now.without_marks = true;
-  add(now);
-  // Bands over frames with fewer pixels are drawn of whole pictures alone.
-  now.without_marks = false;
-  now.input.part.reset();
-  now.input.view.width = now.input.view.height = kWholeSide_px;
-  for (const render::Sharpness fewer : {render::Sharpness::kHalf, render::Sharpness::kQuarter}) {
-    now.input.sharpness = fewer;
-    scenes.push_back(now);
-    now.input.sharpness = render::Sharpness::kFull;
-    now.input.redraw = render::FrameInput::Redraw::kInBands;
-    scenes.push_back(now);
-    scenes.push_back(now);
-  }
+  add(std::move(now));
   return scenes;
 }
 

@@ -67,7 +67,6 @@ void WindowPicture::clear() {
   whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole);
   sharp_later_ = {};
   results_came_ = results_wait_ = false;
-  banded_share_ = banded_ms_ = 0.0;
   measured_ = Measured::kNothing;
   needs_redraw_ = true;
   look_.reset();
@@ -114,16 +113,6 @@ void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kMoving || measured_ == Measured::kWholeWithLess) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
   if (measured_ == Measured::kWhole || measured_ == Measured::kWholeWithLess) whole_.note(ms);
-  if (measured_ == Measured::kSharpBand) {
-    // As long as a whole frame would have taken, so that the first key knows: that has panels and presenting once.
-    constexpr double kOfBands = 0.75;
-    banded_share_ += figures_.redrawn;
-    banded_ms_ += kOfBands * ms;
-    // Four frames are no single long one.
-    constexpr double kMost_ms = FrameBudget::kFar * FrameBudget::kSlowWhole_ms;
-    if (banded_share_ > 0.99) whole_.note(std::min(banded_ms_, kMost_ms));
-  }
-  if (measured_ != Measured::kSharpBand || banded_share_ > 0.99) banded_share_ = banded_ms_ = 0.0;
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
     results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -224,12 +213,8 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
                      figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
-  // Of the bands of more vertices each takes longer than a share of a whole frame.
-  const bool sharp_band = figures_.band && !refinement_.inBands() && !whole_.less();
   drew_ = true;
-  if (sharp_band) {
-    measured_ = Measured::kSharpBand;
-  } else if (changes_whole || whole) {
+  if (changes_whole || whole) {
     measured_ = with_less ? Measured::kWholeWithLess : Measured::kWhole;
     if (with_less) sharp_later_.drawnWithLess(drawn_);
   } else if (!sharp_wanted && with_less) {

@@ -185,7 +185,6 @@ class WindowPicture {
     kNothing,
     kMoving,
     kStroke,
-    kSharpBand,
     kWhole,
     kWholeWithLess
   } measured_ = Measured::kNothing;
@@ -193,8 +192,6 @@ class WindowPicture {
   Clock::time_point drawn_;  // the last frame
   Clock::time_point hand_;   // the last input
   bool drew_ = false;        // the frame that is not noted yet
-  // A picture that becomes sharp in bands: how much of it is drawn, and how long that took.
-  double banded_share_ = 0.0, banded_ms_ = 0.0;
   DrawFigures draw_figures_;
   bool rehearses_ = false;  // what is shown; begun
   PictureRehearsal rehearsal_;
