@@ -123,8 +123,7 @@ engine::Result<LiveTexture::Freshness> LiveTexture::setVersion(PagePool& pool, i
     pages_->setAccepted(sure == version ? engine::Version() : sure);
     return Freshness::kRelated;
   }
-  // Not those of a pool: what is uploaded to its pages comes after all frames that are on their way.
-  if (!version_.empty() && !pages_) idle();
+  idle();
   clear();
   pages_ = std::make_unique<PageSet>(pool, grid.width, grid.height, fixed_from);
   has_marks_ = pool.hasMarks();
@@ -266,20 +265,19 @@ bool LiveTexture::upToDate(int entry) {
 }
 
 bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
-                            const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
+                            const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                             UploadStatistics& count, std::vector<glm::ivec2>& moved) {
-  bool any = false;
+  std::int64_t spent = 0;
   const engine::FieldReader reader = version_.reader();
-  for (; fixed_left_ > 0; --fixed_left_) {
+  for (; fixed_left_ > 0 && spent < byte_budget; --fixed_left_) {
     const int entry = pages_->grid().entries() - static_cast<int>(fixed_left_);
     if (pages_->share(entry, reader, submission)) continue;
     std::int64_t bytes = 0;
     if (pages_->load(entry, reader, ring, submission, bytes) != PageSet::Load::kDone) break;
-    any = true;
+    spent += bytes;
     count.bytes += bytes;
   }
-  std::int64_t spent = 0;
-  while (spent == 0 || (spent < budget.bytes && !budget.late())) {
+  while (spent < byte_budget) {
     const std::optional<std::uint64_t> key = nextPending();
     if (!key) break;
     const Pending& p = pending_.at(*key);
@@ -299,16 +297,16 @@ bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
   if (pending_.empty() && fixed_left_ == 0) pages_->name(reader);
   pages_->pool().flush(commands, ring.buffer());
   count.pending_tiles += static_cast<std::int64_t>(pending());
-  return any || spent > 0;
+  return spent > 0;
 }
 
 bool LiveTexture::uploadPending(StagingRing& ring, std::uint64_t submission,
-                                const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
+                                const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                 UploadStatistics& count, std::vector<glm::ivec2>& moved) {
-  if (pages_) return pumpPages(ring, submission, commands, budget, count, moved);
+  if (pages_) return pumpPages(ring, submission, commands, byte_budget, count, moved);
   const std::int64_t bytes_before = count.bytes;
   std::vector<vk::BufferImageCopy> copies[2][kLevels];
-  while (count.bytes == bytes_before || (count.bytes - bytes_before < budget.bytes && !budget.late())) {
+  while (count.bytes - bytes_before < byte_budget) {
     const std::optional<std::uint64_t> key = nextPending();
     if (!key) break;
     Pending& p = pending_.at(*key);

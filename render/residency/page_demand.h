@@ -7,7 +7,6 @@
 
 #include "render/detail/patches.h"
 #include "render/residency/live_texture.h"
-#include "render/residency/upload_budget.h"
 
 namespace fettle::render {
 
@@ -34,9 +33,9 @@ class PageDemand {
     std::int64_t waiting = 0;      ///< uploaded with the next frames
     std::int64_t over_budget = 0;  ///< do not fit with all the others within the budget
   };
-  /// Uploads missing pages, within `budget` or one page.
+  /// Uploads missing pages, `byte_budget` bytes of them or one page.
   [[nodiscard]] Outcome upload(PagePool& pool, StagingRing& ring, std::uint64_t frame,
-                               const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
+                               const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                UploadStatistics& count);
 
   /// Whether the vertices of a patch are on the device.

@@ -1,6 +1,5 @@
 #include "app/window/workstation/workstation.h"
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -135,14 +134,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 void Workstation::runFrame() {
-  WindowPicture& picture = parts_.picture;
-  picture.computes(parts_.filters.computing());
-  const bool rehearses = picture.rehearsing() && !window_->minimised();
-  window_->poll(actsNow(parts_, input_)        ? 0.0
-                : picture.active()             ? std::min(picture.restsFor_s(), kBusy_s)
-                : working(parts_) || rehearses ? kBusy_s
-                                               : kIdle_s);
-  window_->keepPace();
+  window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
   input_.beginFrame();
   whileWaiting();
   handleInput();
@@ -185,9 +177,7 @@ void Workstation::handleInput() {
     const ImGuiIO& io = ImGui::GetIO();
     parts_.stylus.follow(io.KeyShift && !io.WantTextInput, client->state().contact, *client);
   }
-  if (parts_.held()) parts_.picture.noteHand();
   while (const auto event = input_.next(parts_)) {
-    parts_.picture.noteHand();
     const Input::Request request = Input::handle(*event, parts_);
     if (request.action) app::carryOut(*request.action, parts_);
     if (request.open) askToOpen(*request.open);
