@@ -72,6 +72,9 @@ inline constexpr std::size_t kManyTiles = 256;
 /// and more of them while there is time (LiveOptions::measuring_ms): a window's has this much.
 inline constexpr std::size_t kMeasuredPerFrame = 256, kMeasuredAtOnce = 64;
 inline constexpr double kWindowMeasuringMs = 4.0;
+/// The same of what a window's frame uploads (LiveOptions::uploading_ms): memory that a filter has just filled is read at 0.5 GB/s
+/// beside it.
+inline constexpr double kWindowUploadingMs = 3.0;
 
 // Computing.
 
@@ -85,8 +88,10 @@ inline constexpr double kLongestComputeMs = 50.0;
 /// first picture: about 3.7 million samples. Larger fields are loaded on demand, so that no picture waits for
 /// them and the device holds only what was viewed.
 inline constexpr std::uint64_t kWholeBytes = std::uint64_t{16} << 20U;
-/// Of a field on demand, only the coarsest copy is uploaded before the first picture.
-inline constexpr std::uint64_t kFixedBytes = std::uint64_t{8} << 20U;
+/// Of a field on demand, only the coarsest copy is uploaded before the first picture: so much at most, and less of one that joins
+/// it, such as a preview, since the frame in which it comes waits for that.
+inline constexpr std::uint64_t kFixedBytes = std::uint64_t{8} << 20U,
+                               kFixedBytesOfOthers = std::uint64_t{1} << 20U;
 /// What a view requests depends on its pixels, not on samples or versions: at most 16 samples of 5 bytes per
 /// pixel, where none of its panels shares a page with another. A picture of 3840 x 2160 pixels requests 0.7
 /// GB at worst. A pool of pages takes no more than this, nor more than all that is shown takes as a whole,

@@ -189,7 +189,7 @@ struct Line {
 
 // A pen, with a ball at its point or without, and its shadow (render/plan/stylus_body.h). Lengths in scene mm.
 struct Stylus {
-  vec4 point;   // -
+  vec4 point;   // height of the plate, below which nothing is drawn
   vec4 tail;    // its other end; its radius
   vec4 ball;    // centre; radius along z
   vec4 colour;  // of its point and its ball: linear red, green, blue; 1: the ball is nearer to the viewer

@@ -11,10 +11,17 @@ layout(location = 0) noperspective out vec4 at_no_depth;  // as in shade.vert
 layout(location = 1) flat out vec3 across;  // the plane of the pen's axis and the light: a unit vector
 
 void main() {
-  const vec3 reach = stylus.shadow.y * panel.light.xyz;
-  const float wide = max(stylus.tail.w, stylus.shadow.w) + 0.2 * stylus.shadow.y;
-  const vec3 ends[5] = vec3[](stylus.ball.xyz, stylus.tail.xyz, stylus.ball.xyz - reach, stylus.tail.xyz - reach,
-                              stylus.ball.xyz - vec3(0.0, 0.0, stylus.shadow.y));
+  // Down to the plate at most, from both ends as far as from the higher one where that is farther than a shadow falls.
+  const float most = stylus.shadow.y, down = clamp(stylus.ball.z - stylus.point.w, 0.0, most);
+  vec2 reach = vec2(most);
+  if (panel.light.z > 1e-3) {
+    reach = max(vec2(stylus.ball.z, stylus.tail.z) - stylus.point.w, vec2(0.0)) / panel.light.z;
+    if (max(reach.x, reach.y) >= most) reach = vec2(most);
+  }
+  const float wide =
+      max(stylus.tail.w, stylus.shadow.w) + 0.2 * max(down, max(reach.x, reach.y)) + 2.0 * stylus.shadow.z;
+  const vec3 ends[5] = vec3[](stylus.ball.xyz, stylus.tail.xyz, stylus.ball.xyz - reach.x * panel.light.xyz,
+                              stylus.tail.xyz - reach.y * panel.light.xyz, stylus.ball.xyz - vec3(0.0, 0.0, down));
   vec2 low = vec2(1.0), high = vec2(-1.0);
   for (int i = 0; i < 5; ++i) {
     const float margin = i < 2 ? 2.0 * max(stylus.tail.w, stylus.shadow.w) : wide;
@@ -22,7 +29,7 @@ void main() {
       const vec3 corner = ends[i] + margin * (2.0 * vec3(k & 1, k >> 1 & 1, k >> 2) - 1.0);
       const vec4 clip = viewUniforms().clip_from_scene * vec4(corner, 1.0);
       // Beside or behind the viewer: anywhere.
-      const bool before = clip.w > 0.0 && clip.z > 0.0;
+      const bool before = clip.w > 0.0;
       low = min(low, before ? clip.xy / clip.w : vec2(-1.0));
       high = max(high, before ? clip.xy / clip.w : vec2(1.0));
     }

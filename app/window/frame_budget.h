@@ -19,6 +19,9 @@ class FrameBudget {
   /// Two frames lie between an edit and its pixel at worst, of 33 ms together; with less there must be time for what all
   /// would take in addition.
   static constexpr double kSlow_ms = 25.0, kQuick_ms = 12.0;
+  /// Of frames in which a brush works: between an edit and its pixel lie the loop's 4 ms and two of them at worst, of 33 ms together,
+  /// and one in a hundred takes half as long again. Without the pen's shadow there must be time for it.
+  static constexpr double kSlowStroke_ms = 10.0, kQuickStroke_ms = 4.5;
   /// Of frames that change as a whole: between a key and its effect lie two at worst, of 100 ms together, and a third of that is for
   /// what a busy machine adds.
   static constexpr double kSlowWhole_ms = 33.0, kQuickWhole_ms = 16.0;

@@ -9,8 +9,9 @@
 namespace fettle::app {
 namespace {
 
-// Not a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
-constexpr int kSide_px = 62;
+// Neither it nor half, a quarter or twice of it is a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
+constexpr int kSide_px = 78;
+constexpr int kWholeSide_px = 190;
 // Samples of a field of any size: 4 times what such a part of a picture can ask for.
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
 // From one end of how near a field is seen to the other.
@@ -26,11 +27,6 @@ void takeMiddle(render::FrameInput& input) {
   input.part = render::Rectangle{x, y, width, height};
 }
 
-struct Scene {
-  render::Shown shown;
-  render::FrameInput input;
-};
-
 // A pen in contact, a line through the surface and one over it.
 void addStylus(const engine::Version& field, render::Overlays& overlays) {
   const engine::Grid& grid = field.grid();
@@ -41,21 +37,40 @@ void addStylus(const engine::Version& field, render::Overlays& overlays) {
     overlays.lines.push_back({.from_mm = middle, .to_mm = middle + glm::dvec3(1.0), .depth = depth});
 }
 
+render::LiveOptions smallOptions() {
+  render::LiveOptions options;
+  options.memory_budget_bytes = kDeviceBytes;
+  return options;
+}
+
+}  // namespace
+
 // What a few keys and a wheel make of this picture, the likeliest first; each while something moves and at rest.
-std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput& look) {
-  Scene now{shown, look};
+std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Shown& shown,
+                                                                const render::FrameInput& look) {
+  Scene now{.input = look};
   takeMiddle(now.input);
   now.input.panel_vertices.clear();  // those were of the window's last frame
   std::vector<Scene> scenes;
   const auto add = [&scenes](Scene scene) {
-    scene.input.sharpness = render::Sharpness::kHalf;
-    scenes.push_back(scene);
+    for (const render::Sharpness fewer : {render::Sharpness::kHalf, render::Sharpness::kQuarter}) {
+      scene.input.sharpness = fewer;
+      scenes.push_back(scene);
+    }
     scene.input.sharpness = render::Sharpness::kFine;
     scenes.push_back(std::move(scene));
   };
   Scene pen = now;
   addStylus(shown.versions.front(), pen.input.overlays);
-  add(std::move(pen));
+  add(pen);
+  // Drawn over what is there, of whole pictures alone.
+  pen.input.part.reset();
+  pen.input.view.width = pen.input.view.height = kWholeSide_px;
+  for (const render::Sharpness sharpness : {render::Sharpness::kQuarter, render::Sharpness::kFull,
+                                            render::Sharpness::kRest, render::Sharpness::kRest}) {
+    pen.input.sharpness = sharpness;
+    scenes.push_back(pen);
+  }
   for (const bool other_projection : {false, true})
     for (const bool deviation : {false, true})
       for (const double nearer : {1.0, kNear, 1.0 / kNear})
@@ -65,35 +80,41 @@ std::vector<Scene> scenesOf(const render::Shown& shown, const render::FrameInput
             scene.input.view.projection = look.view.projection == render::Projection::kPerspective
                                               ? render::Projection::kOrthographic
                                               : render::Projection::kPerspective;
-          if (deviation && !scene.shown.original) scene.shown.original = shown.versions.front();
+          scene.deviation = deviation;
           scene.input.view.zoom *= nearer;
           if (contours) scene.input.contours = render::Contours::kShow;
           add(std::move(scene));
         }
-  now.shown.marks = render::MarksOverlay::kHide;
+  now.without_marks = true;
   add(std::move(now));
   return scenes;
 }
 
-}  // namespace
+render::Shown PictureRehearsal::Scene::of(render::Shown shown) const {
+  if (deviation && !shown.original) shown.original = shown.versions.front();
+  if (without_marks) shown.marks = render::MarksOverlay::kHide;
+  return shown;
+}
 
 void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, render::FrameInput look) {
   end();
   stage_ = std::make_shared<Stage>();
-  stage_->window = &window;
-  render::LiveOptions options;
+  stage_->window = window_ = &window;
+  std::vector<Scene> scenes = scenesOf(shown, look);
+  left_.assign(scenes.rbegin(), scenes.rend());
+  versions_ = shown.versions.size();
+  render::LiveOptions options = smallOptions();
   options.device = window.device();
   options.colour_format = render::Window::pictureFormat();
-  options.memory_budget_bytes = kDeviceBytes;
-  work_.replace([options = std::move(options), shown = std::move(shown), look = std::move(look),
+  work_.replace([options = std::move(options), scenes = std::move(scenes), shown = std::move(shown),
                  stage = stage_](engine::JobControl& job) -> engine::Result<Nothing> {
+    const Done done(*stage, job);
     if (const auto picture = render::LivePicture::create(options))
-      for (const Scene& scene : scenesOf(shown, look)) {
+      for (const Scene& scene : scenes) {
         if (job.cancelled()) return engine::cancelled();
-        if ((*picture)->update(scene.shown)) (void)(*picture)->drawAndWait(scene.input);
+        if ((*picture)->update(scene.of(shown))) (void)(*picture)->drawAndWait(scene.input);
         prepare(*stage, **picture);
       }
-    stage->done.store(true, std::memory_order_relaxed);
     return Nothing{};
   });
 }
@@ -106,8 +127,22 @@ void PictureRehearsal::prepare(Stage& stage, const render::LivePicture& rehearse
   }
 }
 
+void PictureRehearsal::drawNext(const render::Shown& shown) {
+  if (!drawsNext()) return;
+  if (shown.versions.size() != versions_) left_.clear();  // another picture
+  if (left_.empty()) return beside_.reset();
+  if (!beside_)
+    if (auto made = render::LivePicture::createBeside(*window_, smallOptions())) beside_ = std::move(*made);
+  if (beside_ && beside_->update(left_.back().of(shown))) (void)beside_->drawAndWait(left_.back().input);
+  left_.pop_back();
+  if (left_.empty()) beside_.reset();
+}
+
 void PictureRehearsal::end() noexcept {
   work_.cancel();
+  left_.clear();
+  beside_.reset();
+  window_ = nullptr;
   const std::scoped_lock lock(stage_->mutex);
   stage_->window = nullptr;
 }

@@ -19,7 +19,10 @@ namespace {
 constexpr double kMeasuring_ms = 20.0;
 constexpr std::chrono::milliseconds kShownMeanwhile{250};
 
-// Nobody waits for a rehearsal, and much else begins with a field.
+// Between two frames of a preview: what else the window does waits no longer.
+constexpr double kMostRest_ms = 50.0;
+
+// Since something was drawn, and since the last input: nobody waits for a rehearsal, and much else begins with a field.
 constexpr std::chrono::seconds kRehearsedAfter{1};
 
 constexpr int kPicks =
@@ -44,6 +47,7 @@ bool same(const render::Shown& a, const render::Shown& b) {
 engine::Status WindowPicture::make() {
   render::LiveOptions options;
   options.measuring_ms = render::kWindowMeasuringMs;
+  options.uploading_ms = render::kWindowUploadingMs;
   auto live = render::LivePicture::create(window_.context(), render::Window::pictureFormat(), options);
   if (!live) return tl::unexpected(live.error());
   lose();
@@ -58,14 +62,16 @@ void WindowPicture::clear() {
   at_rest_ = {};
   figures_ = {};
   // What took long was another field or another device.
-  moving_ = strokes_ = FrameBudget();
+  moving_ = FrameBudget();
+  strokes_ = FrameBudget(FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms);
   whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole);
   sharp_later_ = {};
-  results_came_ = false;
+  results_came_ = results_wait_ = false;
   measured_ = Measured::kNothing;
   needs_redraw_ = true;
   look_.reset();
   rehearses_ = false;
+  rehearsal_.end();  // it holds what was shown
 }
 
 void WindowPicture::fit(render::View& view) {
@@ -83,8 +89,10 @@ engine::Status WindowPicture::show(render::Shown shown) {
                           shown_.versions.front().formOver() != shown.versions.front().formOver();
   if (other_form) live_->refreshRanges();
   results_came_ = results_came_ || previewsDiffer(shown, shown_);
+  const bool more_of_them = onlyPreviewsDiffer(shown, shown_);
+  rehearsal_.release();  // it may hold the version of before
   shown_ = std::move(shown);
-  needs_redraw_ = true;
+  (more_of_them ? results_wait_ : needs_redraw_) = true;
   return {};
 }
 
@@ -106,6 +114,9 @@ void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kStroke) strokes_.note(ms);
   if (measured_ == Measured::kWhole || measured_ == Measured::kWholeWithLess) whole_.note(ms);
   measured_ = Measured::kNothing;
+  if (std::exchange(drew_, false))
+    results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double, std::milli>(std::min(ms, kMostRest_ms)));
 }
 
 bool WindowPicture::takeDue(Draws draws) {
@@ -113,14 +124,20 @@ bool WindowPicture::takeDue(Draws draws) {
   if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool refines = draws == Draws::kRefined;
   if (refines && measuresFirst(now)) return false;
-  const bool changes =
-      needs_redraw_ || figures_.upload.pending_tiles > 0 ||
-      (refines && (refinement_.due(now) || sharp_later_.due(now) || figures_.bands_left > 0));
+  const bool results = (results_wait_ || figures_.upload.pending_tiles > 0) &&
+                       !(computes_ && figures_.upload.pending_of_first == 0 && now < results_due_);
+  const bool changes = needs_redraw_ || results ||
+                       (refines && (refinement_.due(now) || (sharp_later_.due(now) && !samplesCome()) ||
+                                    figures_.bands_left > 0));
   only_rest_asked_ = !changes && refines && smooth_at_rest_ && !refinement_.pending() && at_rest_.due(now);
   const bool due = changes || only_rest_asked_;
-  if (due) needs_redraw_ = false;
-  if (!due && refines && look_ && now - drawn_ >= kRehearsedAfter && !std::exchange(rehearses_, true))
-    rehearsal_.begin(*live_, shown_, *look_);
+  if (due) needs_redraw_ = results_wait_ = false;
+  if (!due && refines && look_ && now - std::max(drawn_, hand_) >= kRehearsedAfter) {
+    if (!std::exchange(rehearses_, true))
+      rehearsal_.begin(*live_, shown_, *look_);
+    else
+      rehearsal_.drawNext(shown_);
+  }
   return due;
 }
 
@@ -130,15 +147,21 @@ bool WindowPicture::measuresFirst(Refinement::Clock::time_point now) {
   const bool only_measures =
       upload.unmeasured_tiles > 0 &&
       upload.pending_tiles == upload.unmeasured_tiles + figures_.residency.pages_waiting;
-  if (needs_redraw_ || !only_measures || now - drawn_ >= kShownMeanwhile) return false;
+  if (needs_redraw_ || results_wait_ || !only_measures || now - drawn_ >= kShownMeanwhile) return false;
   return live_->measureFor(kMeasuring_ms) > 0;
+}
+
+// Whether samples that are shown are still to be uploaded: a sharp picture could not come in bands, and would be drawn again.
+bool WindowPicture::samplesCome() const noexcept {
+  const render::UploadStatistics& upload = figures_.upload;
+  return upload.pending_tiles > upload.unmeasured_tiles + figures_.residency.pages_waiting;
 }
 
 // Whether the next frame has half the resolution since whole frames take long; `changes_whole`: it is one.
 bool WindowPicture::drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept {
   if (!adapts_ || !may_be_half_ || !whole_.less()) return false;
   // The frame after one of half the resolution is whole, too.
-  return changes_whole || (sharp_later_.pending() && !sharp_later_.due(now));
+  return changes_whole || (sharp_later_.pending() && (!sharp_later_.due(now) || samplesCome()));
 }
 
 bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& status) {
@@ -190,6 +213,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
                      figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
+  drew_ = true;
   if (changes_whole || whole) {
     measured_ = with_less ? Measured::kWholeWithLess : Measured::kWhole;
     if (with_less) sharp_later_.drawnWithLess(drawn_);

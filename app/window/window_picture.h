@@ -37,6 +37,7 @@ struct DrawFigures {
 /// Positions are pixels of the window's frame. Threading: main.
 class WindowPicture {
  public:
+  using Clock = Refinement::Clock;
   /// Text of the decorations over that of a picture [render::layOut], at scale 1 of the display: 13 pixels, a
   /// little smaller than that of the panels.
   static constexpr double kDecorations = 0.87;
@@ -57,12 +58,27 @@ class WindowPicture {
   /// Another field follows: shows nothing.
   void clear();
 
+  /// Somebody uses the window.
+  void noteHand() noexcept { hand_ = Clock::now(); }
+  /// Whether frames with nothing to draw are used for a rehearsal.
+  [[nodiscard]] bool rehearsing() const noexcept { return rehearsal_.drawsNext(); }
   void requestRedraw() noexcept { needs_redraw_ = true; }
-  void skipRedraw() noexcept { needs_redraw_ = false; }
+  void skipRedraw() noexcept { needs_redraw_ = results_wait_ = false; }
   /// Whether something must be drawn without waiting.
   [[nodiscard]] bool active() const noexcept {
-    return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0 ||
+    return needs_redraw_ || results_wait_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0 ||
            figures_.bands_left > 0;
+  }
+  /// Whether a preview is being computed. Frames that show nothing else than more of it leave as much time as they take: they slow
+  /// down what they wait for, and a key waits for the one that is being drawn.
+  void computes(bool previews) noexcept { computes_ = previews; }
+  /// How long nothing has to be drawn although active() [s].
+  [[nodiscard]] double restsFor_s() const noexcept {
+    const bool only_results = !needs_redraw_ && !motion_.sharpPending() && figures_.bands_left == 0 &&
+                              figures_.upload.pending_of_first == 0;
+    return computes_ && only_results
+               ? std::max(0.0, std::chrono::duration<double>(results_due_ - Clock::now()).count())
+               : 0.0;
   }
   [[nodiscard]] bool refining() const noexcept { return refinement_.pending() || sharp_later_.pending(); }
   /// Whether frames are left until the picture has four rays per pixel.
@@ -141,6 +157,7 @@ class WindowPicture {
 
  private:
   [[nodiscard]] bool drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept;
+  [[nodiscard]] bool samplesCome() const noexcept;
   [[nodiscard]] bool measuresFirst(Refinement::Clock::time_point now);
   [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
@@ -154,9 +171,12 @@ class WindowPicture {
   bool smooth_at_rest_ = false;
   bool only_rest_asked_ = false;  // for the frame that is due
   bool needs_redraw_ = true;
+  bool computes_ = false;
+  bool results_wait_ = false;               // more of a preview is to be drawn
+  Clock::time_point results_due_;           // when
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
   bool adapts_ = true, may_be_half_ = true;
-  FrameBudget moving_, strokes_,
+  FrameBudget moving_, strokes_{FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms},
       whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole};
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
@@ -169,7 +189,9 @@ class WindowPicture {
     kWholeWithLess
   } measured_ = Measured::kNothing;
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
-  Refinement::Clock::time_point drawn_;  // the last frame
+  Clock::time_point drawn_;  // the last frame
+  Clock::time_point hand_;   // the last input
+  bool drew_ = false;        // the frame that is not noted yet
   DrawFigures draw_figures_;
   bool rehearses_ = false;  // what is shown; begun
   PictureRehearsal rehearsal_;

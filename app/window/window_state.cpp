@@ -375,9 +375,13 @@ Report waitedFor(const Parts& p, const Input& input) {
 
 }  // namespace
 
-bool isActive(const Parts& parts, const Input& input) {
-  return parts.picture.active() || !input.empty() || input.acted() || parts.held() || parts.flight.active() ||
+bool actsNow(const Parts& parts, const Input& input) {
+  return !input.empty() || input.acted() || parts.held() || parts.flight.active() ||
          parts.window.panelsAreBehind();
+}
+
+bool isActive(const Parts& parts, const Input& input) {
+  return parts.picture.active() || actsNow(parts, input);
 }
 
 Report windowState(const Parts& parts, const Input& input, const RunFigures& run) {

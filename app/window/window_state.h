@@ -34,7 +34,9 @@ struct RunFigures {
   std::int64_t shown_ns = 0;  ///< the last frame: engine::steadyNs() when it was passed to the window system
 };
 
-/// Whether something moves or must be drawn: the next frame follows immediately.
+/// Whether somebody acts, or something moves: the next frame follows immediately.
+[[nodiscard]] bool actsNow(const Parts& parts, const Input& input);
+/// Or something must be drawn.
 [[nodiscard]] bool isActive(const Parts& parts, const Input& input);
 
 /// The visible state of the window, for scripts and tests that drive it by keys and mouse and must know when

@@ -170,26 +170,25 @@ void FilterPreview::dropSoFar() {
   so_far_ = {};
 }
 
-// The picture so far, some times in a second. True when it is another one.
-bool FilterPreview::takeSoFar() {
+// The picture so far, some times in a second.
+void FilterPreview::takeSoFar() {
   (void)approximating_.take();
-  if (!view_ || !computes()) return false;
+  if (!view_ || !computes()) return;
   const auto now = Clock::now();
   const bool first = !seen_;
-  if (!first && now - looked_ < PreviewPace::kLookAgain) return false;
+  if (!first && now - looked_ < PreviewPace::kLookAgain) return;
   if (!approximating_.busy() && view_->wantsCoarse() && !first)
     approximating_.start([view = view_](engine::JobControl& job) -> engine::Result<bool> {
       if (auto done = view->coarsen(job); !done) return tl::unexpected(done.error());
       return true;
     });
   engine::FilterView::Picture picture = view_->picture();
-  if (picture.field.empty() || (first && picture.untouched > 0.0 && now - begun_ < kWaitForAll)) return false;
+  if (picture.field.empty() || (first && picture.untouched > 0.0 && now - begun_ < kWaitForAll)) return;
   looked_ = now;
-  if (picture.field == so_far_.field) return false;
+  if (picture.field == so_far_.field) return;
   so_far_ = std::move(picture);
   of_so_far_ = of_view_;
   noteSeen();
-  return true;
 }
 
 void FilterPreview::noteSeen() {
@@ -287,7 +286,7 @@ bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
       changed = true;
     }
   }
-  changed |= takeSoFar();
+  takeSoFar();
   changed |= noise_.poll(client.original());
   // A cancelled job may have finished meanwhile.
   const bool dropped = computing_.cancelling();

@@ -85,7 +85,8 @@ class FilterPreview {
   void cancel(LoopClient& client);
   /// As cancel(), and waits until no worker uses the port of `client`, which may be destroyed afterwards.
   void finish(LoopClient& client);
-  /// Takes over computed results. True when something visible changed.
+  /// Takes over computed results. True when something visible changed; more of a result that is being computed is none, which who
+  /// draws it sees by itself.
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
@@ -111,7 +112,7 @@ class FilterPreview {
     engine::FilterSpec spec;
     bool operator==(const Fields& other) const;
   };
-  [[nodiscard]] bool takeSoFar();
+  void takeSoFar();
   void dropSoFar();
   void noteSeen();
   void stopFollowing();

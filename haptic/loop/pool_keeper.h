@@ -17,9 +17,9 @@ namespace fettle::haptic {
 class PoolKeeper {
  public:
   struct Levels {
-    /// Free tiles below which more are made. The largest brush takes 16 per publication, 2,000 per second:
-    /// enough for half a second. 17 MB.
-    std::size_t tiles = 1024;
+    /// Free tiles below which more are made. The largest brush takes 16 per publication, 4,000 per second:
+    /// enough for half a second. 35 MB.
+    std::size_t tiles = 2048;
     std::size_t nodes = 256;
     std::int64_t poll_interval_ns = 2'000'000;
   };

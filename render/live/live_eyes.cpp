@@ -42,7 +42,10 @@ void LiveEyes::beginEyes(vk::Extent2D eye, StereoCompose::Layers layers) {
 
 // Both eyes into the two layers of a target.
 void LiveEyes::recordBoth(const Drawn& drawn, const LiveTarget& target) {
-  if (!both_) both_ = std::make_unique<LiveFrame>(context_, colour_, Pipelines::Views::kBoth);
+  constexpr auto kBoth = Pipelines::Views::kBoth;
+  if (!both_)
+    both_ = std::make_unique<LiveFrame>(context_, colour_, kBoth,
+                                        std::make_shared<LivePrograms>(context_, colour_, kBoth));
   recordOne(*both_, drawn, target);
 }
 
@@ -50,7 +53,8 @@ void LiveEyes::recordBoth(const Drawn& drawn, const LiveTarget& target) {
 void LiveEyes::recordEach(const Drawn& drawn) {
   recordOne(left_, drawn, compose_->target(Eye::kLeft));
   for (LivePanel& panel : drawn.panels) panel.uniforms.views[0] = panel.uniforms.views[1];
-  if (!right_) right_ = std::make_unique<LiveFrame>(context_, colour_);
+  if (!right_)
+    right_ = std::make_unique<LiveFrame>(context_, colour_, Pipelines::Views::kOne, left_.programs());
   recordOne(*right_, drawn, compose_->target(Eye::kRight));
 }
 

@@ -12,11 +12,12 @@
 namespace fettle::render {
 namespace {
 
-// The finest level that stays on the device permanently: what kFixedBytes and a quarter of the pool hold if
+// The finest level that stays on the device permanently: what `most_bytes` and a quarter of the pool hold if
 // `textures` fields do so. The coarsest patch, which is drawn when nothing else can be, has vertices every
 // 2^top samples and searches for heights around holes at an eighth of that step: these samples are always
 // present.
-int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textures) {
+int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textures,
+               std::uint64_t most_bytes) {
   int top = 0;
   while ((std::max(grid.width, grid.height) - 2) / DetailMeasure::side(top) > 0) ++top;
   const int coarsest = std::clamp((top - 3) / 2, 0, kDataLevels - 1);
@@ -24,7 +25,7 @@ int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textu
   const auto fits = [&](int level) {
     const auto fixed = static_cast<std::uint64_t>(PageSet::fixedPages(pages, level));
     return fixed * textures * 4 <= pool.slots().count() &&
-           fixed << (2 * pool.log2Side()) <= kFixedBytes / sizeof(float);
+           fixed << (2 * pool.log2Side()) <= most_bytes / sizeof(float);
   };
   int level = 0;
   while (level < coarsest && !fits(level)) ++level;
@@ -81,15 +82,15 @@ LiveFields::LiveFields(Context& context, Submissions& submissions, StagingRing& 
   if (memory_budget_ == 0) memory_budget_ = largestHeap(context.physical()) / 2;
 }
 
-// Uploads all that is pending, however long it takes: a small field, or coarse copies.
+// Uploads all that is pending, however long it takes: a small field.
 void LiveFields::uploadAll(LiveTexture& texture) {
   std::vector<glm::ivec2> moved;
   while (texture.pending() > 0) {
     if (submissions_.begin() > 0.5) ++uploaded_.stalls;
     staging_.release(submissions_.done());
     UploadStatistics count;
-    texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), kUploadBytesPerSubmission,
-                          count, moved);
+    texture.uploadPending(staging_, submissions_.next(), submissions_.commands(),
+                          UploadBudget{kUploadBytesPerSubmission}, count, moved);
     uploaded_.tiles += count.tiles;
     uploaded_.bytes += count.bytes;
     uploaded_.changed_samples += count.changed_samples;
@@ -159,20 +160,21 @@ void LiveFields::arrangePool(const Shown& next) {
 
 engine::Result<LiveTexture::Freshness> LiveFields::setVersion(LiveTexture& texture, const Shown& next,
                                                               const engine::Version& version,
-                                                              MarksOverlay marks,
+                                                              MarksOverlay marks, Joins joins,
                                                               const engine::Version& accepted) {
   // Frames in flight may still read what is released.
   const auto idle = [this] { submissions_.finish(); };
   if (!pool_) return texture.setVersion(context_, version, marks, max_side_, idle, accepted);
-  return texture.setVersion(*pool_, fixedLevel(version.grid(), *pool_, next.versions.size() + 1), version,
-                            idle, accepted);
+  const std::uint64_t most = joins == Joins::kYes ? kFixedBytesOfOthers : kFixedBytes;
+  return texture.setVersion(*pool_, fixedLevel(version.grid(), *pool_, next.versions.size() + 1, most),
+                            version, idle, accepted);
 }
 
 // Sets version `i` of `next`; returns whether it is another field than before.
 engine::Result<bool> LiveFields::setField(std::size_t i, const Shown& next) {
   Field& field = fields_[i];
   const engine::Version& v = next.versions[i];
-  const auto state = setVersion(field.texture, next, v, next.marks,
+  const auto state = setVersion(field.texture, next, v, next.marks, i == 0 ? Joins::kNo : Joins::kYes,
                                 i == 0 ? next.accepted.value_or(engine::Version()) : engine::Version());
   if (!state) return tl::unexpected(state.error());
   if (*state != LiveTexture::Freshness::kFresh) {
@@ -184,7 +186,7 @@ engine::Result<bool> LiveFields::setField(std::size_t i, const Shown& next) {
     field.measured = v;
     return false;
   }
-  uploadAll(field.texture);
+  if (!pool_) uploadAll(field.texture);
   const bool known = related(field.measured, v);
   if (known || (i > 0 && related(next.versions[0], v))) {
     std::vector<glm::ivec2> tiles;
@@ -229,7 +231,8 @@ engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
   }
   arrangePool(next);
   bool another = next.original.has_value() != shown_.original.has_value();
-  if (fields_.size() > next.versions.size()) submissions_.finish();
+  // What is uploaded to a pool's pages comes after all frames that are on their way.
+  if (fields_.size() > next.versions.size() && !pool_) submissions_.finish();
   fields_.resize(next.versions.size());
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const engine::Result<bool> fresh = setField(i, next);
@@ -237,14 +240,14 @@ engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
     another = another || (i == 0 && *fresh);
   }
   if (next.original) {
-    const auto state = setVersion(original_, next, *next.original, MarksOverlay::kHide);
+    const auto state = setVersion(original_, next, *next.original, MarksOverlay::kHide, Joins::kYes);
     if (!state) return tl::unexpected(state.error());
     if (*state == LiveTexture::Freshness::kFresh) {
-      uploadAll(original_);
+      if (!pool_) uploadAll(original_);
       another = true;
     }
   } else if (!original_.version().empty()) {
-    submissions_.finish();
+    if (!pool_) submissions_.finish();
     original_.clear();
   }
   const Signs before(shown_), now(next);
@@ -266,14 +269,46 @@ std::size_t LiveFields::measureInFrame(DetailMeasure& measure, const engine::Fie
   return measured;
 }
 
+// Uploads the permanent pages, in submissions before the frame's.
+void LiveFields::uploadFixed(UploadStatistics& all) {
+  const auto left = [this] {
+    return original_.fixedLeft() > 0 ||
+           std::ranges::any_of(fields_, [](const Field& f) { return f.texture.fixedLeft() > 0; });
+  };
+  UploadStatistics count;
+  std::vector<glm::ivec2> moved;
+  const auto upload = [&](LiveTexture& texture) {
+    moved.clear();
+    if (texture.fixedLeft() > 0)
+      texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), {}, count, moved);
+  };
+  while (left()) {
+    for (Field& f : fields_) {
+      upload(f.texture);
+      if (!moved.empty()) f.measure.invalidate(f.texture.version().reader(), moved);
+    }
+    upload(original_);
+    // By themselves: of a frame that fails later nothing is submitted, but pages count as there.
+    submissions_.submit({});
+    (void)submissions_.begin();
+    staging_.release(submissions_.done());
+  }
+  all.tiles += count.tiles;
+  all.bytes += count.bytes;
+  all.changed_samples += count.changed_samples;
+}
+
 void LiveFields::uploadPending(UploadStatistics& all) {
   const engine::Stopwatch watch;
+  // Each has its share of the time, whatever others need and measuring takes.
+  const double share_ms = options_.uploading_ms / static_cast<double>(fields_.size() + 1);
+  const auto budget = [&] { return UploadBudget{options_.upload_bytes_per_frame, share_ms}; };
   UploadStatistics count;
+  uploadFixed(uploaded_);
   std::vector<glm::ivec2> moved;
   for (Field& f : fields_) {
     moved.clear();
-    f.texture.uploadPending(staging_, submissions_.next(), submissions_.commands(),
-                            options_.upload_bytes_per_frame, count, moved);
+    f.texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget(), count, moved);
     const engine::FieldReader reader = f.texture.version().reader();
     if (!moved.empty()) f.measure.invalidate(reader, moved);
     count.measured_tiles += static_cast<std::int64_t>(measureInFrame(f.measure, reader));
@@ -281,13 +316,13 @@ void LiveFields::uploadPending(UploadStatistics& all) {
   }
   moved.clear();
   if (!original_.version().empty())
-    original_.uploadPending(staging_, submissions_.next(), submissions_.commands(),
-                            options_.upload_bytes_per_frame, count, moved);
+    original_.uploadPending(staging_, submissions_.next(), submissions_.commands(), budget(), count, moved);
   bytes_left_ = options_.upload_bytes_per_frame - count.bytes;
   all = uploaded_;
   all.tiles += count.tiles;
   all.bytes += count.bytes;
   all.changed_samples += count.changed_samples;
+  all.pending_of_first = fields_.empty() ? 0 : static_cast<std::int64_t>(fields_.front().texture.pending());
   all.measured_tiles = count.measured_tiles;
   all.unmeasured_tiles = count.unmeasured_tiles;
   all.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
@@ -310,7 +345,8 @@ void LiveFields::uploadPages(PageDemand& demand, FrameStatistics& stats) {
   UploadStatistics count;
   ResidencyStatistics& r = stats.residency;
   const PageDemand::Outcome outcome =
-      demand.upload(*pool_, staging_, submissions_.next(), submissions_.commands(), bytes_left_, count);
+      demand.upload(*pool_, staging_, submissions_.next(), submissions_.commands(),
+                    {bytes_left_, options_.uploading_ms}, count);
   stats.upload.bytes += count.bytes;
   stats.upload.pending_tiles += count.pending_tiles;
   r.on_demand = true;

@@ -35,8 +35,8 @@ class LiveFields {
   /// As LivePicture::update.
   [[nodiscard]] engine::Result<Change> update(const Shown& next);
 
-  /// Uploads the next share of what is pending in the submission that is being recorded, and measures some
-  /// tiles. Adds what update() uploaded since the last call.
+  /// Uploads the next share of what is pending in the submission that is being recorded, and all that must be on the device before
+  /// anything is drawn; measures some tiles. Adds what update() uploaded since the last call.
   void uploadPending(UploadStatistics& count);
   /// As LivePicture::measureFor.
   [[nodiscard]] std::int64_t measureFor(double ms);
@@ -65,10 +65,12 @@ class LiveFields {
   [[nodiscard]] std::uint64_t poolBudget(const Shown& next) const;
   void arrangePool(const Shown& next);
   void uploadAll(LiveTexture& texture);
+  void uploadFixed(UploadStatistics& count);
   std::size_t measureInFrame(DetailMeasure& measure, const engine::FieldReader& reader) const;
+  enum class Joins { kNo, kYes };  // a picture in which another version is shown
   [[nodiscard]] engine::Result<LiveTexture::Freshness> setVersion(LiveTexture& texture, const Shown& next,
                                                                   const engine::Version& version,
-                                                                  MarksOverlay marks,
+                                                                  MarksOverlay marks, Joins joins,
                                                                   const engine::Version& accepted = {});
   [[nodiscard]] engine::Result<bool> setField(std::size_t i, const Shown& next);
 

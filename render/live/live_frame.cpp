@@ -1,4 +1,5 @@
 #include "render/live/live_frame.h"
+#include "render/live/overlay_places.h"
 #include "render/live/panel_pass.h"
 #include "render/plan/colour_map.h"
 #include "render/vulkan/barrier.h"
@@ -35,7 +36,7 @@ vk::Format codesOf(vk::Format colour) {
 }
 
 // The order of channels does not matter where all are mixed in the same way.
-constexpr vk::Format kEnlarged = vk::Format::eB8G8R8A8Unorm;
+constexpr vk::Format kEnlarged = LivePrograms::kEnlarged;
 
 // Values of kEnlarged with which an image of the format has this colour [linear light].
 vk::ClearColorValue codesOf(const glm::vec3& light, vk::Format colour) {
@@ -74,12 +75,14 @@ void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect,
 
 }  // namespace
 
-LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views)
+LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views,
+                     std::shared_ptr<LivePrograms> programs)
     : context_(context),
       colour_(colour),
       layers_(views == Pipelines::Views::kBoth ? 2 : 1),
       view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
-      pipelines_(context, colour, views),
+      programs_(std::move(programs)),
+      pipelines_(programs_->pipelines()),
       stylus_(pipelines_, view_mask_),
       glyphs_(context) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
@@ -147,16 +150,16 @@ void LiveFrame::makeRest(Submissions& submissions, vk::Extent2D extent) {
   rest_ = baseOf({2 * small.width, 2 * small.height});
   rest_extent_ = extent;
   if (!reduce_to_rest_)
-    reduce_to_rest_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
+    reduce_to_rest_ = std::make_unique<Resize>(context_, programs_->reduce(), Resize::Times::kTwo);
   reduce_to_rest_->set(fine_.base, rest_, layers_);
 }
 
-void LiveFrame::makeSmall(Layers& layers, vk::Extent2D picture, int step, std::unique_ptr<Resize>& enlarge) {
+void LiveFrame::makeSmall(Layers& layers, vk::Extent2D picture, Resize::Times times,
+                          std::unique_ptr<Resize>& enlarge) {
+  const int step = times == Resize::Times::kTwo ? 2 : 4;
   layers.scale = 1.0F / static_cast<float>(step);
   makeLayer(layers, picture, everyNth(picture, static_cast<std::uint32_t>(step)));
-  if (!enlarge)
-    enlarge = std::make_unique<Resize>(
-        context_, step == 2 ? Resize::Direction::kEnlarge : Resize::Direction::kEnlargeMore, kEnlarged);
+  if (!enlarge) enlarge = std::make_unique<Resize>(context_, programs_->enlarge(), times);
   enlarge->set(layers.base, whole_.base, layers_);
 }
 
@@ -176,11 +179,11 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
     half_.extent = quarter_.extent = vk::Extent2D{};
     reduce_.reset();
   }
-  if (half) makeSmall(half_, extent, 2, enlarge_);
-  if (quarter) makeSmall(quarter_, extent, 4, enlarge_more_);
+  if (half) makeSmall(half_, extent, Resize::Times::kTwo, enlarge_);
+  if (quarter) makeSmall(quarter_, extent, Resize::Times::kFour, enlarge_more_);
   if (fine) {
     if (fine_.extent != extent) makeFine(extent);
-    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
+    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, programs_->reduce(), Resize::Times::kTwo);
     reduce_->set(fine_.base, whole_.base, layers_);
   }
 }
@@ -422,16 +425,52 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
   commands.endRendering();
 }
 
+LiveFrame::Copied LiveFrame::copiedTo(const LiveTarget& target, const GpuImage& base,
+                                      std::span<const LivePanel> panels, std::optional<Places> changed) {
+  const Rectangle all{0, 0, static_cast<int>(target.extent.width), static_cast<int>(target.extent.height)};
+  const std::optional<Held> before = std::exchange(held_, std::nullopt);
+  if (target.kept == 0 || layers_ > 1 || target.over) return {base, {all}};
+  // All overlays are drawn again, each over what was copied below it.
+  Places overlays;
+  addOverlays(panels, overlays);
+  held_ = Held{target.kept, target.image, target.extent, &base, overlays.take()};
+  if (!changed || !before || before->kept != target.kept || before->image != target.image ||
+      before->extent != target.extent || before->base != &base)
+    return {base, {all}};
+  for (const Rectangle& place : before->overlays) changed->add(place);
+  for (const Rectangle& place : held_->overlays) changed->add(place);
+  Copied copied{base, changed->take(), true};
+  for (Rectangle& place : copied.places) place = cut(place, all);
+  std::erase_if(copied.places, [](const Rectangle& place) { return empty(place); });
+  return copied;
+}
+
 void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                             std::span<const LivePanel> panels, const GpuImage& base,
+                             std::span<const LivePanel> panels, const Copied& copied_base,
                              const LiveTarget& target, Sharpness sharpness) {
+  if (copied_base.places.empty()) return;               // and there is no overlay
   const bool in_scene = sharpness == Sharpness::kFull;  // lines of that kind are still to be drawn
-  vk::ImageCopy copy;
-  copy.setSrcSubresource({kColour, 0, 0, layers_})
-      .setDstSubresource({kColour, 0, 0, layers_})
-      .setExtent({target.extent.width, target.extent.height, 1});
-  commands.copyImage(base.image(), ImageLayout::eTransferSrcOptimal, target.image,
-                     ImageLayout::eTransferDstOptimal, copy);
+  // The acquired image is waited for at these stages: the change of layout comes after it.
+  Barriers begin;
+  begin.add(target.image, kColour,
+            {copied_base.over_before ? target.leaves_as : ImageLayout::eUndefined,
+             Stage::eColorAttachmentOutput | Stage::eCopy,
+             {}},
+            {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
+  begin.record(commands);
+  std::vector<vk::ImageCopy> copies;
+  copies.reserve(copied_base.places.size());
+  for (const Rectangle& place : copied_base.places) {
+    const vk::Offset3D from{place.x, place.y, 0};
+    copies.push_back(
+        {{kColour, 0, 0, layers_},
+         from,
+         {kColour, 0, 0, layers_},
+         from,
+         {static_cast<std::uint32_t>(place.width), static_cast<std::uint32_t>(place.height), 1}});
+  }
+  commands.copyImage(copied_base.base.image(), ImageLayout::eTransferSrcOptimal, target.image,
+                     ImageLayout::eTransferDstOptimal, copies);
   const bool lines = std::any_of(panels.begin(), panels.end(), [&](const LivePanel& p) {
     return (in_scene && !empty(p.tested) && !p.in_scene.empty()) || (!empty(p.visible) && !p.on_top.empty());
   });
@@ -508,9 +547,11 @@ void LiveFrame::recordSurface(const vk::raii::CommandBuffer& commands, const Slo
   recordBase(commands, slot, panels, ground, layers, redraw, before.lines);
 }
 
-void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-                       const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
-                       const Glyphs& glyphs, const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
+std::vector<Rectangle> LiveFrame::record(Submissions& submissions, StagingRing& staging,
+                                         std::span<const LivePanel> panels,
+                                         const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
+                                         const Glyphs& glyphs, const LiveTarget& target, Redraw redraw,
+                                         Sharpness sharpness) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
@@ -528,7 +569,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
   const Barriers::Access read{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
                               Access::eShaderRead};
-  Barriers compose;
+  std::optional<Places> changed = Places();  // of the base
   if (redraws) {
     // The previous frame may still draw lines against this depth and copy from that base.
     recordSurface(
@@ -539,26 +580,30 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     else if (resized)
       recordEnlarged(commands, layers, panels, ground);
     recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
+    Barriers compose;
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
+    compose.record(commands);
+    if (keepsColours(redraw))
+      for (const LivePanel& panel : panels) changed->add(panel.redraw);
+    else
+      changed.reset();
   }
-  // The acquired image is waited for at these stages: the change of layout comes after it.
-  compose.add(target.image, kColour,
-              {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
-              {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
-  compose.record(commands);
-  recordTarget(commands, slot, panels, whole_.base, target, sharpness);
+  Copied copy = copiedTo(target, whole_.base, panels, std::move(changed));
+  recordTarget(commands, slot, panels, copy, target, sharpness);
+  return std::move(copy.places);
 }
 
-void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-                           const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
-                           const Glyphs& glyphs, const LiveTarget& target, const Rest& rest) {
+std::vector<Rectangle> LiveFrame::recordRest(Submissions& submissions, StagingRing& staging,
+                                             std::span<const LivePanel> panels,
+                                             const std::vector<gpu::Quad>& decorations,
+                                             const glm::vec3& ground, const Glyphs& glyphs,
+                                             const LiveTarget& target, const Rest& rest) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
   makeRest(submissions, target.extent);
   fill(slot, panels, decorations, fine_, whole_.depth);  // recordTarget() draws the stylus
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
-  Barriers compose;
   if (rest.draws) {
     // The first part may follow a frame that still reduces what was there before.
     const Barriers::Access reduced{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
@@ -568,14 +613,14 @@ void LiveFrame::recordRest(Submissions& submissions, StagingRing& staging, std::
     if (rest.last) {
       recordReduced(commands, *reduce_to_rest_, rest_);
       recordDecorations(commands, slot, panels, decorations, rest_, Redraw::kAll);
+      Barriers compose;
       compose.add(rest_.image(), kColour, kColourWritten, copied);
+      compose.record(commands);
     }
   }
-  compose.add(target.image, kColour,
-              {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
-              {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
-  compose.record(commands);
-  recordTarget(commands, slot, panels, rest.shows ? rest_ : whole_.base, target, Sharpness::kFull);
+  Copied copy = copiedTo(target, rest.shows ? rest_ : whole_.base, panels, Places());
+  recordTarget(commands, slot, panels, copy, target, Sharpness::kFull);
+  return std::move(copy.places);
 }
 
 }  // namespace fettle::render

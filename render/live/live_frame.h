@@ -9,9 +9,11 @@
 #include "render/live/glyph_image.h"
 #include "render/live/live_panel.h"
 #include "render/live/live_picture.h"
+#include "render/live/live_programs.h"
 #include "render/live/resize.h"
 #include "render/live/stylus_pass.h"
 #include "render/plan/glyphs.h"
+#include "render/plan/places.h"
 #include "render/plan/plan.h"
 #include "render/residency/live_texture.h"
 #include "render/vulkan/barrier.h"
@@ -43,8 +45,9 @@ namespace fettle::render {
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFrame {
  public:
-  /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
-  LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
+  /// kBoth: targets have two layers, one for each eye of PanelUniforms::views. `programs` are for such pictures of this format.
+  LiveFrame(Context& context, vk::Format colour, Pipelines::Views views,
+            std::shared_ptr<LivePrograms> programs);
 
   /// Whether the layers hold a picture of full sharpness in this size, and whether decorations would be drawn
   /// with the same glyph image.
@@ -56,10 +59,11 @@ class LiveFrame {
     kFirstPart,  ///< only LivePanel::redraw, the rest becomes empty. Only by recordRest
     kFirstPartOver,  ///< the same of depth; of base the rest stays as it is. Only at kFull, after a frame of kHalf or kQuarter
   };
-  /// Records into submissions.commands(). `staging` transfers new glyphs.
-  void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-              const std::vector<gpu::Quad>& decorations, const glm::vec3& ground, const Glyphs& glyphs,
-              const LiveTarget& target, Redraw redraw, Sharpness sharpness);
+  /// Records into submissions.commands(). `staging` transfers new glyphs. Returns the places of the target that are written, disjoint.
+  std::vector<Rectangle> record(Submissions& submissions, StagingRing& staging,
+                                std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
+                                const glm::vec3& ground, const Glyphs& glyphs, const LiveTarget& target,
+                                Redraw redraw, Sharpness sharpness);
 
   /// What a frame at rest does to the picture with four rays per pixel, which has layers of its own.
   struct Rest {
@@ -70,12 +74,15 @@ class LiveFrame {
   /// Whether its layers are of this size.
   [[nodiscard]] bool holdsRest(vk::Extent2D extent) const noexcept { return rest_extent_ == extent; }
   /// Records a frame in which nothing of the surface changed since the one of kFull that the layers hold. `panels`: as for kFine.
-  void recordRest(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-                  const std::vector<gpu::Quad>& decorations, const glm::vec3& ground, const Glyphs& glyphs,
-                  const LiveTarget& target, const Rest& rest);
+  std::vector<Rectangle> recordRest(Submissions& submissions, StagingRing& staging,
+                                    std::span<const LivePanel> panels,
+                                    const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
+                                    const Glyphs& glyphs, const LiveTarget& target, const Rest& rest);
 
-  [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
-  [[nodiscard]] Pipelines& pipelines() noexcept { return pipelines_; }
+  /// Something else is drawn to the target.
+  void forgetTarget() noexcept { held_.reset(); }
+
+  [[nodiscard]] const std::shared_ptr<LivePrograms>& programs() const noexcept { return programs_; }
 
  private:
   struct PanelSets {
@@ -122,21 +129,31 @@ class LiveFrame {
   void makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size);
   void makeRest(Submissions& submissions, vk::Extent2D extent);
   void makeFine(vk::Extent2D extent);
-  void makeSmall(Layers& layers, vk::Extent2D picture, int step, std::unique_ptr<Resize>& enlarge);
+  void makeSmall(Layers& layers, vk::Extent2D picture, Resize::Times times, std::unique_ptr<Resize>& enlarge);
   static void beforeResize(const vk::raii::CommandBuffer& commands, const Layers& layers, const GpuImage& to);
   void recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
                       std::span<const LivePanel> panels, const glm::vec3& ground);
   void recordReduced(const vk::raii::CommandBuffer& commands, const Resize& reduce, const GpuImage& to);
+  /// What is copied from a base to a target: all of it, or these places.
+  struct Copied {
+    const GpuImage& base;
+    std::vector<Rectangle> places;
+    bool over_before = false;  // the target holds the frame before
+  };
+  /// `changed`: of the base since the frame before; nothing: all of it.
+  Copied copiedTo(const LiveTarget& target, const GpuImage& base, std::span<const LivePanel> panels,
+                  std::optional<Places> changed);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                    std::span<const LivePanel> panels, const GpuImage& base, const LiveTarget& target,
+                    std::span<const LivePanel> panels, const Copied& copied, const LiveTarget& target,
                     Sharpness sharpness);
 
   Context& context_;
   vk::Format colour_;
   std::uint32_t layers_;     // of depth_, base_ and targets
   std::uint32_t view_mask_;  // 0: there is one
-  Pipelines pipelines_;
-  StylusPass stylus_;  // draws with those
+  std::shared_ptr<LivePrograms> programs_;
+  Pipelines& pipelines_;  // of them
+  StylusPass stylus_;     // draws with those
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // bound where the shader reads no pages
@@ -147,6 +164,15 @@ class LiveFrame {
   vk::Extent2D rest_extent_;
   std::unique_ptr<Resize> reduce_to_rest_;
   GlyphImage glyphs_;
+  // The target that holds the last frame.
+  struct Held {
+    std::uint64_t kept = 0;
+    vk::Image image;
+    vk::Extent2D extent;
+    const GpuImage* base = nullptr;
+    std::vector<Rectangle> overlays;
+  };
+  std::optional<Held> held_;
 };
 
 }  // namespace fettle::render

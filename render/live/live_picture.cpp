@@ -1,7 +1,6 @@
 #include "render/live/live_picture.h"
 
 #include <algorithm>
-#include <climits>
 #include <cstring>
 #include <utility>
 
@@ -13,8 +12,8 @@
 #include "render/live/live_frame.h"
 #include "render/live/live_panels.h"
 #include "render/live/live_plan.h"
-#include "render/live/live_redraw.h"
 #include "render/live/seen_frame.h"
+#include "render/live/shown_layers.h"
 #include "render/live/stereo_compose.h"
 #include "render/vulkan/memory.h"
 
@@ -29,15 +28,21 @@ engine::Error errorOf(const std::string& device, const char* what) {
 // Off-screen image that a frame is drawn to and copied out of.
 struct Canvas {
   GpuImage image;
+  std::uint64_t kept = 0;  // images so far
   [[nodiscard]] LiveTarget target() const {
     LiveTarget t;
     t.image = image.image();
     t.view = image.view();
     t.extent = image.extent();
     t.leaves_as = vk::ImageLayout::eTransferSrcOptimal;
+    t.kept = kept;
     return t;
   }
 };
+
+std::shared_ptr<LivePrograms> programsOf(const Context& context, vk::Format format) {
+  return std::make_shared<LivePrograms>(context, format, Pipelines::Views::kOne);
+}
 
 // Keeps the quads that a part of the picture shows, in the pixels of the part.
 void restrictTo(const Rectangle& part, std::vector<gpu::Quad>& quads) {
@@ -80,16 +85,6 @@ std::optional<std::array<Camera, 2>> headCameras(const FrameInput& input, Pictur
   return cameras;
 }
 
-// Share of the visible plots that is drawn again, 0 .. 1.
-double redrawnShare(const std::vector<LivePanel>& panels) {
-  double plots_px = 0.0, redrawn_px = 0.0;
-  for (const LivePanel& panel : panels) {
-    plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
-    redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
-  }
-  return redrawn_px / std::max(1.0, plots_px);
-}
-
 }  // namespace
 
 struct LivePicture::Impl {
@@ -107,11 +102,7 @@ struct LivePicture::Impl {
   PatchTreeCache patch_tree_cache;
   Canvas canvas;
   std::optional<SeenFrame> seen;
-  // What the layers of `frame` show: one of both, or neither.
-  std::optional<DrawnFrame> drawn;
-  std::optional<BandedFrame> banded;
-  // Neither, and what the colours show at half or a quarter of the resolution.
-  std::optional<DrawnFrame> drawn_with_less;
+  ShownLayers layers;  // of `frame`
   // The picture with four rays per pixel that is drawn at Sharpness::kRest: what it shows, and how many of its bands are drawn.
   struct Rest {
     DrawnFrame shown;
@@ -121,14 +112,15 @@ struct LivePicture::Impl {
   PatchTreeCache rest_trees;
   std::optional<View> rest_refused;  // a view for which there is no memory
 
-  Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& options, Glyphs g)
+  Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& options, Glyphs g,
+       std::shared_ptr<LivePrograms> programs)
       : own(std::move(owned)),
         context(used),
         colour_format(colour),
         glyphs(std::move(g)),
         submissions(context),
         staging(context, kStagingBytes),
-        frame(context, colour),
+        frame(context, colour, Pipelines::Views::kOne, std::move(programs)),
         eyes(context, submissions, staging, glyphs, frame, colour),
         fields(context, submissions, staging, options) {}
   Impl& operator=(Impl&&) = delete;
@@ -142,14 +134,6 @@ struct LivePicture::Impl {
   void uploadPages(LivePanels& chosen, FrameInput::Pages pages, FrameStatistics& stats);
   std::vector<gpu::Quad> decorationsOf(const FrameInput& input, const PicturePlan& plan,
                                        std::vector<std::string>& warnings);
-  struct Reused {
-    std::vector<PatchChoice> parts;
-    std::optional<BandedFrame> banded;  ///< once the frame is submitted
-    LiveFrame::Redraw redraw = LiveFrame::Redraw::kAll;
-  };
-  Reused reuse(FrameInput::Redraw redraw, const DrawnFrame& current, LivePanels& chosen,
-               FrameStatistics& stats);
-  static std::vector<PatchChoice> nextBand(BandedFrame& next, LivePanels& chosen);
   DrawnFrame drawnFrameOf(const std::vector<LivePanel>& panels, const PicturePlan& plan,
                           const std::vector<gpu::Quad>& decorations);
 };
@@ -285,18 +269,19 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
   const bool holds = reusable && input.redraw != FrameInput::Redraw::kAll && frame.holds(target.extent) &&
                      (decorations.empty() || frame.holds(glyphs));
-  Reused reused = reuse(holds ? input.redraw : FrameInput::Redraw::kAll, current, chosen, stats);
+  ShownLayers::Reused reused =
+      layers.reuse(holds ? input.redraw : FrameInput::Redraw::kAll, current, chosen, stats);
   stats.select_ms = selecting.ms();
-  // Below that such lines are in the colours already, and there is no depth that could hide them.
-  if (reused.banded && reused.banded->depth_end < INT_MAX)
-    for (LivePanel& panel : panels)
-      panel.tested = cut(panel.visible, {panel.visible.x, 0, panel.visible.width, reused.banded->depth_end});
 
   if (input.sharpness == Sharpness::kFine) rest.reset();  // drawn with the same layers
   const bool whole_frame = stereo || head || input.sharpness != Sharpness::kRest;
   const bool still = !whole_frame && stats.continued && stats.upload.pending_tiles == 0 &&
                      std::ranges::all_of(panels, [](const LivePanel& p) { return empty(p.redraw); });
   if (!whole_frame) stats.rest_left = rest_refused == input.view ? 0 : kRestBands;
+  if (stereo || head) {
+    frame.forgetTarget();
+    stats.changed = {{0, 0, static_cast<int>(target.extent.width), static_cast<int>(target.extent.height)}};
+  }
   if (still && stats.rest_left > 0)
     recordRest(input, plan, decorations, target, stats);
   else if (head)
@@ -304,16 +289,16 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   else if (stereo)
     eyes.record(input.stereo, {panels, decorations, plan.palette.ground, input.sharpness}, target);
   else
-    frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
-                 reused.redraw, input.sharpness == Sharpness::kRest ? Sharpness::kFull : input.sharpness);
+    stats.changed =
+        frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
+                     reused.redraw, input.sharpness == Sharpness::kRest ? Sharpness::kFull : input.sharpness);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
-  banded = std::move(reused.banded);
-  if (reusable && !banded)
-    drawn = std::move(current);
-  else if (one_eye && with_less)
-    drawn_with_less = std::move(current);
+  layers.submitted(std::move(reused), std::move(current),
+                   reusable               ? ShownLayers::Holds::kEveryPixel
+                   : one_eye && with_less ? ShownLayers::Holds::kFewerPixels
+                                          : ShownLayers::Holds::kNothing);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.contour_step = plan.contour_step;
@@ -323,80 +308,6 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   if (input.part) return;
   seen = SeenFrame{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
   for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
-}
-
-// Sets what is drawn of each panel, over what the layers show already where they can be used. The panels' choices point to what is
-// returned. What the layers show is unknown from here until the frame is submitted.
-LivePicture::Impl::Reused LivePicture::Impl::reuse(FrameInput::Redraw redraw, const DrawnFrame& current,
-                                                   LivePanels& chosen, FrameStatistics& stats) {
-  const std::optional<DrawnFrame> whole = std::exchange(drawn, std::nullopt);
-  const std::optional<DrawnFrame> with_less = std::exchange(drawn_with_less, std::nullopt);
-  std::optional<BandedFrame> begun = std::exchange(banded, std::nullopt);
-  const DrawnFrame* const before = begun ? &begun->goal : whole ? &*whole : nullptr;
-  const bool in_bands = redraw == FrameInput::Redraw::kInBands;
-  // Layers that show a frame in part are of use for its other bands alone.
-  if (redraw == FrameInput::Redraw::kAll || (begun && !in_bands)) return {};
-  std::vector<LivePanel>& panels = chosen.panels();
-  Reused reused;
-  reused.redraw = LiveFrame::Redraw::kParts;
-  if (in_bands && with_less && sameButPixels(*with_less, current)) {
-    reused.banded = BandedFrame{.goal = current,
-                                .differs = std::vector<bool>(panels.size(), true),
-                                .all = kSharpBands,
-                                .depth_end = 0};
-    reused.parts = nextBand(*reused.banded, chosen);
-    reused.redraw = LiveFrame::Redraw::kFirstPartOver;
-    stats.band = true;
-  } else if (const bool same = before != nullptr && showTheSame(*before, current);
-             before != nullptr && in_bands && sameButDetail(*before, current) && (begun || !same)) {
-    std::vector<bool> differs = begun ? begun->differs : std::vector<bool>(panels.size());
-    for (std::size_t i = 0; i < panels.size(); ++i)
-      differs[i] = differs[i] || !sameDetail(before->panels[i], current.panels[i]);
-    reused.banded = begun ? std::move(begun) : BandedFrame{};
-    BandedFrame& next = *reused.banded;
-    if (next.differs != differs) next.next = 0;
-    if (!same) next.left = next.all;
-    next.goal = current;
-    next.differs = std::move(differs);
-    reused.parts = nextBand(next, chosen);
-    stats.band = true;
-  } else if (before != nullptr && canContinue(*before, current) && !(begun && begun->depth_end < INT_MAX)) {
-    reused.parts = cutToDamage(*before, current, chosen.queries(),
-                               stats.residency.pages_waiting > 0 ? Pages::kWaitedFor : Pages::kThere, panels);
-    reused.banded = std::move(begun);
-    if (reused.banded) reused.banded->goal = current;
-  } else {
-    // Also an edit where rows lack their depth: a stroke may go on for long, and would not be over what is below it.
-    return {};
-  }
-  if (reused.banded && reused.banded->left == 0) reused.banded.reset();
-  stats.bands_left = reused.banded ? reused.banded->left : 0;
-  stats.continued = true;
-  stats.redrawn = redrawnShare(panels);
-  return reused;
-}
-
-// Bands begin on even rows, so that no square of two by two fragments belongs to two of them.
-std::vector<PatchChoice> LivePicture::Impl::nextBand(BandedFrame& next, LivePanels& chosen) {
-  std::vector<LivePanel>& panels = chosen.panels();
-  int first = INT_MAX, end = 0;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    if (!next.differs[i]) continue;
-    first = std::min(first, panels[i].visible.y & ~1);
-    end = std::max(end, panels[i].visible.y + panels[i].visible.height);
-  }
-  const auto row = [&](int band) {
-    return band == next.all ? end : (first + (end - first) * band / next.all) & ~1;
-  };
-  const int behind = row(next.next + 1);
-  std::vector<PatchChoice> parts = cutToRows(row(next.next), behind, chosen.queries(), panels);
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    if (!next.differs[i]) panels[i].redraw = {};
-  // The first round goes from the top to the bottom.
-  if (next.depth_end < INT_MAX) next.depth_end = behind == end ? INT_MAX : std::max(next.depth_end, behind);
-  next.next = (next.next + 1) % next.all;
-  --next.left;
-  return parts;
 }
 
 // The next band, if any is left and its pages are on the device; the picture with four rays per pixel once it is complete.
@@ -430,7 +341,8 @@ void LivePicture::Impl::recordRest(const FrameInput& input, const PicturePlan& p
     does.last = rest->bands == kRestBands;
   }
   does.shows = rest->bands == kRestBands;
-  frame.recordRest(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target, does);
+  stats.changed =
+      frame.recordRest(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target, does);
   stats.rests = does.shows;
   stats.rest_left = rest_refused == input.view ? 0 : kRestBands - rest->bands;
 }
@@ -448,8 +360,8 @@ engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(const LiveOptio
   const vk::Format format =
       options.colour_format == 0 ? kColourFormat : static_cast<vk::Format>(options.colour_format);
   try {
-    return std::unique_ptr<LivePicture>(new LivePicture(
-        std::make_unique<Impl>(*std::move(context), used, format, options, *std::move(glyphs))));
+    return std::unique_ptr<LivePicture>(new LivePicture(std::make_unique<Impl>(
+        *std::move(context), used, format, options, *std::move(glyphs), programsOf(used, format))));
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(name, error.what()));
   }
@@ -460,11 +372,25 @@ engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(Context& contex
                                                                  const LiveOptions& options) {
   auto glyphs = Glyphs::create();
   if (!glyphs) return tl::unexpected(glyphs.error());
+  const auto format = static_cast<vk::Format>(colour_format);
   try {
     return std::unique_ptr<LivePicture>(new LivePicture(std::make_unique<Impl>(
-        nullptr, context, static_cast<vk::Format>(colour_format), options, *std::move(glyphs))));
+        nullptr, context, format, options, *std::move(glyphs), programsOf(context, format))));
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(context.name(), error.what()));
+  }
+}
+
+engine::Result<std::unique_ptr<LivePicture>> LivePicture::createBeside(const LivePicture& other,
+                                                                       const LiveOptions& options) {
+  const Impl& o = *other.impl_;
+  auto glyphs = Glyphs::create();
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  try {
+    return std::unique_ptr<LivePicture>(new LivePicture(std::make_unique<Impl>(
+        nullptr, o.context, o.colour_format, options, *std::move(glyphs), o.frame.programs())));
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(o.context.name(), error.what()));
   }
 }
 
@@ -515,7 +441,9 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveT
   sized.part.reset();
   sized.view.width = static_cast<int>(target.extent.width);
   sized.view.height = static_cast<int>(target.extent.height);
-  return impl_->draw(sized, target);
+  engine::Result<FrameStatistics> stats = impl_->draw(sized, target);
+  if (stats) target.changed.insert(target.changed.end(), stats->changed.begin(), stats->changed.end());
+  return stats;
 } catch (const std::exception& error) {
   return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
@@ -535,6 +463,7 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
   if (impl_->canvas.image.extent() != extent) {
     impl_->submissions.finish();
     impl_->canvas.image = pictureImage(impl_->context, extent, impl_->colour_format);
+    ++impl_->canvas.kept;
   }
   engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
   if (!stats) return stats;
@@ -607,8 +536,8 @@ void LivePicture::finish() {
 }
 
 bool LivePicture::prepareNextOf(const LivePicture& rehearsed) noexcept try {
-  for (const Pipelines::Kind& kind : rehearsed.impl_->frame.pipelines().kinds())
-    if (impl_->frame.pipelines().prepare(kind)) return true;
+  for (const Pipelines::Kind& kind : rehearsed.impl_->frame.programs()->pipelines().kinds())
+    if (impl_->frame.programs()->pipelines().prepare(kind)) return true;
   return false;
 } catch (const std::exception&) {
   // A lost device, or one without memory: the frame that needs it reports that.

@@ -196,6 +196,8 @@ struct FrameStatistics {
   double bound_px = 0.0;
   std::vector<PanelDetail> panels;  ///< of each panel; bound_px is the largest of theirs
   double redrawn = 1.0;             ///< share of the plots that was drawn again, 0 .. 1
+  std::vector<Rectangle>
+      changed;  ///< places of the target that were written: disjoint; all of it unless LiveTarget::kept
   /// Whether the frame reused the one before and drew only what differs, which may be everything.
   bool continued = false;
   bool band = false;  ///< it drew one of the bands of Redraw::kInBands
@@ -247,6 +249,8 @@ struct LiveOptions {
   /// Time after which a frame measures no more tiles than kMeasuredAtOnce of each version [ms]. Without a limit the number of tiles
   /// that frames measure does not depend on how busy the machine is.
   double measuring_ms = std::numeric_limits<double>::infinity();
+  /// The same of what it uploads, of changed tiles and of pages each, whatever upload_bytes_per_frame leaves [ms]: one of each at least.
+  double uploading_ms = std::numeric_limits<double>::infinity();
   /// Most bytes uploaded per frame while an edit or a filter result is pending; the rest follows with the
   /// next frames.
   std::int64_t upload_bytes_per_frame = kUploadBytesPerFrame;
@@ -289,12 +293,16 @@ class LivePicture {
   [[nodiscard]] static engine::Result<std::unique_ptr<LivePicture>> create(Context& context,
                                                                            std::uint32_t colour_format,
                                                                            const LiveOptions& options = {});
+  /// The same format on the same device as `other`, and with its programs: what one of them has drawn with the other one finds
+  /// made, and loaded by the driver. For the thread that draws `other`, which outlives this.
+  [[nodiscard]] static engine::Result<std::unique_ptr<LivePicture>> createBeside(
+      const LivePicture& other, const LiveOptions& options = {});
   ~LivePicture();
   LivePicture& operator=(LivePicture&&) = delete;
 
-  /// Sets what the next frames show. The first time, or when the field is not related to the one before, its
-  /// coarse copies (8 MiB) are uploaded before this returns, of a small field all of it; otherwise the
-  /// difference is queued and uploaded with the next frames, within LiveOptions::upload_bytes_per_frame each.
+  /// Sets what the next frames show. The first time, or when the field is not related to the one before, a small field is uploaded
+  /// before this returns, and of one on demand the coarse copies with the next frame (8 MiB, 1 MiB of further versions);
+  /// otherwise the difference is queued and uploaded with the next frames, within LiveOptions::upload_bytes_per_frame each.
   /// Errors: kInput when versions do not fit each other; kFailed when the device cannot hold them.
   [[nodiscard]] engine::Status update(const Shown& shown);
   /// One version, no original, marks as before.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <climits>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,7 +8,6 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/version.h"
-#include "render/config.h"
 #include "render/detail/patches.h"
 #include "render/live/live_frame.h"
 
@@ -49,17 +47,6 @@ struct DrawnFrame {
 
 /// Whether a frame shows what the one before does.
 [[nodiscard]] bool showTheSame(const DrawnFrame& before, const DrawnFrame& now);
-
-/// A frame that the layers of a LiveFrame show in part: the bands that are drawn, and elsewhere the same less finely.
-struct BandedFrame {
-  DrawnFrame goal;
-  std::vector<bool> differs;  ///< of each panel: from what was shown before
-  int all = kDetailBands;     ///< bands
-  int next = 0;               ///< of them; after the last one the first, where `goal` has changed meanwhile
-  int left = all;             ///< that differ from `goal`
-  /// Row from which on there are only colours of a frame with fewer pixels, with the lines that the surface hides, and no depth [px].
-  int depth_end = INT_MAX;
-};
 
 /// Whether pages that the frame reads are on the device: where some are not, their samples are drawn from coarser ones.
 enum class Pages { kThere, kWaitedFor };

@@ -8,16 +8,16 @@
 namespace fettle::render {
 namespace {
 
-vk::Extent2D resultOf(Resize::Direction direction, vk::Extent2D from) {
-  if (direction == Resize::Direction::kReduce) return {from.width / 2, from.height / 2};
-  const std::uint32_t times = direction == Resize::Direction::kEnlargeMore ? 4 : 2;
-  return {times * from.width, times * from.height};
+vk::Extent2D resultOf(ResizeProgram::Kind kind, Resize::Times times, vk::Extent2D from) {
+  if (kind == ResizeProgram::Kind::kReduce) return {from.width / 2, from.height / 2};
+  const std::uint32_t factor = times == Resize::Times::kFour ? 4 : 2;
+  return {factor * from.width, factor * from.height};
 }
 
 }  // namespace
 
-Resize::Resize(const Context& context, Direction direction, vk::Format format)
-    : context_(context), direction_(direction), format_(format) {
+ResizeProgram::ResizeProgram(const Context& context, Kind kind, vk::Format format)
+    : kind_(kind), format_(format) {
   constexpr auto kClamp = vk::SamplerAddressMode::eClampToEdge;
   sampler_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
                                                      .setMagFilter(vk::Filter::eLinear)
@@ -32,32 +32,36 @@ Resize::Resize(const Context& context, Direction direction, vk::Format format)
   set_layout_ = vk::raii::DescriptorSetLayout(context.device(), set.setBindings(image));
   vk::PipelineLayoutCreateInfo layout;
   layout_ = vk::raii::PipelineLayout(context.device(), layout.setSetLayouts(*set_layout_));
+  pipeline_ = makePipeline(
+      context, {.vertex = resize_vert_spirv,
+                .fragment = kind == Kind::kReduce ? std::span<const std::uint32_t>(reduce_frag_spirv)
+                                                  : std::span<const std::uint32_t>(enlarge_frag_spirv),
+                .topology = vk::PrimitiveTopology::eTriangleStrip,
+                .colour = format,
+                .layout = *layout_});
+}
+
+Resize::Resize(const Context& context, const ResizeProgram& program, Times times)
+    : context_(context), program_(program), times_(times) {
   const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, 2};
   vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 2};
   pool_ = vk::raii::DescriptorPool(context.device(), pool.setPoolSizes(size));
+  const vk::DescriptorSetLayout layout = program_.setLayout();
   for (Layer& layer : layers_) {
     vk::DescriptorSetAllocateInfo allocate{*pool_};
-    layer.set =
-        std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(*set_layout_)).front());
+    layer.set = std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(layout)).front());
   }
-  pipeline_ = makePipeline(context, {.vertex = resize_vert_spirv,
-                                     .fragment = direction == Direction::kReduce
-                                                     ? std::span<const std::uint32_t>(reduce_frag_spirv)
-                                                     : std::span<const std::uint32_t>(enlarge_frag_spirv),
-                                     .topology = vk::PrimitiveTopology::eTriangleStrip,
-                                     .colour = format,
-                                     .layout = *layout_});
 }
 
 void Resize::set(const GpuImage& from, const GpuImage& to, std::uint32_t layers) {
   count_ = layers;
-  extent_ = resultOf(direction_, from.extent());
+  extent_ = resultOf(program_.kind(), times_, from.extent());
   for (std::uint32_t i = 0; i < count_; ++i) {
     const auto viewOf = [&](const GpuImage& image) {
       vk::ImageViewCreateInfo info;
       info.setImage(image.image())
           .setViewType(vk::ImageViewType::e2D)
-          .setFormat(format_)
+          .setFormat(program_.format())
           .setSubresourceRange({vk::ImageAspectFlagBits::eColor, 0, 1, i, 1});
       return vk::raii::ImageView(context_.device(), info);
     };
@@ -92,8 +96,8 @@ void Resize::record(const vk::raii::CommandBuffer& commands, std::span<const vk:
     commands.beginRendering(
         rendering.setRenderArea({{0, 0}, extent_}).setLayerCount(1).setColorAttachments(colour));
     coverAll(commands, extent_);
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *layers_[i].set, {});
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, program_.pipeline());
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, program_.layout(), 0, *layers_[i].set, {});
     for (const vk::Rect2D& part : parts) {
       commands.setScissor(0, part);
       commands.draw(4, 1, 0, 0);

@@ -42,7 +42,7 @@ std::optional<gpu::Stylus> stylusIn(const PanelPlan& panel, const StylusBody& bo
   if (body.ball_radius_mm > 0.0) point += along / glm::length(along / radii);
   const bool ball_is_nearer = panel.camera.depthOf(centre) < panel.camera.depthOf(point);
   gpu::Stylus out;
-  out.point = glm::vec4(glm::vec3(point), 0.0F);
+  out.point = glm::vec4(glm::vec3(point), panel.floor_z);
   out.tail = glm::vec4(glm::vec3(point + length * along), kPenRadius * length);
   out.ball = glm::vec4(glm::vec3(centre), radii.z);
   out.colour = glm::vec4(body.colour, ball_is_nearer ? 1.0F : 0.0F);

@@ -123,7 +123,8 @@ engine::Result<LiveTexture::Freshness> LiveTexture::setVersion(PagePool& pool, i
     pages_->setAccepted(sure == version ? engine::Version() : sure);
     return Freshness::kRelated;
   }
-  idle();
+  // Not those of a pool: what is uploaded to its pages comes after all frames that are on their way.
+  if (!version_.empty() && !pages_) idle();
   clear();
   pages_ = std::make_unique<PageSet>(pool, grid.width, grid.height, fixed_from);
   has_marks_ = pool.hasMarks();
@@ -265,19 +266,20 @@ bool LiveTexture::upToDate(int entry) {
 }
 
 bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
-                            const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                            const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
                             UploadStatistics& count, std::vector<glm::ivec2>& moved) {
-  std::int64_t spent = 0;
+  bool any = false;
   const engine::FieldReader reader = version_.reader();
-  for (; fixed_left_ > 0 && spent < byte_budget; --fixed_left_) {
+  for (; fixed_left_ > 0; --fixed_left_) {
     const int entry = pages_->grid().entries() - static_cast<int>(fixed_left_);
     if (pages_->share(entry, reader, submission)) continue;
     std::int64_t bytes = 0;
     if (pages_->load(entry, reader, ring, submission, bytes) != PageSet::Load::kDone) break;
-    spent += bytes;
+    any = true;
     count.bytes += bytes;
   }
-  while (spent < byte_budget) {
+  std::int64_t spent = 0;
+  while (spent == 0 || (spent < budget.bytes && !budget.late())) {
     const std::optional<std::uint64_t> key = nextPending();
     if (!key) break;
     const Pending& p = pending_.at(*key);
@@ -297,16 +299,16 @@ bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
   if (pending_.empty() && fixed_left_ == 0) pages_->name(reader);
   pages_->pool().flush(commands, ring.buffer());
   count.pending_tiles += static_cast<std::int64_t>(pending());
-  return spent > 0;
+  return any || spent > 0;
 }
 
 bool LiveTexture::uploadPending(StagingRing& ring, std::uint64_t submission,
-                                const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                                const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
                                 UploadStatistics& count, std::vector<glm::ivec2>& moved) {
-  if (pages_) return pumpPages(ring, submission, commands, byte_budget, count, moved);
+  if (pages_) return pumpPages(ring, submission, commands, budget, count, moved);
   const std::int64_t bytes_before = count.bytes;
   std::vector<vk::BufferImageCopy> copies[2][kLevels];
-  while (count.bytes - bytes_before < byte_budget) {
+  while (count.bytes == bytes_before || (count.bytes - bytes_before < budget.bytes && !budget.late())) {
     const std::optional<std::uint64_t> key = nextPending();
     if (!key) break;
     Pending& p = pending_.at(*key);

@@ -15,6 +15,7 @@
 #include "render/residency/page_set.h"
 #include "render/residency/paging.h"
 #include "render/residency/tile_copy.h"
+#include "render/residency/upload_budget.h"
 #include "render/residency/upload_statistics.h"
 #include "render/vulkan/submissions.h"
 
@@ -61,13 +62,15 @@ class LiveTexture {
                                                      const std::function<void()>& idle,
                                                      const engine::Version& accepted = {});
 
-  /// Records copies of pending tiles, until `byte_budget` is spent or the ring is full; returns whether there
-  /// were any. `moved` gets the tiles whose heights are being uploaded.
+  /// Records copies of pending tiles, within `budget` or one of them, until the ring is full; returns whether there
+  /// were any. Permanent pages come first, without regard to it. `moved` gets the tiles whose heights are being uploaded.
   bool uploadPending(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
-                     std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved);
+                     const UploadBudget& budget, UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
   /// Tiles and permanent pages that are not uploaded yet.
   [[nodiscard]] std::size_t pending() const noexcept { return pending_.size() + fixed_left_; }
+  /// Permanent pages alone, without which nothing can be drawn.
+  [[nodiscard]] std::size_t fixedLeft() const noexcept { return fixed_left_; }
   /// Tiles that differ from what is on the device, in no order.
   [[nodiscard]] std::vector<glm::ivec2> pendingTiles() const;
   /// Whether some tile of those from `first` to `last` (column, row; both included) differs from what is on
@@ -108,7 +111,7 @@ class LiveTexture {
                           UploadStatistics& count) const;
   [[nodiscard]] std::optional<std::uint64_t> nextPending();
   [[nodiscard]] bool pumpPages(StagingRing& ring, std::uint64_t submission,
-                               const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                               const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
                                UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
   engine::Version version_;   // the version to show

@@ -46,7 +46,7 @@ bool PageDemand::drawable(const PatchLeaf& leaf, const PageSet& pages) noexcept 
 }
 
 PageDemand::Outcome PageDemand::upload(PagePool& pool, StagingRing& ring, std::uint64_t frame,
-                                       const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                                       const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
                                        UploadStatistics& count) {
   std::stable_sort(requests_.begin(), requests_.end(), [](const Request& a, const Request& b) {
     return a.level != b.level ? a.level > b.level : a.number < b.number;
@@ -82,7 +82,7 @@ PageDemand::Outcome PageDemand::upload(PagePool& pool, StagingRing& ring, std::u
       ++outcome.over_budget;
       continue;
     }
-    if (spent > 0 && spent + pages.bytes(w->entry) > byte_budget) {
+    if (spent > 0 && (spent + pages.bytes(w->entry) > budget.bytes || budget.late())) {
       ++outcome.waiting;
       continue;
     }

@@ -7,6 +7,7 @@
 
 #include "render/detail/patches.h"
 #include "render/residency/live_texture.h"
+#include "render/residency/upload_budget.h"
 
 namespace fettle::render {
 
@@ -33,9 +34,9 @@ class PageDemand {
     std::int64_t waiting = 0;      ///< uploaded with the next frames
     std::int64_t over_budget = 0;  ///< do not fit with all the others within the budget
   };
-  /// Uploads missing pages, `byte_budget` bytes of them or one page.
+  /// Uploads missing pages, within `budget` or one page.
   [[nodiscard]] Outcome upload(PagePool& pool, StagingRing& ring, std::uint64_t frame,
-                               const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                               const vk::raii::CommandBuffer& commands, const UploadBudget& budget,
                                UploadStatistics& count);
 
   /// Whether the vertices of a patch are on the device.

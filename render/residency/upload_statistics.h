@@ -10,6 +10,8 @@ struct UploadStatistics {
   std::int64_t bytes = 0;            ///< all uploaded bytes, coarse copies included
   std::int64_t changed_samples = 0;  ///< in the rectangles that differ, one per tile
   std::int64_t pending_tiles = 0;  ///< left for the next frames, unmeasured tiles and waiting pages included
+  std::int64_t pending_of_first =
+      0;  ///< tiles of the first version alone, whose samples on the device are older
   std::int64_t measured_tiles =
       0;  ///< whose detail was measured (again), at most kMeasuredPerFrame per panel
   std::int64_t unmeasured_tiles =

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "render/plan/camera.h"
 #include "render/vulkan/vulkan.h"
 
 namespace fettle::render {
@@ -11,8 +14,13 @@ struct LiveTarget {
   vk::Image image;
   vk::ImageView view;  ///< of all of `image`, in the format that LivePicture was created for
   vk::Extent2D extent;
-  /// Layout of the image after the frame (ePresentSrcKHR for a swap chain). Its old content is discarded.
+  /// Layout of the image after the frame (ePresentSrcKHR for a swap chain).
   vk::ImageLayout leaves_as = vk::ImageLayout::ePresentSrcKHR;
+  /// Of an image that only frames of one picture are drawn to, and that `leaves_as` until the next one: a number for each such image,
+  /// by which a frame knows that the one before is in it, and writes only what differs. 0: the old content is discarded.
+  std::uint64_t kept = 0;
+  /// Frames add the places at which they differ from the one before, whoever uses the image takes them away.
+  std::vector<Rectangle> changed{};
   /// Waited for before the image is written; null when it is free already.
   vk::Semaphore free;
   /// Signalled when the frame is in the image; null when not needed.

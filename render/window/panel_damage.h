@@ -5,21 +5,9 @@
 #include <imgui.h>
 
 #include "render/plan/camera.h"
+#include "render/plan/places.h"
 
 namespace fettle::render {
-
-/// Few rectangles that cover all that were added, no two of which overlap: near ones become one.
-class Places {
- public:
-  static constexpr std::size_t kMost = 8;
-
-  void add(const Rectangle& place);
-  /// Disjoint, at most kMost, in no order.
-  [[nodiscard]] std::vector<Rectangle> take();
-
- private:
-  std::vector<Rectangle> places_;
-};
 
 /// Where the panels look different from the frame before. Triangles are compared one by one: as many as before in their order,
 /// else those between what is the same at the beginning and at the end of a panel.

@@ -35,6 +35,9 @@ class Presenter {
   [[nodiscard]] virtual vk::Extent2D extent() const noexcept = 0;
   /// An image of that extent for frames, in place of the one before, which must be gone.
   [[nodiscard]] virtual GpuImage makeImage(vk::Format format, vk::ImageUsageFlags usage) = 0;
+  /// Waits as long as frames would otherwise come faster than anybody can see them: before a frame takes what it is going to show,
+  /// which would be older by as much afterwards. `while_waiting`: as FrameToShow's.
+  virtual void keepPace(const std::function<void()>& while_waiting) { (void)while_waiting; }
   /// Shows a frame; returns when the device has completed it. False: the size is no longer right, call fit() again.
   [[nodiscard]] virtual bool show(const FrameToShow& frame) = 0;
   /// How long the last show() waited for an image, which is as long as the display takes while all are in use.

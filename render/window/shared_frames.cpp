@@ -12,7 +12,6 @@
 #include <unistd.h>
 #include <xcb/xcbext.h>
 
-#include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
 
 namespace fettle::render {
@@ -156,7 +155,7 @@ GpuImage SharedFrames::makeImage(vk::Format format, vk::ImageUsageFlags usage) {
 }
 
 bool SharedFrames::show(const FrameToShow& frame) {
-  keepPace(frame.while_waiting);
+  shown_ = std::chrono::steady_clock::now();
   std::vector<Rectangle> places;
   draw(frame, places);
   if (places.empty()) return true;
@@ -168,14 +167,11 @@ bool SharedFrames::show(const FrameToShow& frame) {
 
 // A display without a screen takes frames as fast as they come; more than these nobody sees.
 void SharedFrames::keepPace(const std::function<void()>& while_waiting) {
-  const engine::Stopwatch watch;
   const auto next = shown_ + kShortestFrame;
   for (auto now = std::chrono::steady_clock::now(); now < next; now = std::chrono::steady_clock::now()) {
     std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(next - now, 1ms));
     if (while_waiting) while_waiting();
   }
-  shown_ = std::chrono::steady_clock::now();
-  waited_ms_ = watch.ms();
 }
 
 // `places`: of the frame that the server has to be told of.

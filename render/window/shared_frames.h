@@ -52,8 +52,9 @@ class SharedFrames : public Presenter {
   [[nodiscard]] bool fit(vk::Extent2D wanted) override;
   [[nodiscard]] vk::Extent2D extent() const noexcept override { return extent_; }
   [[nodiscard]] GpuImage makeImage(vk::Format format, vk::ImageUsageFlags usage) override;
+  void keepPace(const std::function<void()>& while_waiting) override;
   [[nodiscard]] bool show(const FrameToShow& frame) override;
-  [[nodiscard]] double waitedMs() const noexcept override { return waited_ms_; }
+  [[nodiscard]] double waitedMs() const noexcept override { return 0.0; }  // there is one image
   void forget() noexcept override { all_ = true; }
   [[nodiscard]] const char* name() const noexcept override { return "shared memory"; }
 
@@ -66,7 +67,6 @@ class SharedFrames : public Presenter {
   void draw(const FrameToShow& frame, std::vector<Rectangle>& places);
   void send(const std::vector<Rectangle>& places);
   void waitForServer(const std::function<void()>& while_waiting);
-  void keepPace(const std::function<void()>& while_waiting);
 
   const Context& context_;
   Connection connection_;
@@ -76,7 +76,6 @@ class SharedFrames : public Presenter {
   SharedSegment segment_;
   std::size_t row_bytes_ = 0;
   bool all_ = true;
-  double waited_ms_ = 0.0;
   std::chrono::steady_clock::time_point shown_;
   vk::raii::CommandPool pool_ = nullptr;
   vk::raii::CommandBuffer commands_ = nullptr;

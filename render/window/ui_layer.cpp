@@ -454,7 +454,8 @@ std::vector<Rectangle> UiLayer::changedPlaces(const ImDrawData& panels, const Be
   const bool pixels = panels.FramebufferScale.x == 1.0F && panels.FramebufferScale.y == 1.0F &&
                       panels.DisplayPos.x == 0.0F && panels.DisplayPos.y == 0.0F;
   if (!known || moved || !pixels) return {frame};
-  if (below.changed) places.add(picture);
+  for (const Rectangle& place : below.changed)
+    places.add(cut({place.x + below.place.x, place.y + below.place.y, place.width, place.height}, picture));
   std::vector<Rectangle> all = places.take();
   for (Rectangle& place : all) place = cut(place, frame);
   std::erase_if(all, [](const Rectangle& place) { return empty(place); });

@@ -95,7 +95,7 @@ class UiLayer {
   struct Below {
     const GpuImage* picture = nullptr;  ///< of kPictureFormat; null: there is none
     Rectangle place;                    ///< where it lies [px]
-    bool changed = true;                ///< since the last frame
+    std::vector<Rectangle> changed{};   ///< places of it, since the last frame
   };
   /// Draws what changed since the last frame - of the picture, and where panels look different - and leaves image() in
   /// eTransferSrcOptimal. Returns the places that it drew, disjoint.

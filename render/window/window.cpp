@@ -91,10 +91,9 @@ struct Window::Impl {
   std::unique_ptr<Presenter> presenter;
   GpuImage picture;
   LiveTarget target;
-  bool drawn = false;            // something was drawn to `picture`
-  bool picture_changed = false;  // since the last frame
-  bool usable = false;           // according to the last present()
-  bool seen = false;             // the window is on the screen
+  bool drawn = false;   // something was drawn to `picture`
+  bool usable = false;  // according to the last present()
+  bool seen = false;    // the window is on the screen
   bool seen_elsewhere = false;
   Rectangle area{0, 0, 16, 16};
   Rectangle windowed;  // place and size of the window before it took the whole screen
@@ -346,6 +345,9 @@ bool Window::canBeSeen() const {
   const vk::Extent2D size = impl_->frameSize();
   return size.width > 0 && size.height > 0 && (impl_->seen_elsewhere || !minimised());
 }
+void Window::keepPace() {
+  if (impl_->presenter && !minimised()) impl_->presenter->keepPace(impl_->while_waiting);
+}
 void Window::setWhileWaiting(std::function<void()> work) {
   impl_->while_waiting = std::move(work);
 }
@@ -483,12 +485,14 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   if (w.picture.extent() != extent) {
     w.context->device().waitIdle();
     w.picture = pictureImage(*w.context, extent, UiLayer::kPictureFormat);
+    ++w.target.kept;
+    w.target.changed.clear();
   }
   w.target.image = w.picture.image();
   w.target.view = w.picture.view();
   w.target.extent = extent;
   w.target.leaves_as = vk::ImageLayout::eTransferSrcOptimal;
-  w.drawn = w.picture_changed = true;
+  w.drawn = true;
   return &w.target;
 } catch (const std::exception& error) {
   // The old image may be destroyed without a new one in its place.
@@ -512,7 +516,7 @@ engine::Result<PresentReport> Window::present() {
       return w.ui->draw(commands, {w.drawn ? &w.picture : nullptr,
                                    {std::max(w.area.x, 0), std::max(w.area.y, 0),
                                     static_cast<int>(size.width), static_cast<int>(size.height)},
-                                   std::exchange(w.picture_changed, false)});
+                                   std::exchange(w.target.changed, {})});
     };
     if (minimised()) {
       if (!canBeSeen()) return report;

@@ -121,7 +121,9 @@ class Window {
 
   /// Collects the events since the last call; waits up to `wait_s` for one when there is none.
   void poll(double wait_s);
-  /// Called repeatedly, every millisecond or two, while present() waits for the device: for polling and for
+  /// Waits until another frame is worth showing (Presenter::keepPace): before the frame takes what it is going to show.
+  void keepPace();
+  /// Called repeatedly, every millisecond or two, while present() waits for the device, and keepPace(): for polling and for
   /// work that cannot wait for a frame. Must not draw.
   void setWhileWaiting(std::function<void()> work);
   /// The input since the last call, oldest first.

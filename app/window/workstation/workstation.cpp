@@ -1,5 +1,6 @@
 #include "app/window/workstation/workstation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -134,7 +135,14 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 void Workstation::runFrame() {
-  window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
+  WindowPicture& picture = parts_.picture;
+  picture.computes(parts_.filters.computing());
+  const bool rehearses = picture.rehearsing() && !window_->minimised();
+  window_->poll(actsNow(parts_, input_)        ? 0.0
+                : picture.active()             ? std::min(picture.restsFor_s(), kBusy_s)
+                : working(parts_) || rehearses ? kBusy_s
+                                               : kIdle_s);
+  window_->keepPace();
   input_.beginFrame();
   whileWaiting();
   handleInput();
@@ -177,7 +185,9 @@ void Workstation::handleInput() {
     const ImGuiIO& io = ImGui::GetIO();
     parts_.stylus.follow(io.KeyShift && !io.WantTextInput, client->state().contact, *client);
   }
+  if (parts_.held()) parts_.picture.noteHand();
   while (const auto event = input_.next(parts_)) {
+    parts_.picture.noteHand();
     const Input::Request request = Input::handle(*event, parts_);
     if (request.action) app::carryOut(*request.action, parts_);
     if (request.open) askToOpen(*request.open);

@@ -71,6 +71,15 @@ TEST(SharpLater, IsDueOnceNothingHasChangedForAWhile) {
   EXPECT_FALSE(later.due(begin + 10s));
 }
 
+TEST(FrameBudget, HasItsOwnLimitsForStrokes) {
+  FrameBudget strokes{FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms};
+  EXPECT_EQ(framesUntilChange(strokes, 9.0), 0);
+  EXPECT_GT(framesUntilChange(strokes, 11.5), 0);
+  EXPECT_TRUE(strokes.less());
+  EXPECT_EQ(framesUntilChange(strokes, 5.0), 0) << "no time for what is left out";
+  EXPECT_GE(framesUntilChange(strokes, 3.0), FrameBudget::kCalm);
+}
+
 TEST(FrameBudget, ASingleLongFrameChangesNothing) {
   FrameBudget budget;
   for (int i = 0; i < 10; ++i) budget.note(14.0);

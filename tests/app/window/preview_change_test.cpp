@@ -23,6 +23,10 @@ TEST(PreviewChange, IsOneThatComesGoesOrHasOtherHeightsAndNoneOfTheFieldItself) 
   EXPECT_TRUE(previewsDiffer(shows({field}), shows({field, mean})));
   EXPECT_TRUE(previewsDiffer(shows({field, mean}), shows({field})));
   EXPECT_FALSE(previewsDiffer(shows({}), shows({field, mean}))) << "the first picture";
+  EXPECT_TRUE(onlyPreviewsDiffer(shows({field, mean}), shows({field, median})));
+  EXPECT_FALSE(onlyPreviewsDiffer(shows({field, mean}), shows({edited, median}))) << "an edit, too";
+  EXPECT_FALSE(onlyPreviewsDiffer(shows({field}), shows({field, mean}))) << "one that comes";
+  EXPECT_FALSE(onlyPreviewsDiffer(shows({}), shows({})));
 }
 
 }  // namespace

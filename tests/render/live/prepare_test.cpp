@@ -27,6 +27,23 @@ TEST(Prepare, NothingIsLeftToPrepareOfAPictureThatDrewTheSame) {
   EXPECT_FALSE(rehearsed->prepareNextOf(*drawn)) << "it drew the same";
 }
 
+TEST(Prepare, APictureBesideAnotherSharesItsPrograms) {
+  const auto drawn = makePicture();
+  ASSERT_TRUE(drawn->update(partField()));
+  const Shot plain = drawComplete(*drawn, bare());
+  Shot contours;
+  {
+    const auto beside = LivePicture::createBeside(*drawn);
+    ASSERT_TRUE(beside) << beside.error().line();
+    ASSERT_TRUE((*beside)->update(partField()));
+    contours = drawComplete(**beside, withContours());
+    EXPECT_FALSE(drawn->prepareNextOf(**beside)) << "what it drew with is there";
+  }
+  EXPECT_GT(differing(contours.image, plain.image), 100U);
+  EXPECT_EQ(differing(drawComplete(*drawn, bare()).image, plain.image), 0U) << "it is gone";
+  EXPECT_EQ(differing(drawComplete(*drawn, withContours()).image, contours.image), 0U);
+}
+
 // Both may find that something is missing at the same time.
 TEST(Prepare, AnotherThreadPreparesWhileThePictureIsDrawn) {
   const auto rehearsed = makePicture();

@@ -28,6 +28,37 @@ TEST(Residency, TheFirstPictureOfALargeFieldWaitsForACoarseCopyAlone) {
   EXPECT_LT(first.stats.residency.device_bytes, std::int64_t{64} << 20);
 }
 
+TEST(Residency, AVersionThatJoinsBringsALittleAtOnce) {
+  auto picture = makePicture({.bytes_per_frame = 65536});
+  Shown shown;
+  shown.versions = {wideField(0.0)};
+  ASSERT_TRUE(picture->update(shown));
+  EXPECT_GT(drawComplete(*picture, bareAt(1)).stats.residency.pages_used, 0);
+  shown.versions.push_back(wideField(0.3));
+  ASSERT_TRUE(picture->update(shown));
+  // 1 MiB of coarse samples, a page, and the other one's edge.
+  EXPECT_LT(shoot(*picture, bareAt(1)).stats.upload.bytes, std::int64_t{3} << 19);
+  picture->refreshRanges();
+  const Shot joined = drawComplete(*picture, bareAt(1));
+  auto fresh = makePicture();
+  ASSERT_TRUE(fresh->update(shown));
+  EXPECT_EQ(differing(joined.image, drawComplete(*fresh, bareAt(1)).image), 0U);
+}
+
+TEST(Residency, FramesWithoutTimeUploadAPageEach) {
+  LiveOptions options;
+  options.uploading_ms = 0.0;
+  auto hurried = LivePicture::create(options);
+  ASSERT_TRUE(hurried) << hurried.error().line();
+  ASSERT_TRUE((*hurried)->update(wideField(0.0)));
+  auto usual = makePicture();
+  ASSERT_TRUE(usual->update(wideField(0.0)));
+  int frames = 0, of_usual = 0;
+  const Shot a = drawComplete(**hurried, bareAt(4), &frames), b = drawComplete(*usual, bareAt(4), &of_usual);
+  EXPECT_EQ(differing(a.image, b.image), 0U);
+  EXPECT_GT(frames, of_usual);
+}
+
 TEST(Residency, AResultThatChangesEveryTileComesOverWithoutLookingForRectangles) {
   const engine::Version before = wideField(0.0);
   // The same memory, so that it is a state of the same field.
