@@ -2,10 +2,10 @@
 #include "render/vulkan/barrier.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/format.h>
 
+#include "engine/base/same_bits.h"
 #include "engine/field/difference.h"
 #include "render/config.h"
 
@@ -23,10 +23,7 @@ glm::ivec2 tileOf(std::uint64_t key) {
 // Where two states of a tile differ in heights: the rectangle, or all of it.
 TileSpan changedSpan(const engine::TileChange& change, bool many) {
   if (!many) return changedHeights(*change.before, *change.after);
-  return std::memcmp(change.before->samples.data(), change.after->samples.data(),
-                     sizeof(change.before->samples)) != 0
-             ? TileSpan::whole()
-             : TileSpan{};
+  return engine::sameBits(change.before->samples, change.after->samples) ? TileSpan{} : TileSpan::whole();
 }
 
 }  // namespace
