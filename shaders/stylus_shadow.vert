@@ -13,11 +13,10 @@ layout(location = 1) flat out vec3 across;  // the plane of the pen's axis and t
 void main() {
   // Down to the plate at most, from both ends as far as from the higher one where that is farther than a shadow falls.
   const float most = stylus.shadow.y, down = clamp(stylus.ball.z - stylus.point.w, 0.0, most);
-  vec2 reach = vec2(most);
-  if (panel.light.z > 1e-3) {
-    reach = max(vec2(stylus.ball.z, stylus.tail.z) - stylus.point.w, vec2(0.0)) / panel.light.z;
-    if (max(reach.x, reach.y) >= most) reach = vec2(most);
-  }
+  // Chosen, not branched: drivers of processors compile a shader again for each value that such a condition reads.
+  const float rise = panel.light.z;
+  vec2 reach = max(vec2(stylus.ball.z, stylus.tail.z) - stylus.point.w, vec2(0.0)) / max(rise, 1e-3);
+  reach = mix(reach, vec2(most), bvec2(rise <= 1e-3 || max(reach.x, reach.y) >= most));
   const float wide =
       max(stylus.tail.w, stylus.shadow.w) + 0.2 * max(down, max(reach.x, reach.y)) + 2.0 * stylus.shadow.z;
   const vec3 ends[5] = vec3[](stylus.ball.xyz, stylus.tail.xyz, stylus.ball.xyz - reach.x * panel.light.xyz,
