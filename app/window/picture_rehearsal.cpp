@@ -9,9 +9,9 @@
 namespace fettle::app {
 namespace {
 
-// Neither it nor half, a quarter or twice of it is a power of two, as windows are not: drivers of processors compile for images of such sides in another way.
+// Neither it nor half, a quarter or twice of it is a power of two, as windows are not: drivers of processors compile for
+// images of such sides in another way.
 constexpr int kSide_px = 78;
-constexpr int kWholeSide_px = 190;
 // Samples of a field of any size: 4 times what such a part of a picture can ask for.
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
 // From one end of how near a field is seen to the other.
@@ -63,14 +63,6 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
   Scene pen = now;
   addStylus(shown.versions.front(), pen.input.overlays);
   add(pen);
-  // Drawn over what is there, of whole pictures alone.
-  pen.input.part.reset();
-  pen.input.view.width = pen.input.view.height = kWholeSide_px;
-  for (const render::Sharpness sharpness : {render::Sharpness::kQuarter, render::Sharpness::kFull,
-                                            render::Sharpness::kRest, render::Sharpness::kRest}) {
-    pen.input.sharpness = sharpness;
-    scenes.push_back(pen);
-  }
   for (const bool other_projection : {false, true})
     for (const bool deviation : {false, true})
       for (const double nearer : {1.0, kNear, 1.0 / kNear})

@@ -71,6 +71,8 @@ TEST_F(RehearsalTest, a_large_field_is_rehearsed_as_it_is_drawn) {
   const std::string large = folder.file("large.tif");
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "4000x3000", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
+  // The coarse picture while it is read, which only a slow machine comes to draw, lies in one image as a small field's.
+  pressKeys(scan, {});
   showUntilRehearsed(large);
   const std::ptrdiff_t before = compiled();
   pressKeys(large, {"c", "d", "c", "d", "Page_Up", "Home"});
