@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 namespace fettle::app {
 
@@ -31,12 +32,27 @@ class FrameBudget {
   /// The first of them decides: what is drawn with less is sharp a quarter of a second later, and no frame of that takes long.
   static constexpr int kFewWhole = 1;
 
-  explicit constexpr FrameBudget(double slow_ms = kSlow_ms, double quick_ms = kQuick_ms,
-                                 int few = kFew) noexcept
-      : slow_ms_(slow_ms), quick_ms_(quick_ms), few_(few) {}
+  /// Before the first frame. kSlow: a key must not wait for a frame of which nobody knows how long it takes; a few quick ones show
+  /// that there is time for all.
+  enum class Assumed : std::uint8_t { kQuick, kSlow };
+
+  explicit constexpr FrameBudget(double slow_ms = kSlow_ms, double quick_ms = kQuick_ms, int few = kFew,
+                                 Assumed assumed = Assumed::kQuick) noexcept
+      : slow_ms_(slow_ms),
+        quick_ms_(quick_ms),
+        few_(few),
+        known_(assumed == Assumed::kQuick),
+        less_(assumed == Assumed::kSlow),
+        calm_(assumed == Assumed::kSlow ? kFew : kCalm) {}
+
+  /// Of frames that change as a whole.
+  [[nodiscard]] static constexpr FrameBudget ofWhole() noexcept {
+    return FrameBudget{kSlowWhole_ms, kQuickWhole_ms, kFewWhole, Assumed::kSlow};
+  }
 
   /// A frame of this kind took so long, from its beginning until it was passed to the window system, without waiting for the display.
   void note(double ms) noexcept {
+    known_ = true;
     constexpr double kWeight = 0.25;
     const double counted = std::min(ms, 2.0 * slow_ms_);
     mean_ms_ = frames_ == 0 ? counted : mean_ms_ + kWeight * (counted - mean_ms_);
@@ -49,6 +65,14 @@ class FrameBudget {
       noteAll();
   }
 
+  /// A frame with all took so long: what was assumed counts no longer.
+  void noteWithAll(double ms) noexcept {
+    if (!known_) less_ = false;
+    if (!less_) note(ms);
+  }
+
+  /// Whether nothing was noted that shows what is assumed.
+  [[nodiscard]] bool known() const noexcept { return known_; }
   /// Whether the next frame of this kind is drawn with less.
   [[nodiscard]] bool less() const noexcept { return less_; }
   /// Quick frames in a row after which all is drawn again.
@@ -75,12 +99,12 @@ class FrameBudget {
 
   double slow_ms_, quick_ms_;
   int few_;
-  bool less_ = false, returned_ = false;
+  bool known_, less_, returned_ = false;
   double mean_ms_ = 0.0, last_ms_ = 0.0;
   int frames_ = 0;  // since the last change
   int quick_ = 0;   // in a row
   int slow_ = 0;    // in a row
-  int calm_ = kCalm;
+  int calm_;
 };
 
 }  // namespace fettle::app

@@ -24,6 +24,8 @@ constexpr double kMostRest_ms = 50.0;
 
 // Since something was drawn, and since the last input: nobody waits for a rehearsal, and much else begins with a field.
 constexpr std::chrono::seconds kRehearsedAfter{1};
+// A frame that draws this share of the picture tells how long all of it takes.
+constexpr double kTellsOfWhole = 0.5;
 
 constexpr int kPicks =
     12;  // positions of the picture, in each direction, at which the visible part is sampled
@@ -64,7 +66,7 @@ void WindowPicture::clear() {
   // What took long was another field or another device.
   moving_ = FrameBudget();
   strokes_ = FrameBudget(FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms);
-  whole_ = FrameBudget(FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole);
+  whole_ = FrameBudget::ofWhole();
   sharp_later_ = {};
   results_came_ = results_wait_ = false;
   measured_ = Measured::kNothing;
@@ -112,7 +114,8 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kMoving || measured_ == Measured::kWholeWithLess) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
-  if (measured_ == Measured::kWhole || measured_ == Measured::kWholeWithLess) whole_.note(ms);
+  if (measured_ == Measured::kWhole) whole_.noteWithAll(ms / measured_share_);
+  if (measured_ == Measured::kWholeWithLess) whole_.note(ms);
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
     results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -208,12 +211,13 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
-  // What a whole frame takes is known before the first key that changes it.
-  const bool whole = sharp_wanted && !rests && !figures_.band && !whole_.less() && figures_.redrawn == 1.0 &&
-                     figures_.upload.tiles == 0;
+  // What a whole frame takes is known before the first key that changes it, where one of most of the picture came before.
+  const bool whole = sharp_wanted && !rests && !figures_.band && (!whole_.less() || !whole_.known()) &&
+                     figures_.redrawn >= kTellsOfWhole && figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
   drew_ = true;
+  measured_share_ = changes_whole ? 1.0 : std::max(figures_.redrawn, kTellsOfWhole);
   if (changes_whole || whole) {
     measured_ = with_less ? Measured::kWholeWithLess : Measured::kWhole;
     if (with_less) sharp_later_.drawnWithLess(drawn_);

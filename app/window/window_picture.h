@@ -177,7 +177,7 @@ class WindowPicture {
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
   bool adapts_ = true, may_be_half_ = true;
   FrameBudget moving_, strokes_{FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms},
-      whole_{FrameBudget::kSlowWhole_ms, FrameBudget::kQuickWhole_ms, FrameBudget::kFewWhole};
+      whole_ = FrameBudget::ofWhole();
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
   // What the frame that is being shown is measured for.
@@ -188,6 +188,7 @@ class WindowPicture {
     kWhole,
     kWholeWithLess
   } measured_ = Measured::kNothing;
+  double measured_share_ = 1.0;  // of the picture
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
   Clock::time_point drawn_;  // the last frame
   Clock::time_point hand_;   // the last input

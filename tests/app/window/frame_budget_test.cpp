@@ -56,6 +56,30 @@ TEST(FrameBudget, HasItsOwnLimitsForWholeFrames) {
   EXPECT_GE(framesUntilChange(whole, 15.0), FrameBudget::kCalm);
 }
 
+// The first key of all must not wait for a frame of which nobody knows how long it takes.
+TEST(FrameBudget, AssumesThatWholeFramesAreSlow) {
+  FrameBudget unknown = FrameBudget::ofWhole();
+  EXPECT_TRUE(unknown.less());
+  EXPECT_FALSE(unknown.known());
+  // A few quick ones with less show that there is time; where there is not, it takes as many as ever to try again.
+  EXPECT_EQ(framesUntilChange(unknown, 1.0), FrameBudget::kFew);
+  EXPECT_EQ(framesUntilChange(unknown, 80.0, 5), 3);
+  EXPECT_EQ(framesUntilChange(unknown, 17.0, 200), 0);
+  // So does one with all.
+  FrameBudget quick = FrameBudget::ofWhole();
+  quick.noteWithAll(20.0);
+  EXPECT_FALSE(quick.less());
+  EXPECT_TRUE(quick.known());
+  FrameBudget slow = FrameBudget::ofWhole();
+  slow.noteWithAll(40.0);
+  EXPECT_TRUE(slow.less());
+  // Of what is drawn with less already it says nothing.
+  FrameBudget less = FrameBudget::ofWhole();
+  less.note(20.0);
+  less.noteWithAll(1.0);
+  EXPECT_TRUE(less.less());
+}
+
 TEST(SharpLater, IsDueOnceNothingHasChangedForAWhile) {
   using namespace std::chrono_literals;
   SharpLater later;
