@@ -6,6 +6,7 @@
 #include "render/vulkan/descriptor_writes.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace fettle::render {
 namespace {
@@ -202,13 +203,14 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
                       packing.add<gpu::Patch>(p.choice->walls),
                       packing.add<gpu::Line>(p.in_scene),
                       packing.add<gpu::Line>(p.on_top),
-                      packing.add<std::uint32_t>(p.pages),
+                      packing.addTexels(p.pages),
                       {}});
   for (std::size_t i = 0; i < panels.size(); ++i)
     if (panels[i].stylus) blocks[i].stylus = packing.add<gpu::Stylus>(std::span(&*panels[i].stylus, 1));
   const auto quads = packing.add<gpu::Quad>(decorations);
   if (slot.arena.bytes() < packing.bytes())
-    slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), kArenaBytes),
+    // A power of two always: pages are read from it as from an image, see choosePool().
+    slot.arena = Buffer(context_, std::bit_ceil(std::max<vk::DeviceSize>(2 * packing.bytes(), kArenaBytes)),
                         vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer |
                             vk::BufferUsageFlagBits::eUniformTexelBuffer);
   packing.write(slot.arena.data());

@@ -20,10 +20,11 @@ PoolShape choosePool(std::uint64_t budget, std::size_t bytes_per_sample, std::ui
   const std::uint64_t most = std::min(pages(), max_bytes / sizeof(float) >> (2 * shape.log2_side));
   const std::uint64_t widest = std::clamp<std::uint64_t>(max_side >> shape.log2_side, 1, 255);
   // A layer is at most an eighth of all pages, so that rounding to whole layers loses little; larger where
-  // there would be too many layers.
-  while (shape.across < widest && (std::uint64_t{8} * (shape.across + 1) * (shape.across + 1) <= most ||
-                                   most / (shape.across * shape.across) > max_layers))
-    ++shape.across;
+  // there would be too many layers. Always a power of two: drivers of processors compile all shaders again for an image
+  // whose sides become powers of two, or no longer are, and a pool grows while somebody works.
+  while (2 * shape.across <= widest && (std::uint64_t{32} * shape.across * shape.across <= most ||
+                                        most / (shape.across * shape.across) > max_layers))
+    shape.across *= 2;
   shape.layers =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(most / (shape.across * shape.across), max_layers));
   return shape;

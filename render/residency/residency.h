@@ -12,7 +12,7 @@ namespace fettle::render {
 /// Dimensions of a pool of pages.
 struct PoolShape {
   int log2_side = 6;         ///< of a page [samples]
-  std::uint32_t across = 1;  ///< pages along each side of a layer, <= 255
+  std::uint32_t across = 1;  ///< pages along each side of a layer: a power of two, <= 128
   std::uint32_t layers = 0;  ///< 0: the budget holds no page
   [[nodiscard]] std::uint32_t pages() const noexcept { return across * across * layers; }
 };

@@ -19,11 +19,12 @@ class Packing {
   using Block = std::pair<vk::DeviceSize, vk::DeviceSize>;
   template <class T>
   Block add(std::span<const T> items) {
-    const vk::DeviceSize at = bytes_;
-    parts_.push_back({at, items.data(), items.size_bytes()});
-    const vk::DeviceSize size = std::max<vk::DeviceSize>(items.size_bytes(), sizeof(T));
-    bytes_ = (bytes_ + size + kAlign - 1) / kAlign * kAlign;
-    return {at, size};
+    return reserve(items, std::max<vk::DeviceSize>(items.size_bytes(), sizeof(T)));
+  }
+  /// The same of a list that is read as texels; what follows it has no meaning. lavapipe (Mesa 22.3) takes the second byte of the size
+  /// for a number of levels, and compiles every shader that reads them once more for zero: it is never zero.
+  Block addTexels(std::span<const std::uint32_t> items) {
+    return reserve(items, items.size_bytes() | 0x100U);
   }
   [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
   void write(std::byte* out) const {
@@ -40,6 +41,14 @@ class Packing {
     const void* data;
     std::size_t bytes;
   };
+  template <class T>
+  Block reserve(std::span<const T> items, vk::DeviceSize size) {
+    const vk::DeviceSize at = bytes_;
+    parts_.push_back({at, items.data(), items.size_bytes()});
+    bytes_ = (bytes_ + size + kAlign - 1) / kAlign * kAlign;
+    return {at, size};
+  }
+
   std::vector<Part> parts_;
   vk::DeviceSize bytes_ = 0;
 };

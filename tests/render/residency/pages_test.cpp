@@ -1,6 +1,7 @@
 // Pages of a pool and who holds them, without a device.
 #include "render/residency/residency.h"
 
+#include <bit>
 #include <cstdio>
 #include <random>
 
@@ -120,7 +121,8 @@ TEST(PagePool, ShapesStayWithinBudgetAndLimits) {
         EXPECT_LE(bytes, most);
         EXPECT_LE(s.layers, 2048U);
         EXPECT_LE(s.across << s.log2_side, max_side);
-        EXPECT_LE(s.across, 255U);
+        EXPECT_LE(s.across, 128U);
+        EXPECT_TRUE(std::has_single_bit(s.across));
         // Nothing much is left over, unless a limit of the device is why.
         if (s.layers < 2048 && budget >= 1500000) {
           EXPECT_GE(static_cast<double>(bytes), 0.8 * static_cast<double>(std::min(budget, most)));
