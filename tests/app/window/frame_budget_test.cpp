@@ -61,9 +61,10 @@ TEST(FrameBudget, AssumesThatWholeFramesAreSlow) {
   FrameBudget unknown = FrameBudget::ofWhole();
   EXPECT_TRUE(unknown.less());
   EXPECT_FALSE(unknown.known());
-  // A few quick ones with less show that there is time; where there is not, it takes as many as ever to try again.
+  // A few quick ones with less show that there is time; where there is none, one with all does, and more are needed the next time.
   EXPECT_EQ(framesUntilChange(unknown, 1.0), FrameBudget::kFew);
-  EXPECT_EQ(framesUntilChange(unknown, 80.0, 5), 3);
+  EXPECT_EQ(framesUntilChange(unknown, 80.0), 1);
+  EXPECT_EQ(unknown.calm(), 2 * FrameBudget::kFew);
   EXPECT_EQ(framesUntilChange(unknown, 17.0, 200), 0);
   // So does one with all.
   FrameBudget quick = FrameBudget::ofWhole();

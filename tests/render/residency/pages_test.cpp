@@ -3,11 +3,14 @@
 
 #include <bit>
 #include <cstdio>
+#include <cstring>
+#include <numeric>
 #include <random>
 
 #include "engine/field/live_field.h"
 #include "engine/marks/change_marks.h"
 #include "render/residency/page_table.h"
+#include "render/vulkan/descriptor_writes.h"
 #include "tests/render/support/live_frames.h"
 
 namespace fettle::render {
@@ -128,6 +131,26 @@ TEST(PagePool, ShapesStayWithinBudgetAndLimits) {
           EXPECT_GE(static_cast<double>(bytes), 0.8 * static_cast<double>(std::min(budget, most)));
         }
       }
+}
+
+// A driver reads the second byte of their size as a number of levels: one that is zero is another image to it.
+TEST(PagePool, TexelsOfPagesHaveASizeThatIsOneKindToDrivers) {
+  std::vector<std::uint32_t> pages(70000);
+  std::iota(pages.begin(), pages.end(), 1U);
+  for (const std::size_t count : {0, 1, 8, 63, 64, 65, 1711, 16383, 16384, 16400, 70000}) {
+    Packing packing;
+    const auto [first, bytes] = packing.addTexels(std::span(pages).first(count));
+    const auto [next, some] = packing.add<std::uint32_t>(std::span(pages).first(3));
+    SCOPED_TRACE(count);
+    EXPECT_NE(bytes >> 8U & 0xffU, 0U);
+    EXPECT_GE(bytes, count * sizeof(std::uint32_t));
+    EXPECT_LE(bytes, count * sizeof(std::uint32_t) + 256);
+    EXPECT_GE(next, first + bytes);
+    std::vector<std::byte> out(packing.bytes());
+    packing.write(out.data());
+    EXPECT_EQ(std::memcmp(out.data() + first, pages.data(), count * sizeof(std::uint32_t)), 0);
+    EXPECT_EQ(std::memcmp(out.data() + next, pages.data(), some), 0);
+  }
 }
 
 }  // namespace
