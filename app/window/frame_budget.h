@@ -11,6 +11,10 @@ namespace fettle::app {
 ///   all --- mean above slow_ms, `few` frames at least, the last ones above it (two; one of one) --> less
 ///    ^--- mean below quick_ms, calm() frames in a row ---'
 ///
+/// Where it is assumed that frames are slow, they are drawn with less at first, until
+///   - `kFew` of those in a row have a mean below quick_ms, or
+///   - tell() says how long one with all takes.
+///
 /// Where frames with all are slow again soon after that, calm() doubles: so the picture does not keep changing between the two
 /// under a load that is the same.
 ///
@@ -42,8 +46,7 @@ class FrameBudget {
         quick_ms_(quick_ms),
         few_(few),
         known_(assumed == Assumed::kQuick),
-        less_(assumed == Assumed::kSlow),
-        calm_(assumed == Assumed::kSlow ? kFew : kCalm) {}
+        less_(assumed == Assumed::kSlow) {}
 
   /// Of frames that change as a whole.
   [[nodiscard]] static constexpr FrameBudget ofWhole() noexcept {
@@ -52,7 +55,7 @@ class FrameBudget {
 
   /// A frame of this kind took so long, from its beginning until it was passed to the window system, without waiting for the display.
   void note(double ms) noexcept {
-    known_ = true;
+    if (!known_ && ms > kFar * slow_ms_) return;
     constexpr double kWeight = 0.25;
     const double counted = std::min(ms, 2.0 * slow_ms_);
     mean_ms_ = frames_ == 0 ? counted : mean_ms_ + kWeight * (counted - mean_ms_);
@@ -65,13 +68,16 @@ class FrameBudget {
       noteAll();
   }
 
-  /// A frame with all took so long: what was assumed counts no longer.
-  void noteWithAll(double ms) noexcept {
-    if (!known_) less_ = false;
-    if (!less_) note(ms);
+  /// A frame with all takes at least and at most so long. Counts while nothing is known.
+  void tell(double at_least_ms, double at_most_ms) noexcept {
+    if (known_ || at_least_ms > kFar * slow_ms_) return;
+    if (at_most_ms <= slow_ms_)
+      change(false);
+    else if (at_least_ms > slow_ms_)
+      change(true);
   }
 
-  /// Whether nothing was noted that shows what is assumed.
+  /// Whether frames decide, and no assumption.
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// Whether the next frame of this kind is drawn with less.
   [[nodiscard]] bool less() const noexcept { return less_; }
@@ -88,11 +94,12 @@ class FrameBudget {
   }
   void noteLess() noexcept {
     quick_ = mean_ms_ < quick_ms_ ? quick_ + 1 : 0;
-    if (quick_ < calm_) return;
-    returned_ = true;
+    if (quick_ < (known_ ? calm_ : kFew)) return;
+    returned_ = known_;
     change(false);
   }
   void change(bool less) noexcept {
+    known_ = true;
     less_ = less;
     frames_ = quick_ = slow_ = 0;
   }
@@ -104,7 +111,7 @@ class FrameBudget {
   int frames_ = 0;  // since the last change
   int quick_ = 0;   // in a row
   int slow_ = 0;    // in a row
-  int calm_;
+  int calm_ = kCalm;
 };
 
 }  // namespace fettle::app

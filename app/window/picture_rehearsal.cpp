@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/stopwatch.h"
 #include "render/window/window.h"
 
 namespace fettle::app {
@@ -14,6 +15,8 @@ namespace {
 constexpr int kSide_px = 78;
 // Samples of a field of any size: 4 times what such a part of a picture can ask for.
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
+// Longer than what is compiled already can take: a hand would wait.
+constexpr double kMostOfHand_ms = 250.0;
 // From one end of how near a field is seen to the other.
 constexpr double kNear = 64.0;
 
@@ -125,8 +128,11 @@ void PictureRehearsal::drawNext(const render::Shown& shown) {
   if (left_.empty()) return beside_.reset();
   if (!beside_)
     if (auto made = render::LivePicture::createBeside(*window_, smallOptions())) beside_ = std::move(*made);
+  const engine::Stopwatch watch;
   if (beside_ && beside_->update(left_.back().of(shown))) (void)beside_->drawAndWait(left_.back().input);
   left_.pop_back();
+  // A driver that keeps nothing compiles here: as well when a key asks for it.
+  if (watch.ms() > kMostOfHand_ms) left_.clear();
   if (left_.empty()) beside_.reset();
 }
 

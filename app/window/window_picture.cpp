@@ -24,7 +24,7 @@ constexpr double kMostRest_ms = 50.0;
 
 // Since something was drawn, and since the last input: nobody waits for a rehearsal, and much else begins with a field.
 constexpr std::chrono::seconds kRehearsedAfter{1};
-// A frame that draws this share of the picture tells how long all of it takes.
+// A frame that draws this share of the picture tells how long all of it takes, at most.
 constexpr double kTellsOfWhole = 0.5;
 
 constexpr int kPicks =
@@ -114,12 +114,26 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kMoving || measured_ == Measured::kWholeWithLess) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
-  if (measured_ == Measured::kWhole) whole_.noteWithAll(ms / measured_share_);
-  if (measured_ == Measured::kWholeWithLess) whole_.note(ms);
+  if (measured_ == (whole_.less() ? Measured::kWholeWithLess : Measured::kWhole)) whole_.note(ms);
+  if (!whole_.known()) tellOfWhole(ms);
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
     results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double, std::milli>(std::min(ms, kMostRest_ms)));
+}
+
+// What the last frame says about one of all of the picture with every pixel.
+void WindowPicture::tellOfWhole(double ms) noexcept {
+  if (!drew_ || drawn_sharpness_ != render::Sharpness::kFull) return;
+  if (figures_.band) {
+    bands_ms_ += ms;
+    if (figures_.bands_left == 0) whole_.tell(0.0, std::exchange(bands_ms_, 0.0));
+    return;
+  }
+  bands_ms_ = 0.0;
+  if (figures_.redrawn < kTellsOfWhole) return;
+  // What was uploaded took a part of it.
+  whole_.tell(figures_.upload.tiles == 0 ? ms : 0.0, ms / figures_.redrawn);
 }
 
 bool WindowPicture::takeDue(Draws draws) {
@@ -211,13 +225,11 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
-  // What a whole frame takes is known before the first key that changes it, where one of most of the picture came before.
-  const bool whole = sharp_wanted && !rests && !figures_.band && (!whole_.less() || !whole_.known()) &&
-                     figures_.redrawn >= kTellsOfWhole && figures_.upload.tiles == 0;
+  const bool whole = sharp_wanted && !rests && !figures_.band && !whole_.less() && figures_.redrawn == 1.0 &&
+                     figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
   drew_ = true;
-  measured_share_ = changes_whole ? 1.0 : std::max(figures_.redrawn, kTellsOfWhole);
   if (changes_whole || whole) {
     measured_ = with_less ? Measured::kWholeWithLess : Measured::kWhole;
     if (with_less) sharp_later_.drawnWithLess(drawn_);

@@ -158,6 +158,7 @@ class WindowPicture {
  private:
   [[nodiscard]] bool drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept;
   [[nodiscard]] bool samplesCome() const noexcept;
+  void tellOfWhole(double ms) noexcept;
   [[nodiscard]] bool measuresFirst(Refinement::Clock::time_point now);
   [[nodiscard]] std::vector<Seen> seenPlaces(const engine::Grid& grid) const;
 
@@ -188,7 +189,7 @@ class WindowPicture {
     kWhole,
     kWholeWithLess
   } measured_ = Measured::kNothing;
-  double measured_share_ = 1.0;  // of the picture
+  double bands_ms_ = 0.0;  // of the bands of one sharp picture
   render::Sharpness drawn_sharpness_ = render::Sharpness::kFull;
   Clock::time_point drawn_;  // the last frame
   Clock::time_point hand_;   // the last input

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -9,22 +10,40 @@
 namespace fettle::render {
 namespace {
 
-// Beyond what shaders compute in single precision, in another order.
+// Beyond what shaders compute in single precision, in another order, near the middle of the scene.
 constexpr double kRounding_px = 2.0;
+// A coordinate is a sum of four products, of a matrix that is rounded as well.
+constexpr double kRoundings = 8.0;
+
+// A point in clip space, and the sums of what its x and y are the differences of: far from the middle of a scene seen closely they
+// are large, and so is what rounding leaves of them.
+struct Clip {
+  glm::dvec4 at;
+  glm::dvec2 sums;
+};
+
+Clip clipOf(const glm::dmat4& clip_from_scene, const glm::dvec3& point) {
+  glm::dvec2 sums(glm::abs(glm::dvec2(clip_from_scene[3])));
+  for (int i = 0; i < 3; ++i) sums += glm::abs(glm::dvec2(clip_from_scene[i]) * point[i]);
+  return {clip_from_scene * glm::dvec4(point, 1.0), sums};
+}
 
 // What lies around points of a panel's picture [px].
 class Around {
  public:
   explicit Around(const LivePanel& panel) : panel_(panel) {}
 
-  // A point in clip space before the viewer; `reach` pixels around it.
-  void add(const glm::dvec4& clip, double reach) {
-    const glm::dvec2 place = 0.5 * glm::dvec2(clip) / clip.w + 0.5;
-    const glm::dvec2 px(panel_.plot.x + place.x * panel_.plot.width,
-                        panel_.plot.y + place.y * panel_.plot.height);
-    if (!std::isfinite(px.x) || !std::isfinite(px.y)) return addAll();
-    low_ = glm::min(low_, px - reach);
-    high_ = glm::max(high_, px + reach);
+  // A point before the viewer; `reach` pixels around it.
+  void add(const Clip& clip, double reach) {
+    const glm::dvec2 half_plot(0.5 * panel_.plot.width, 0.5 * panel_.plot.height);
+    const glm::dvec2 px =
+        glm::dvec2(panel_.plot.x, panel_.plot.y) + half_plot * (glm::dvec2(clip.at) / clip.at.w + 1.0);
+    const glm::dvec2 off =
+        half_plot * clip.sums / clip.at.w * (kRoundings * std::numeric_limits<float>::epsilon());
+    if (!std::isfinite(px.x) || !std::isfinite(px.y) || !std::isfinite(off.x) || !std::isfinite(off.y))
+      return addAll();
+    low_ = glm::min(low_, px - off - reach);
+    high_ = glm::max(high_, px + off + reach);
   }
   void addAll() {
     low_ = glm::dvec2(-HUGE_VAL);
@@ -47,11 +66,11 @@ class Around {
 // As line.vert.
 Rectangle placeOf(const LivePanel& panel, const gpu::Line& line) {
   const glm::dmat4 clip_from_scene(panel.uniforms.views[0].clip_from_scene);
-  glm::dvec4 a = clip_from_scene * glm::dvec4(glm::dvec3(line.from), 1.0);
-  glm::dvec4 b = clip_from_scene * glm::dvec4(glm::dvec3(line.to), 1.0);
-  if (a.z < 0.0 && b.z < 0.0) return {};
-  if (a.z < 0.0) a = glm::mix(b, a, b.z / (b.z - a.z));
-  if (b.z < 0.0) b = glm::mix(a, b, a.z / (a.z - b.z));
+  Clip a = clipOf(clip_from_scene, glm::dvec3(line.from)), b = clipOf(clip_from_scene, glm::dvec3(line.to));
+  if (a.at.z < 0.0 && b.at.z < 0.0) return {};
+  if (a.at.z < 0.0) a.at = glm::mix(b.at, a.at, b.at.z / (b.at.z - a.at.z));
+  if (b.at.z < 0.0) b.at = glm::mix(a.at, b.at, a.at.z / (a.at.z - b.at.z));
+  a.sums = b.sums = glm::max(a.sums, b.sums);  // where it is cut off lies between them
   Around around(panel);
   // Along and across.
   const double reach = std::sqrt(2.0) * (0.5 * double{line.from.w} + 1.0) + kRounding_px;
@@ -84,8 +103,8 @@ Rectangle placeOf(const LivePanel& panel, const gpu::Stylus& stylus) {
   for (const glm::dvec3& middle : middles)
     for (int k = 0; k < 8; ++k) {
       const glm::dvec3 corner = middle + wide * (2.0 * glm::dvec3(k & 1, k >> 1 & 1, k >> 2) - 1.0);
-      const glm::dvec4 clip = clip_from_scene * glm::dvec4(corner, 1.0);
-      if (clip.w > 0.0)
+      const Clip clip = clipOf(clip_from_scene, corner);
+      if (clip.at.w > 0.0)
         around.add(clip, kRounding_px);
       else
         around.addAll();  // beside or behind the viewer: anywhere

@@ -61,24 +61,37 @@ TEST(FrameBudget, AssumesThatWholeFramesAreSlow) {
   FrameBudget unknown = FrameBudget::ofWhole();
   EXPECT_TRUE(unknown.less());
   EXPECT_FALSE(unknown.known());
-  // A few quick ones with less show that there is time; where there is none, one with all does, and more are needed the next time.
+  // A few quick ones with less show that there is time; where there is none, the first one with all does.
   EXPECT_EQ(framesUntilChange(unknown, 1.0), FrameBudget::kFew);
+  EXPECT_TRUE(unknown.known());
   EXPECT_EQ(framesUntilChange(unknown, 80.0), 1);
-  EXPECT_EQ(unknown.calm(), 2 * FrameBudget::kFew);
+  EXPECT_EQ(unknown.calm(), FrameBudget::kCalm);
   EXPECT_EQ(framesUntilChange(unknown, 17.0, 200), 0);
-  // So does one with all.
-  FrameBudget quick = FrameBudget::ofWhole();
-  quick.noteWithAll(20.0);
-  EXPECT_FALSE(quick.less());
-  EXPECT_TRUE(quick.known());
-  FrameBudget slow = FrameBudget::ofWhole();
-  slow.noteWithAll(40.0);
-  EXPECT_TRUE(slow.less());
-  // Of what is drawn with less already it says nothing.
-  FrameBudget less = FrameBudget::ofWhole();
-  less.note(20.0);
-  less.noteWithAll(1.0);
-  EXPECT_TRUE(less.less());
+  // One of them in which something was compiled does not count.
+  FrameBudget compiled = FrameBudget::ofWhole();
+  compiled.note(200.0);
+  EXPECT_EQ(framesUntilChange(compiled, 1.0), FrameBudget::kFew);
+}
+
+TEST(FrameBudget, IsToldHowLongFramesTakeWhileItAssumes) {
+  const auto told = [](double at_least_ms, double at_most_ms) {
+    FrameBudget budget = FrameBudget::ofWhole();
+    budget.note(20.0);
+    budget.tell(at_least_ms, at_most_ms);
+    return std::pair(budget.known(), budget.less());
+  };
+  EXPECT_EQ(told(20.0, 20.0), std::pair(true, false));
+  EXPECT_EQ(told(0.0, 33.0), std::pair(true, false));  // some of it was uploading
+  EXPECT_EQ(told(0.0, 60.0), std::pair(false, true));
+  EXPECT_EQ(told(30.0, 60.0), std::pair(false, true));  // a half of it
+  EXPECT_EQ(told(40.0, 40.0), std::pair(true, true));
+  EXPECT_EQ(told(133.0, 133.0), std::pair(false, true));  // compiled
+  // What was measured is not told otherwise.
+  FrameBudget known = FrameBudget::ofWhole();
+  known.tell(40.0, 40.0);
+  known.tell(1.0, 1.0);
+  EXPECT_TRUE(known.less());
+  EXPECT_EQ(framesUntilChange(known, 1.0), FrameBudget::kCalm);
 }
 
 TEST(SharpLater, IsDueOnceNothingHasChangedForAWhile) {
