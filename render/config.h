@@ -53,11 +53,11 @@ inline constexpr double kContourPx = 4.0;
 inline constexpr std::int64_t kFrameVertices = 65536;
 inline constexpr std::int64_t kFewestFrameVertices = 4096, kMostFrameVertices = std::int64_t{1} << 28;
 /// Of Sharpness::kRest: frames that draw a picture with four rays per pixel, so that none of them takes long.
-inline constexpr int kRestBands = 12;
+inline constexpr int kRestBands = 24;
 /// Of FrameInput::Redraw::kInBands: a million vertices take 90 ms on two cores.
-inline constexpr int kDetailBands = 16;
+inline constexpr int kDetailBands = 32;
 /// The same, of the first sharp picture after one with fewer pixels: with the usual vertices it takes 35 to 60 ms at once.
-inline constexpr int kSharpBands = 4;
+inline constexpr int kSharpBands = 8;
 /// Screen error of a frame and of a picture that is drawn once [px].
 inline constexpr double kFrameErrorPx = 1.0, kStillErrorPx = 0.25;
 /// How far seams overlap the patches that they join [rays]: as much as rounding may separate them.

@@ -1,4 +1,4 @@
-// window_times [--everything] SCAN...: how fast the window follows a hand, printed as a table: frames while the view
+// window_times [--everything | --least] SCAN...: how fast the window follows a hand, printed as a table: frames while the view
 // turns, edits while a brush works, keys while nothing happens, while the view turns, while a filter is computed. Each
 // scan with everything shown and (without --everything) with as little as possible, alone and beside two processes that spin at normal
 // priority, with drawing that adapts to the time it takes and with the fixed one (fettle view --steady), all in one
@@ -334,9 +334,12 @@ int main(int argc, char** argv) {
   using fettle::tests::Shown;
   std::vector<std::string> scans(argv + 1, argv + argc);
   std::vector<Shown> kinds{Shown::kAll};
-  if (std::erase(scans, "--everything") == 0) kinds.push_back(Shown::kLittle);
+  if (std::erase(scans, "--least") > 0)
+    kinds = {Shown::kLittle};
+  else if (std::erase(scans, "--everything") == 0)
+    kinds.push_back(Shown::kLittle);
   if (scans.empty()) {
-    fmt::print(stderr, "window_times [--everything] SCAN...\n");
+    fmt::print(stderr, "window_times [--everything | --least] SCAN...\n");
     return 2;
   }
   try {
