@@ -91,7 +91,8 @@ render::Shown PictureRehearsal::Scene::of(render::Shown shown) const {
   return shown;
 }
 
-void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown, render::FrameInput look) {
+void PictureRehearsal::begin(render::LivePicture& window, render::Shown shown,
+                             const render::FrameInput& look) {
   end();
   stage_ = std::make_shared<Stage>();
   stage_->window = window_ = &window;

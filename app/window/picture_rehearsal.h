@@ -23,7 +23,7 @@ namespace fettle::app {
 class PictureRehearsal {
  public:
   /// `look`: a frame of what is `shown` by `window`, which lives until end(). What was begun before is given up.
-  void begin(render::LivePicture& window, render::Shown shown, render::FrameInput look);
+  void begin(render::LivePicture& window, render::Shown shown, const render::FrameInput& look);
   /// Draws the next scene of what is `shown` now with the window's programs, 5 to 130 ms, when those behind the window are done; for
   /// a time in which nobody waits for the window.
   void drawNext(const render::Shown& shown);

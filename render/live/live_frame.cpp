@@ -36,10 +36,7 @@ vk::Format codesOf(vk::Format colour) {
   }
 }
 
-// The order of channels does not matter where all are mixed in the same way.
-constexpr vk::Format kEnlarged = LivePrograms::kEnlarged;
-
-// Values of kEnlarged with which an image of the format has this colour [linear light].
+// Values of LivePrograms::kEnlarged with which an image of the format has this colour [linear light].
 vk::ClearColorValue codesOf(const glm::vec3& light, vk::Format colour) {
   const auto code = [](float channel) { return static_cast<float>(srgbFromLinear(channel)); };
   const bool red_first = codesOf(colour) == vk::Format::eR8G8B8A8Unorm;
