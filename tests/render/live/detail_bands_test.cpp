@@ -63,7 +63,7 @@ TEST(DetailBands, AnEditInBetweenIsDrawnAtOnceAndTheBandsGoOn) {
     EXPECT_EQ(band.stats.bands_left, left);
     if (left % 2 == 0) continue;
     for (int r = 400; r < 420; ++r)
-      ASSERT_TRUE(live.writeHeights(30 * left + 100, r, 20, 1, bump.data(), 20));
+      ASSERT_TRUE(live.writeHeights(100 + 450 * left / kDetailBands, r, 20, 1, bump.data(), 20));
     ASSERT_TRUE(picture->update(live.snapshot()));
     const Shot edited = shoot(*picture, with(input, kFine));
     EXPECT_EQ(edited.stats.bands_left, left);
