@@ -1,7 +1,5 @@
 #include "render/live/live_frame.h"
-#include "render/live/overlay_places.h"
 #include "render/live/panel_pass.h"
-#include "render/plan/colour_map.h"
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/descriptor_writes.h"
 
@@ -22,34 +20,6 @@ bool keepsColours(LiveFrame::Redraw redraw) {
 }
 vk::AttachmentLoadOp loadOf(bool keeps) {
   return keeps ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear;
-}
-
-// The same bytes, read as code values and not as amounts of light.
-vk::Format codesOf(vk::Format colour) {
-  switch (colour) {
-    case vk::Format::eR8G8B8A8Srgb:
-      return vk::Format::eR8G8B8A8Unorm;
-    case vk::Format::eB8G8R8A8Srgb:
-      return vk::Format::eB8G8R8A8Unorm;
-    default:
-      return colour;
-  }
-}
-
-// Values of LivePrograms::kEnlarged with which an image of the format has this colour [linear light].
-vk::ClearColorValue codesOf(const glm::vec3& light, vk::Format colour) {
-  const auto code = [](float channel) { return static_cast<float>(srgbFromLinear(channel)); };
-  const bool red_first = codesOf(colour) == vk::Format::eR8G8B8A8Unorm;
-  const float red = code(light.r), green = code(light.g), blue = code(light.b);
-  return red_first ? std::array{blue, green, red, 1.0F} : std::array{red, green, blue, 1.0F};
-}
-
-// Every `step`-th pixel, rounded up: one pixel of the result is `step` of the whole in each direction.
-vk::Extent2D everyNth(vk::Extent2D extent, std::uint32_t step) {
-  return {(extent.width + step - 1) / step, (extent.height + step - 1) / step};
-}
-vk::Extent2D halfOf(vk::Extent2D extent) {
-  return everyNth(extent, 2);
 }
 
 Pipelines::Paged pagedOf(const LivePanel& p) {
@@ -76,12 +46,12 @@ void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect,
 LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views,
                      std::shared_ptr<LivePrograms> programs)
     : context_(context),
-      colour_(colour),
-      layers_(views == Pipelines::Views::kBoth ? 2 : 1),
+      eyes_(views == Pipelines::Views::kBoth ? 2 : 1),
       view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
       programs_(std::move(programs)),
       pipelines_(programs_->pipelines()),
       stylus_(pipelines_, view_mask_),
+      layers_(context, colour, eyes_, *programs_),
       glyphs_(context) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
   constexpr std::uint32_t kSets = kSlots * (6 * kMostPanels + 1);
@@ -113,81 +83,8 @@ std::array<vk::DescriptorSet, kMostPanels> LiveFrame::Slot::styluses() const {
   return sets;
 }
 
-GpuImage LiveFrame::baseOf(vk::Extent2D extent) const {
-  using Usage = vk::ImageUsageFlagBits;
-  // Copied as code values.
-  return GpuImage(context_, codesOf(colour_), extent, layers_,
-                  layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray,
-                  Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
-}
-
-void LiveFrame::makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size) {
-  using Usage = vk::ImageUsageFlagBits;
-  layers.extent = picture;
-  layers.depth = GpuImage(context_, kDepthFormat, &layers == &whole_ ? picture : size, layers_,
-                          layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray,
-                          Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
-  layers.base = baseOf(size);
-}
-
-void LiveFrame::makeFine(vk::Extent2D extent) {
-  const vk::Extent2D small = halfOf(extent);
-  fine_.scale = 2.0F;
-  makeLayer(fine_, extent, {4 * small.width, 4 * small.height});
-}
-
-void LiveFrame::makeRest(Submissions& submissions, vk::Extent2D extent) {
-  if (rest_extent_ == extent && fine_.extent == extent) return;
-  // The frame in flight draws with the old ones.
-  submissions.finish();
-  if (fine_.extent != extent) {
-    makeFine(extent);
-    if (reduce_) reduce_->set(fine_.base, whole_.base, layers_);
-  }
-  const vk::Extent2D small = halfOf(extent);
-  rest_ = baseOf({2 * small.width, 2 * small.height});
-  rest_extent_ = extent;
-  if (!reduce_to_rest_)
-    reduce_to_rest_ = std::make_unique<Resize>(context_, programs_->reduce(), Resize::Times::kTwo);
-  reduce_to_rest_->set(fine_.base, rest_, layers_);
-}
-
-void LiveFrame::makeSmall(Layers& layers, vk::Extent2D picture, Resize::Times times,
-                          std::unique_ptr<Resize>& enlarge) {
-  const int step = times == Resize::Times::kTwo ? 2 : 4;
-  layers.scale = 1.0F / static_cast<float>(step);
-  makeLayer(layers, picture, everyNth(picture, static_cast<std::uint32_t>(step)));
-  if (!enlarge) enlarge = std::make_unique<Resize>(context_, programs_->enlarge(), times);
-  enlarge->set(layers.base, whole_.base, layers_);
-}
-
-void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
-  const bool half = sharpness == Sharpness::kHalf, quarter = sharpness == Sharpness::kQuarter,
-             fine = sharpness == Sharpness::kFine;
-  if (whole_.extent == extent && (!half || half_.extent == extent) &&
-      (!quarter || quarter_.extent == extent) && (!fine || (fine_.extent == extent && reduce_)))
-    return;
-  // The frame in flight draws with the old ones.
-  submissions.finish();
-  if (whole_.extent != extent) {
-    // Room for what is enlarged from every fourth pixel.
-    const vk::Extent2D fourth = everyNth(extent, 4);
-    makeLayer(whole_, extent, {4 * fourth.width, 4 * fourth.height});
-    // What is resized into it is not that of before, however large: a size may come back.
-    half_.extent = quarter_.extent = vk::Extent2D{};
-    reduce_.reset();
-  }
-  if (half) makeSmall(half_, extent, Resize::Times::kTwo, enlarge_);
-  if (quarter) makeSmall(quarter_, extent, Resize::Times::kFour, enlarge_more_);
-  if (fine) {
-    if (fine_.extent != extent) makeFine(extent);
-    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, programs_->reduce(), Resize::Times::kTwo);
-    reduce_->set(fine_.base, whole_.base, layers_);
-  }
-}
-
 void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
-                     const Layers& layers, const GpuImage& under_stylus) {
+                     const Surface& surface, const GpuImage& under_stylus) {
   Packing packing;
   struct Blocks {
     Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages, stylus;
@@ -233,7 +130,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
       writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
       writes.texels(set, gpu::kBindPages, p.variant.on_demand ? *sets.pages : *no_pages_view_);
     }
-    writes.image(*sets.surface, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
+    writes.image(*sets.surface, gpu::kBindDepth, surface.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
     if (p.stylus) {
       writes.buffer(*sets.stylus, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
       writes.buffer(*sets.stylus, gpu::kBindStylus, kStorage, slot.arena, blocks[i].stylus);
@@ -254,14 +151,14 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
 }
 
 void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                            std::span<const LivePanel> panels, const Layers& layers, Redraw redraw) {
+                            std::span<const LivePanel> panels, const Surface& surface, Redraw redraw) {
   const PanelDraws draws(commands, pipelines_.sceneLayout());
   using Geometry = Pipelines::Geometry;
   const vk::RenderingAttachmentInfo depth =
-      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(keepsDepth(redraw)),
+      attachment(surface.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(keepsDepth(redraw)),
                  vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
+  rendering.setRenderArea({{0, 0}, surface.depth.extent()})
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setPDepthAttachment(&depth);
@@ -270,9 +167,9 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    draws.begin(p, part, layers.scale);
+    draws.begin(p, part, surface.scale);
     if (keepsDepth(redraw))
-      clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, scaled(part, layers.scale));
+      clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, scaled(part, surface.scale));
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
     const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
@@ -290,16 +187,16 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
 }
 
 void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                           std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                           std::span<const LivePanel> panels, const glm::vec3& ground, const Surface& surface,
                            Redraw redraw, HiddenLines lines) {
   const PanelDraws draws(commands, pipelines_.sceneLayout());
   const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
   const vk::RenderingAttachmentInfo cleared = attachment(
-      layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(keepsColours(redraw)), nothing);
+      surface.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(keepsColours(redraw)), nothing);
   vk::RenderingInfo rendering;
   const vk::RenderingAttachmentInfo read =
-      attachment(layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
-  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
+      attachment(surface.depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setRenderArea({{0, 0}, surface.depth.extent()})
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setColorAttachments(cleared)
@@ -308,29 +205,29 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Rectangle& part = partOf(panels[i], redraw);
     if (empty(part)) continue;
-    draws.begin(panels[i], part, layers.scale);
-    if (keepsColours(redraw)) clear(commands, kColour, nothing, scaled(part, layers.scale));
+    draws.begin(panels[i], part, surface.scale);
+    if (keepsColours(redraw)) clear(commands, kColour, nothing, scaled(part, surface.scale));
     draws.instances(pipelines_.of(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
 
   Barriers again;
-  again.add(layers.depth.image(), kDepth,
+  again.add(surface.depth.image(), kDepth,
             {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader, Access::eShaderRead},
             {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
-  again.add(layers.base.image(), kColour, kColourWritten, kColourUsed);
+  again.add(surface.base.image(), kColour, kColourWritten, kColourUsed);
   again.record(commands);
   const vk::RenderingAttachmentInfo colour =
-      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(surface.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   const vk::RenderingAttachmentInfo depth =
-      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(surface.depth.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   rendering.setColorAttachments(colour).setPDepthAttachment(&depth);
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    draws.begin(p, part, layers.scale);
+    draws.begin(p, part, surface.scale);
     // The plate is only visible through holes.
     if (p.variant.holes)
       draws.instances(pipelines_.of(Pipelines::Flat::kFloor), *slot.panels[i].surface, 4, 0, 1);
@@ -340,11 +237,11 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   }
   // Over the copy they move without shading the surface again.
   if (lines == HiddenLines::kInBase)
-    recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
+    recordLines(commands, slot, panels, Pipelines::Lines::kInScene, surface.scale);
   commands.endRendering();
   if (lines == HiddenLines::kInBase && StylusPass::neededBy(panels))
     stylus_.record(commands, panels, slot.styluses(),
-                   {layers.depth, layers.base.view(), layers.base.image(), layers.scale});
+                   {surface.depth, surface.base.view(), surface.base.image(), surface.scale});
 }
 
 void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -362,33 +259,6 @@ void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot&
   }
 }
 
-void LiveFrame::beforeResize(const vk::raii::CommandBuffer& commands, const Layers& layers,
-                             const GpuImage& to) {
-  Barriers before;
-  before.add(layers.base.image(), kColour, kColourWritten,
-             {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
-  before.add(to.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
-             kColourUsed);
-  before.record(commands);
-}
-
-// Outside of the panels is what a frame of every pixel leaves there: bands of it may follow. Grounds are whole codes, so that both
-// ways of clearing give the same.
-void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
-                               std::span<const LivePanel> panels, const glm::vec3& ground) {
-  beforeResize(commands, layers, whole_.base);
-  std::vector<vk::Rect2D> parts;
-  for (const LivePanel& panel : panels)
-    if (!empty(panel.visible)) parts.push_back(rectOf(panel.visible));
-  (&layers == &half_ ? enlarge_ : enlarge_more_)->record(commands, parts, codesOf(ground, colour_));
-}
-
-void LiveFrame::recordReduced(const vk::raii::CommandBuffer& commands, const Resize& reduce,
-                              const GpuImage& to) {
-  beforeResize(commands, fine_, to);
-  reduce.record(commands);
-}
-
 void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                                   std::span<const LivePanel> panels,
                                   const std::vector<gpu::Quad>& decorations, const GpuImage& base,
@@ -397,7 +267,7 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
   Barriers over;
   over.add(base.image(), kColour, kColourWritten, kColourUsed);
   over.record(commands);
-  const vk::Extent2D extent = whole_.extent;
+  const vk::Extent2D extent = layers_.whole().picture;
   const vk::RenderingAttachmentInfo colour =
       attachment(base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   vk::RenderingInfo rendering;
@@ -424,28 +294,8 @@ void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const
   commands.endRendering();
 }
 
-LiveFrame::Copied LiveFrame::copiedTo(const LiveTarget& target, const GpuImage& base,
-                                      std::span<const LivePanel> panels, std::optional<Places> changed) {
-  const Rectangle all{0, 0, static_cast<int>(target.extent.width), static_cast<int>(target.extent.height)};
-  const std::optional<Held> before = std::exchange(held_, std::nullopt);
-  if (target.kept == 0 || layers_ > 1 || target.over) return {base, {all}};
-  // All overlays are drawn again, each over what was copied below it.
-  Places overlays;
-  addOverlays(panels, overlays);
-  held_ = Held{target.kept, target.image, target.extent, &base, overlays.take()};
-  if (!changed || !before || before->kept != target.kept || before->image != target.image ||
-      before->extent != target.extent || before->base != &base)
-    return {base, {all}};
-  for (const Rectangle& place : before->overlays) changed->add(place);
-  for (const Rectangle& place : held_->overlays) changed->add(place);
-  Copied copied{base, changed->take(), true};
-  for (Rectangle& place : copied.places) place = cut(place, all);
-  std::erase_if(copied.places, [](const Rectangle& place) { return empty(place); });
-  return copied;
-}
-
 void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                             std::span<const LivePanel> panels, const Copied& copied_base,
+                             std::span<const LivePanel> panels, const BaseCopy& copied_base,
                              const LiveTarget& target, Sharpness sharpness) {
   if (copied_base.places.empty()) return;               // and there is no overlay
   const bool in_scene = sharpness == Sharpness::kFull;  // lines of that kind are still to be drawn
@@ -462,9 +312,9 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   for (const Rectangle& place : copied_base.places) {
     const vk::Offset3D from{place.x, place.y, 0};
     copies.push_back(
-        {{kColour, 0, 0, layers_},
+        {{kColour, 0, 0, eyes_},
          from,
-         {kColour, 0, 0, layers_},
+         {kColour, 0, 0, eyes_},
          from,
          {static_cast<std::uint32_t>(place.width), static_cast<std::uint32_t>(place.height), 1}});
   }
@@ -488,7 +338,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
       attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   // Except at full sharpness the depth is empty, and lines on top do not test it.
   const vk::RenderingAttachmentInfo depth =
-      attachment(whole_.depth.view(), ImageLayout::eDepthAttachmentOptimal,
+      attachment(layers_.whole().depth.view(), ImageLayout::eDepthAttachmentOptimal,
                  in_scene ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eDontCare);
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, target.extent})
@@ -497,14 +347,14 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
       .setColorAttachments(colour);
   if (lines || stylus) {
     if (!in_scene)
-      change(commands, whole_.depth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
+      change(commands, layers_.whole().depth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
              kDepthStages, kDepthAccess, kDepthStages, kDepthAccess);
     rendering.setPDepthAttachment(&depth);
     commands.beginRendering(rendering);
     if (in_scene) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, 1.0F);
     if (stylus) {
       commands.endRendering();
-      stylus_.record(commands, panels, slot.styluses(), {whole_.depth, target.view, target.image});
+      stylus_.record(commands, panels, slot.styluses(), {layers_.whole().depth, target.view, target.image});
       commands.beginRendering(rendering);
     }
     recordLines(commands, slot, panels, Pipelines::Lines::kOnTop, 1.0F);
@@ -526,24 +376,24 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
 
 void LiveFrame::recordSurface(const vk::raii::CommandBuffer& commands, const Slot& slot,
                               std::span<const LivePanel> panels, const glm::vec3& ground,
-                              const Layers& layers, Redraw redraw, const Before& before) {
+                              const Surface& surface, Redraw redraw, const Before& before) {
   Barriers begin;
-  begin.add(layers.depth.image(), kDepth,
+  begin.add(surface.depth.image(), kDepth,
             {keepsDepth(redraw) ? ImageLayout::eDepthAttachmentOptimal : ImageLayout::eUndefined,
              kDepthStages, Access::eDepthStencilAttachmentWrite},
             {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
   begin.record(commands);
-  recordDepth(commands, slot, panels, layers, redraw);
+  recordDepth(commands, slot, panels, surface, redraw);
   Barriers shade;
-  shade.add(layers.depth.image(), kDepth,
+  shade.add(surface.depth.image(), kDepth,
             {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
             {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
              Access::eDepthStencilAttachmentRead | Access::eShaderRead});
   Barriers::Access base = before.base;
   if (!keepsColours(redraw)) base.layout = ImageLayout::eUndefined;
-  shade.add(layers.base.image(), kColour, base, kColourUsed);
+  shade.add(surface.base.image(), kColour, base, kColourUsed);
   shade.record(commands);
-  recordBase(commands, slot, panels, ground, layers, redraw, before.lines);
+  recordBase(commands, slot, panels, ground, surface, redraw, before.lines);
 }
 
 std::vector<Rectangle> LiveFrame::record(Submissions& submissions, StagingRing& staging,
@@ -554,13 +404,10 @@ std::vector<Rectangle> LiveFrame::record(Submissions& submissions, StagingRing& 
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
-  makeLayers(submissions, target.extent, sharpness);
-  const Layers& layers = sharpness == Sharpness::kHalf      ? half_
-                         : sharpness == Sharpness::kQuarter ? quarter_
-                         : sharpness == Sharpness::kFine    ? fine_
-                                                            : whole_;
-  const bool resized = &layers != &whole_;
-  fill(slot, panels, decorations, layers, layers.depth);
+  layers_.prepare(submissions, target.extent, sharpness);
+  const Surface &surface = layers_.of(sharpness), &whole = layers_.whole();
+  const bool resized = &surface != &whole;
+  fill(slot, panels, decorations, surface, surface.depth);
 
   const bool all = redraw == Redraw::kAll;
   const bool redraws =
@@ -572,22 +419,19 @@ std::vector<Rectangle> LiveFrame::record(Submissions& submissions, StagingRing& 
   if (redraws) {
     // The previous frame may still draw lines against this depth and copy from that base.
     recordSurface(
-        commands, slot, panels, ground, layers, redraw,
+        commands, slot, panels, ground, surface, redraw,
         {.base = resized ? read : copied, .lines = resized ? HiddenLines::kInBase : HiddenLines::kOverCopy});
-    if (&layers == &fine_)
-      recordReduced(commands, *reduce_, whole_.base);
-    else if (resized)
-      recordEnlarged(commands, layers, panels, ground);
-    recordDecorations(commands, slot, panels, decorations, whole_.base, redraw);
+    if (resized) layers_.recordResized(commands, surface, panels, ground);
+    recordDecorations(commands, slot, panels, decorations, whole.base, redraw);
     Barriers compose;
-    compose.add(whole_.base.image(), kColour, kColourWritten, copied);
+    compose.add(whole.base.image(), kColour, kColourWritten, copied);
     compose.record(commands);
     if (keepsColours(redraw))
       for (const LivePanel& panel : panels) changed->add(panel.redraw);
     else
       changed.reset();
   }
-  Copied copy = copiedTo(target, whole_.base, panels, std::move(changed));
+  BaseCopy copy = kept_.copyTo(target, whole.base, panels, std::move(changed));
   recordTarget(commands, slot, panels, copy, target, sharpness);
   return std::move(copy.places);
 }
@@ -600,24 +444,25 @@ std::vector<Rectangle> LiveFrame::recordRest(Submissions& submissions, StagingRi
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!decorations.empty()) glyphs_.upload(commands, staging, submissions.next(), glyphs);
-  makeRest(submissions, target.extent);
-  fill(slot, panels, decorations, fine_, whole_.depth);  // recordTarget() draws the stylus
+  layers_.prepareRest(submissions, target.extent);
+  const Surface &fine = layers_.of(Sharpness::kFine), &whole = layers_.whole();
+  fill(slot, panels, decorations, fine, whole.depth);  // recordTarget() draws the stylus
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
   if (rest.draws) {
     // The first part may follow a frame that still reduces what was there before.
     const Barriers::Access reduced{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
                                    Access::eShaderRead};
-    recordSurface(commands, slot, panels, ground, fine_, rest.first ? Redraw::kFirstPart : Redraw::kParts,
+    recordSurface(commands, slot, panels, ground, fine, rest.first ? Redraw::kFirstPart : Redraw::kParts,
                   {.base = rest.first ? reduced : kColourWritten, .lines = HiddenLines::kOverCopy});
     if (rest.last) {
-      recordReduced(commands, *reduce_to_rest_, rest_);
-      recordDecorations(commands, slot, panels, decorations, rest_, Redraw::kAll);
+      layers_.recordReducedToRest(commands);
+      recordDecorations(commands, slot, panels, decorations, layers_.rest(), Redraw::kAll);
       Barriers compose;
-      compose.add(rest_.image(), kColour, kColourWritten, copied);
+      compose.add(layers_.rest().image(), kColour, kColourWritten, copied);
       compose.record(commands);
     }
   }
-  Copied copy = copiedTo(target, rest.shows ? rest_ : whole_.base, panels, Places());
+  BaseCopy copy = kept_.copyTo(target, rest.shows ? layers_.rest() : whole.base, panels, Places());
   recordTarget(commands, slot, panels, copy, target, Sharpness::kFull);
   return std::move(copy.places);
 }

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "render/config.h"
+#include "render/live/frame_layers.h"
 #include "render/live/glyph_image.h"
+#include "render/live/kept_target.h"
 #include "render/live/live_panel.h"
 #include "render/live/live_picture.h"
 #include "render/live/live_programs.h"
-#include "render/live/resize.h"
 #include "render/live/stylus_pass.h"
 #include "render/plan/glyphs.h"
-#include "render/plan/places.h"
 #include "render/plan/plan.h"
 #include "render/residency/live_texture.h"
 #include "render/vulkan/barrier.h"
@@ -51,7 +51,7 @@ class LiveFrame {
 
   /// Whether the layers hold a picture of full sharpness in this size, and whether decorations would be drawn
   /// with the same glyph image.
-  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return whole_.extent == extent; }
+  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return layers_.holds(extent); }
   [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept { return glyphs_.holds(glyphs); }
   enum class Redraw {
     kAll,  ///< every layer, whatever LivePanel::redraw says
@@ -72,7 +72,7 @@ class LiveFrame {
     bool shows = false;                ///< it, complete, instead of the picture of kFull
   };
   /// Whether its layers are of this size.
-  [[nodiscard]] bool holdsRest(vk::Extent2D extent) const noexcept { return rest_extent_ == extent; }
+  [[nodiscard]] bool holdsRest(vk::Extent2D extent) const noexcept { return layers_.holdsRest(extent); }
   /// Records a frame in which nothing of the surface changed since the one of kFull that the layers hold. `panels`: as for kFine.
   std::vector<Rectangle> recordRest(Submissions& submissions, StagingRing& staging,
                                     std::span<const LivePanel> panels,
@@ -80,7 +80,7 @@ class LiveFrame {
                                     const Glyphs& glyphs, const LiveTarget& target, const Rest& rest);
 
   /// Something else is drawn to the target.
-  void forgetTarget() noexcept { held_.reset(); }
+  void forgetTarget() noexcept { kept_.forget(); }
 
   [[nodiscard]] const std::shared_ptr<LivePrograms>& programs() const noexcept { return programs_; }
 
@@ -96,21 +96,15 @@ class LiveFrame {
     vk::raii::DescriptorSet picture = nullptr;
     [[nodiscard]] std::array<vk::DescriptorSet, kMostPanels> styluses() const;
   };
-  // The images that the surface is drawn to.
-  struct Layers {
-    vk::Extent2D extent;  // of their picture
-    float scale = 1.0F;   // their pixels per pixel of that picture
-    GpuImage depth, base;
-  };
-  void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
+  using Surface = FrameLayers::Surface;
   // `under_stylus`: depth of the surface over which the stylus is drawn.
   void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
-            const Layers& layers, const GpuImage& under_stylus);
+            const Surface& surface, const GpuImage& under_stylus);
   void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                   std::span<const LivePanel> panels, const Layers& layers, Redraw redraw);
+                   std::span<const LivePanel> panels, const Surface& surface, Redraw redraw);
   enum class HiddenLines : std::uint8_t { kInBase, kOverCopy };
   void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                  std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                  std::span<const LivePanel> panels, const glm::vec3& ground, const Surface& surface,
                   Redraw redraw, HiddenLines lines);
   /// What the frame before has done to the layers that a surface is drawn to.
   struct Before {
@@ -118,38 +112,19 @@ class LiveFrame {
     HiddenLines lines = HiddenLines::kOverCopy;
   };
   void recordSurface(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                     std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                     std::span<const LivePanel> panels, const glm::vec3& ground, const Surface& surface,
                      Redraw redraw, const Before& before);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
   void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
                          std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
                          const GpuImage& base, Redraw redraw);
-  [[nodiscard]] GpuImage baseOf(vk::Extent2D extent) const;
-  void makeLayer(Layers& layers, vk::Extent2D picture, vk::Extent2D size);
-  void makeRest(Submissions& submissions, vk::Extent2D extent);
-  void makeFine(vk::Extent2D extent);
-  void makeSmall(Layers& layers, vk::Extent2D picture, Resize::Times times, std::unique_ptr<Resize>& enlarge);
-  static void beforeResize(const vk::raii::CommandBuffer& commands, const Layers& layers, const GpuImage& to);
-  void recordEnlarged(const vk::raii::CommandBuffer& commands, const Layers& layers,
-                      std::span<const LivePanel> panels, const glm::vec3& ground);
-  void recordReduced(const vk::raii::CommandBuffer& commands, const Resize& reduce, const GpuImage& to);
-  /// What is copied from a base to a target: all of it, or these places.
-  struct Copied {
-    const GpuImage& base;
-    std::vector<Rectangle> places;
-    bool over_before = false;  // the target holds the frame before
-  };
-  /// `changed`: of the base since the frame before; nothing: all of it.
-  Copied copiedTo(const LiveTarget& target, const GpuImage& base, std::span<const LivePanel> panels,
-                  std::optional<Places> changed);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                    std::span<const LivePanel> panels, const Copied& copied, const LiveTarget& target,
+                    std::span<const LivePanel> panels, const BaseCopy& copied, const LiveTarget& target,
                     Sharpness sharpness);
 
   Context& context_;
-  vk::Format colour_;
-  std::uint32_t layers_;     // of depth_, base_ and targets
+  std::uint32_t eyes_;       // layers of images and targets
   std::uint32_t view_mask_;  // 0: there is one
   std::shared_ptr<LivePrograms> programs_;
   Pipelines& pipelines_;  // of them
@@ -158,21 +133,9 @@ class LiveFrame {
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // bound where the shader reads no pages
   vk::raii::BufferView no_pages_view_ = nullptr;
-  Layers whole_, half_, quarter_, fine_;  // all but whole_ are created on first use
-  std::unique_ptr<Resize> enlarge_, enlarge_more_, reduce_;
-  GpuImage rest_;  // of recordRest, as whole_.base; created on first use
-  vk::Extent2D rest_extent_;
-  std::unique_ptr<Resize> reduce_to_rest_;
+  FrameLayers layers_;
   GlyphImage glyphs_;
-  // The target that holds the last frame.
-  struct Held {
-    std::uint64_t kept = 0;
-    vk::Image image;
-    vk::Extent2D extent;
-    const GpuImage* base = nullptr;
-    std::vector<Rectangle> overlays;
-  };
-  std::optional<Held> held_;
+  KeptTarget kept_;
 };
 
 }  // namespace fettle::render
