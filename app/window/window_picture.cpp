@@ -130,7 +130,8 @@ void WindowPicture::tellOfWhole(double ms) noexcept {
     if (figures_.bands_left == 0) whole_.tell(0.0, std::exchange(bands_ms_, 0.0));
     return;
   }
-  bands_ms_ = 0.0;
+  // An edit between two bands leaves as many of them to be drawn.
+  if (figures_.bands_left == 0) bands_ms_ = 0.0;
   if (figures_.redrawn < kTellsOfWhole) return;
   // What was uploaded took a part of it.
   whole_.tell(figures_.upload.tiles == 0 ? ms : 0.0, ms / figures_.redrawn);
