@@ -17,8 +17,8 @@ constexpr int kSide_px = 78;
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
 // Longer than what is compiled already can take: a hand would wait.
 constexpr double kMostOfHand_ms = 250.0;
-// From one end of how near a field is seen to the other.
-constexpr double kNear = 64.0;
+// So near that cells of a field with the longest sides are larger than a pixel, and so far that the shortest's are smaller.
+constexpr double kNear = 512.0, kFar = 64.0;
 
 // The middle of the picture, in its own pixels: what cells are smaller than a pixel there are so here.
 void takeMiddle(render::FrameInput& input) {
@@ -68,7 +68,7 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
   add(pen);
   for (const bool other_projection : {false, true})
     for (const bool deviation : {false, true})
-      for (const double nearer : {1.0, kNear, 1.0 / kNear})
+      for (const double nearer : {1.0, kNear, 1.0 / kFar})
         for (const bool contours : {false, true}) {
           Scene scene = now;
           if (other_projection)

@@ -83,5 +83,19 @@ TEST_F(RehearsalTest, a_large_field_is_rehearsed_as_it_is_drawn) {
   EXPECT_EQ(compiled(), before);
 }
 
+// Its cells are smaller than a pixel also where those of other fields are not any more.
+TEST_F(RehearsalTest, a_long_field_is_rehearsed_from_near) {
+  const std::string strip = folder.file("long.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", strip, "--size", "40000x128", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  pressKeys(scan, {});
+  showUntilRehearsed(strip);
+  const std::ptrdiff_t before = compiled();
+  std::vector<std::string> keys(28, "Page_Up");
+  keys.insert(keys.end(), {"c", "d", "c"});
+  pressKeys(strip, keys);
+  EXPECT_EQ(compiled(), before);
+}
+
 }  // namespace
 }  // namespace fettle::tests
