@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "app/window/plane_map.h"
@@ -66,7 +67,7 @@ void WindowPicture::clear() {
   // What took long was another field or another device.
   moving_ = FrameBudget();
   strokes_ = FrameBudget(FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms);
-  whole_ = FrameBudget::ofWhole();
+  whole_alone_ = whole_beside_ = FrameBudget::ofWhole();
   sharp_later_ = {};
   results_came_ = results_wait_ = false;
   measured_ = Measured::kNothing;
@@ -103,6 +104,12 @@ void WindowPicture::smoothAtRest(bool wanted) noexcept {
   smooth_at_rest_ = wanted;
 }
 
+void WindowPicture::computes(bool previews) noexcept {
+  // Bands before and after say nothing together.
+  if (previews != computes_ && figures_.bands_left > 0) bands_ms_ = std::numeric_limits<double>::infinity();
+  computes_ = previews;
+}
+
 render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) {
   const bool pending = motion_.sharpPending();
   const render::Sharpness sharpness = motion_.see(view, held, CameraMotion::Clock::now());
@@ -114,8 +121,9 @@ render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) 
 void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kMoving || measured_ == Measured::kWholeWithLess) moving_.note(ms);
   if (measured_ == Measured::kStroke) strokes_.note(ms);
-  if (measured_ == (whole_.less() ? Measured::kWholeWithLess : Measured::kWhole)) whole_.note(ms);
-  if (!whole_.known()) tellOfWhole(ms);
+  if (measured_ == (wholeFrames().less() ? Measured::kWholeWithLess : Measured::kWhole))
+    wholeFrames().note(ms);
+  if (!wholeFrames().known()) tellOfWhole(ms);
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
     results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -127,14 +135,14 @@ void WindowPicture::tellOfWhole(double ms) noexcept {
   if (!drew_ || drawn_sharpness_ != render::Sharpness::kFull) return;
   if (figures_.band) {
     bands_ms_ += ms;
-    if (figures_.bands_left == 0) whole_.tell(0.0, std::exchange(bands_ms_, 0.0));
+    if (figures_.bands_left == 0) wholeFrames().tell(0.0, std::exchange(bands_ms_, 0.0));
     return;
   }
   // An edit between two bands leaves as many of them to be drawn.
   if (figures_.bands_left == 0) bands_ms_ = 0.0;
   if (figures_.redrawn < kTellsOfWhole) return;
   // What was uploaded took a part of it.
-  whole_.tell(figures_.upload.tiles == 0 ? ms : 0.0, ms / figures_.redrawn);
+  wholeFrames().tell(figures_.upload.tiles == 0 ? ms : 0.0, ms / figures_.redrawn);
 }
 
 bool WindowPicture::takeDue(Draws draws) {
@@ -177,7 +185,7 @@ bool WindowPicture::samplesCome() const noexcept {
 
 // Whether the next frame has half the resolution since whole frames take long; `changes_whole`: it is one.
 bool WindowPicture::drawsLess(bool changes_whole, Refinement::Clock::time_point now) const noexcept {
-  if (!adapts_ || !may_be_half_ || !whole_.less()) return false;
+  if (!adapts_ || !may_be_half_ || !wholeFrames().less()) return false;
   // The frame after one of half the resolution is whole, too.
   return changes_whole || (sharp_later_.pending() && (!sharp_later_.due(now) || samplesCome()));
 }
@@ -226,8 +234,8 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   drawn_sharpness_ = input.sharpness;
   // Frames that refine a picture at rest take long on purpose.
-  const bool whole = sharp_wanted && !rests && !figures_.band && !whole_.less() && figures_.redrawn == 1.0 &&
-                     figures_.upload.tiles == 0;
+  const bool whole = sharp_wanted && !rests && !figures_.band && !wholeFrames().less() &&
+                     figures_.redrawn == 1.0 && figures_.upload.tiles == 0;
   const bool with_less =
       input.sharpness == render::Sharpness::kHalf || input.sharpness == render::Sharpness::kQuarter;
   drew_ = true;

@@ -71,7 +71,7 @@ class WindowPicture {
   }
   /// Whether a preview is being computed. Frames that show nothing else than more of it leave as much time as they take: they slow
   /// down what they wait for, and a key waits for the one that is being drawn.
-  void computes(bool previews) noexcept { computes_ = previews; }
+  void computes(bool previews) noexcept;
   /// How long nothing has to be drawn although active() [s].
   [[nodiscard]] double restsFor_s() const noexcept {
     const bool only_results = !needs_redraw_ && !motion_.sharpPending() && figures_.bands_left == 0 &&
@@ -178,7 +178,12 @@ class WindowPicture {
   std::optional<render::FrameInput> look_;  // of the last frame, without overlays
   bool adapts_ = true, may_be_half_ = true;
   FrameBudget moving_, strokes_{FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms},
-      whole_ = FrameBudget::ofWhole();
+      whole_alone_ = FrameBudget::ofWhole(), whole_beside_ = FrameBudget::ofWhole();
+  // Of frames that change as a whole: a preview that is computed takes its share, and the first key beside it must not find that out.
+  [[nodiscard]] FrameBudget& wholeFrames() noexcept { return computes_ ? whole_beside_ : whole_alone_; }
+  [[nodiscard]] const FrameBudget& wholeFrames() const noexcept {
+    return computes_ ? whole_beside_ : whole_alone_;
+  }
   SharpLater sharp_later_;
   bool results_came_ = false;  // of a preview, for the next frame
   // What the frame that is being shown is measured for.
