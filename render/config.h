@@ -58,6 +58,8 @@ inline constexpr int kRestBands = 24;
 inline constexpr int kDetailBands = 32;
 /// The same, of the first sharp picture after one with fewer pixels: with the usual vertices it takes 35 to 60 ms at once.
 inline constexpr int kSharpBands = 8;
+/// Of any bands, where a single one takes half of the vertices: so many frames.
+inline constexpr int kRoundsOfSteep = 4;
 /// Screen error of a frame and of a picture that is drawn once [px].
 inline constexpr double kFrameErrorPx = 1.0, kStillErrorPx = 0.25;
 /// How far seams overlap the patches that they join [rays]: as much as rounding may separate them.

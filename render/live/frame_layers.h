@@ -29,7 +29,7 @@ class FrameLayers {
 
   /// Makes what a frame of this sharpness needs, kRest excepted. Waits for frames in flight when something is made.
   void prepare(Submissions& submissions, vk::Extent2D picture, Sharpness sharpness);
-  /// The same for frames of kRest.
+  /// The same for frames of kRest, after one of kFull of this picture was prepared.
   void prepareRest(Submissions& submissions, vk::Extent2D picture);
 
   /// With every pixel; other surfaces are resized into its base.

@@ -332,12 +332,14 @@ void LivePicture::Impl::recordRest(const FrameInput& input, const PicturePlan& p
   does.first = does.draws && rest->bands == 0;
   std::vector<PatchChoice> parts;
   if (does.draws) {
-    // Bands begin on even rows, so that no square of two by two fragments belongs to two of them.
-    const auto row = [&](int band) {
-      return band == kRestBands ? input.view.height : input.view.height * band / kRestBands & ~1;
-    };
-    parts = cutToRows(row(rest->bands), row(rest->bands + 1), chosen.queries(), panels);
-    ++rest->bands;
+    CutBands drawn = cutToBands({.first = 0,
+                                 .end = input.view.height,
+                                 .all = kRestBands,
+                                 .next = rest->bands,
+                                 .left = kRestBands - rest->bands},
+                                chosen.queries(), panels);
+    parts = std::move(drawn.parts);
+    rest->bands += drawn.bands;
     does.last = rest->bands == kRestBands;
   }
   does.shows = rest->bands == kRestBands;

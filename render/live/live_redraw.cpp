@@ -115,17 +115,44 @@ std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame&
   return parts;
 }
 
+namespace {
+
 std::vector<PatchChoice> cutToRows(int first, int last, std::span<const PatchQuery> queries,
                                    std::vector<LivePanel>& panels) {
   std::vector<PatchChoice> parts(panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) {
     LivePanel& panel = panels[i];
     panel.redraw = cut(panel.visible, {panel.visible.x, first, panel.visible.width, last - first});
-    if (empty(panel.redraw)) continue;
-    parts[i] = within(*panel.choice, queries[i], panel.redraw);
-    panel.choice = &parts[i];
+    if (!empty(panel.redraw)) parts[i] = within(*panel.choice, queries[i], panel.redraw);
   }
   return parts;
+}
+
+template <typename Choices>
+std::int64_t verticesOf(const Choices& choices, const auto& choice) {
+  std::int64_t all = 0;
+  for (const auto& each : choices) all += choice(each).vertices();
+  return all;
+}
+
+}  // namespace
+
+CutBands cutToBands(const Bands& bands, std::span<const PatchQuery> queries, std::vector<LivePanel>& panels) {
+  CutBands next;
+  const auto take = [&](int count) {
+    next.bands = count;
+    next.parts = cutToRows(bands.row(bands.next), bands.row(bands.next + count), queries, panels);
+  };
+  take(1);
+  const std::int64_t all = verticesOf(panels,
+                                      [](const LivePanel&p) -> const PatchChoice& { return *p.choice; }),
+                     taken =
+                         verticesOf(next.parts, [](const PatchChoice&c) -> const PatchChoice& { return c; });
+  const int most = std::min({bands.left, bands.all - bands.next, bands.all / kRoundsOfSteep});
+  if (most > 1 && taken > kFrameVertices && 2 * taken > all) take(most);
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    if (!empty(panels[i].redraw)) panels[i].choice = &next.parts[i];
+  return next;
 }
 
 }  // namespace fettle::render

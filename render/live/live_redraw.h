@@ -58,9 +58,24 @@ enum class Pages { kThere, kWaitedFor };
                                                    std::span<const PatchQuery> queries, Pages pages,
                                                    std::vector<LivePanel>& panels);
 
-/// Sets LivePanel::redraw to the rows [first, last) of each panel's part of the picture, and clips the panels' choices to them, as
-/// cutToDamage.
-[[nodiscard]] std::vector<PatchChoice> cutToRows(int first, int last, std::span<const PatchQuery> queries,
-                                                 std::vector<LivePanel>& panels);
+/// Rows of the picture in bands, drawn a frame each.
+struct Bands {
+  int first = 0, end = 0;  ///< rows of all of them; `first` is even
+  int all = 1;
+  int next = 0, left = all;  ///< 0 <= next < all, 1 <= left
+  /// Where a band begins: on an even row, so that no square of two by two fragments belongs to two of them.
+  [[nodiscard]] int row(int band) const noexcept {
+    return band == all ? end : (first + (end - first) * band / all) & ~1;
+  }
+};
+struct CutBands {
+  std::vector<PatchChoice> parts;
+  int bands = 1;  ///< so many are drawn: `next` and those after it
+};
+/// Sets LivePanel::redraw to the rows of the next band of each panel's part of the picture, and clips the panels' choices to it, as
+/// cutToDamage. Where a surface is so steep that one band takes half of all its vertices, and those are many, a frame of one band takes
+/// as long as one of several: then kRoundsOfSteep frames draw all bands.
+[[nodiscard]] CutBands cutToBands(const Bands& bands, std::span<const PatchQuery> queries,
+                                  std::vector<LivePanel>& panels);
 
 }  // namespace fettle::render

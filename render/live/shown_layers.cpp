@@ -71,27 +71,24 @@ ShownLayers::Reused ShownLayers::reuse(FrameInput::Redraw redraw, const DrawnFra
   return reused;
 }
 
-// Bands begin on even rows, so that no square of two by two fragments belongs to two of them.
 std::vector<PatchChoice> ShownLayers::nextBand(BandedFrame& next, LivePanels& chosen) {
   std::vector<LivePanel>& panels = chosen.panels();
-  int first = INT_MAX, end = 0;
+  Bands bands{.first = INT_MAX, .end = 0, .all = next.all, .next = next.next, .left = next.left};
   for (std::size_t i = 0; i < panels.size(); ++i) {
     if (!next.differs[i]) continue;
-    first = std::min(first, panels[i].visible.y & ~1);
-    end = std::max(end, panels[i].visible.y + panels[i].visible.height);
+    bands.first = std::min(bands.first, panels[i].visible.y & ~1);
+    bands.end = std::max(bands.end, panels[i].visible.y + panels[i].visible.height);
   }
-  const auto row = [&](int band) {
-    return band == next.all ? end : (first + (end - first) * band / next.all) & ~1;
-  };
-  const int behind = row(next.next + 1);
-  std::vector<PatchChoice> parts = cutToRows(row(next.next), behind, chosen.queries(), panels);
+  CutBands drawn = cutToBands(bands, chosen.queries(), panels);
   for (std::size_t i = 0; i < panels.size(); ++i)
     if (!next.differs[i]) panels[i].redraw = {};
+  const int behind = bands.row(next.next + drawn.bands);
   // The first round goes from the top to the bottom.
-  if (next.depth_end < INT_MAX) next.depth_end = behind == end ? INT_MAX : std::max(next.depth_end, behind);
-  next.next = (next.next + 1) % next.all;
-  --next.left;
-  return parts;
+  if (next.depth_end < INT_MAX)
+    next.depth_end = behind == bands.end ? INT_MAX : std::max(next.depth_end, behind);
+  next.next = (next.next + drawn.bands) % next.all;
+  next.left -= drawn.bands;
+  return std::move(drawn.parts);
 }
 
 void ShownLayers::submitted(Reused reused, DrawnFrame current, Holds holds) {

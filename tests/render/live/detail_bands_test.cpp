@@ -1,4 +1,6 @@
 // A picture that becomes finer band by band.
+#include <cmath>
+
 #include "engine/field/live_field.h"
 #include "tests/render/support/live_frames.h"
 
@@ -48,6 +50,26 @@ TEST(DetailBands, EndWithTheBitsOfTheFinePicture) {
     }
     EXPECT_EQ(shoot(*picture, with(input, kFine)).stats.redrawn, 0.0);
     EXPECT_EQ(shoot(*picture, with(input, kFine, FrameInput::Redraw::kChanged)).stats.redrawn, 0.0);
+  }
+}
+
+// Where each patch of a steep surface reaches from the top of the picture to its bottom, each band would take all of them.
+TEST(DetailBands, OfASteepSurfaceTakeFourFrames) {
+  const engine::Version needles = fieldOf(
+      gridOf(512, 512, 0.1, 0.1), [](int c, int r) { return 6.0 * std::fabs(std::sin(1e3 * c * r)); });
+  FrameInput input = bare();
+  input.view.vertical_exaggeration = 40.0;
+  input.view.zoom = 4.0;
+  const Shot fine = wholeOf(needles, with(input, kFine));
+  ASSERT_GT(fine.stats.vertices, kFrameVertices);
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(needles));
+  (void)drawComplete(*picture, with(input, kCoarse, FrameInput::Redraw::kChanged));
+  for (int left = kRoundsOfSteep - 1; left >= 0; --left) {
+    const Shot shot = shoot(*picture, with(input, kFine));
+    EXPECT_EQ(shot.stats.bands_left, left * kDetailBands / kRoundsOfSteep);
+    EXPECT_LT(shot.stats.redrawn, 1.3 / kRoundsOfSteep);
+    EXPECT_EQ(differing(shot.image, fine.image) == 0, left == 0) << left;
   }
 }
 
