@@ -17,8 +17,9 @@ constexpr int kSide_px = 78;
 constexpr std::int64_t kDeviceBytes = std::int64_t{128} << 20;
 // Longer than what is compiled already can take: a hand would wait.
 constexpr double kMostOfHand_ms = 250.0;
-// So near that cells of a field with the longest sides are larger than a pixel, and so far that the shortest's are smaller.
-constexpr double kNear = 512.0, kFar = 64.0;
+// Times of what shows all of a field: so near that the cells of the longest one are larger than a pixel and a half, from where on they are
+// drawn in another way, and so far that those of all but the shortest are smaller.
+constexpr double kNear = 1024.0, kFar = 64.0;
 
 // The middle of the picture, in its own pixels: what cells are smaller than a pixel there are so here.
 void takeMiddle(render::FrameInput& input) {
@@ -68,7 +69,8 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
   add(pen);
   for (const bool other_projection : {false, true})
     for (const bool deviation : {false, true})
-      for (const double nearer : {1.0, kNear, 1.0 / kFar})
+      for (const double zoom :
+           {look.view.zoom, std::max(look.view.zoom, 1.0) * kNear, std::min(look.view.zoom, 1.0) / kFar})
         for (const bool contours : {false, true}) {
           Scene scene = now;
           if (other_projection)
@@ -76,7 +78,7 @@ std::vector<PictureRehearsal::Scene> PictureRehearsal::scenesOf(const render::Sh
                                               ? render::Projection::kOrthographic
                                               : render::Projection::kPerspective;
           scene.deviation = deviation;
-          scene.input.view.zoom *= nearer;
+          scene.input.view.zoom = zoom;
           if (contours) scene.input.contours = render::Contours::kShow;
           add(std::move(scene));
         }

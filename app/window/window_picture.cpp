@@ -68,6 +68,7 @@ void WindowPicture::clear() {
   moving_ = FrameBudget();
   strokes_ = FrameBudget(FrameBudget::kSlowStroke_ms, FrameBudget::kQuickStroke_ms);
   whole_alone_ = whole_beside_ = FrameBudget::ofWhole();
+  bands_ms_ = 0.0;
   sharp_later_ = {};
   results_came_ = results_wait_ = false;
   measured_ = Measured::kNothing;
@@ -123,7 +124,7 @@ void WindowPicture::noteFrame(double ms) noexcept {
   if (measured_ == Measured::kStroke) strokes_.note(ms);
   if (measured_ == (wholeFrames().less() ? Measured::kWholeWithLess : Measured::kWhole))
     wholeFrames().note(ms);
-  if (!wholeFrames().known()) tellOfWhole(ms);
+  tellOfWhole(ms);
   measured_ = Measured::kNothing;
   if (std::exchange(drew_, false))
     results_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -132,7 +133,11 @@ void WindowPicture::noteFrame(double ms) noexcept {
 
 // What the last frame says about one of all of the picture with every pixel.
 void WindowPicture::tellOfWhole(double ms) noexcept {
-  if (!drew_ || drawn_sharpness_ != render::Sharpness::kFull) return;
+  if (!drew_) return;
+  if (drawn_sharpness_ != render::Sharpness::kFull) {
+    bands_ms_ = 0.0;  // those before are not to be seen any more
+    return;
+  }
   if (figures_.band) {
     bands_ms_ += ms;
     if (figures_.bands_left == 0) wholeFrames().tell(0.0, std::exchange(bands_ms_, 0.0));

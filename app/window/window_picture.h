@@ -70,7 +70,8 @@ class WindowPicture {
            figures_.bands_left > 0;
   }
   /// Whether a preview is being computed. Frames that show nothing else than more of it leave as much time as they take: they slow
-  /// down what they wait for, and a key waits for the one that is being drawn.
+  /// down what they wait for, and a key waits for the one that is being drawn. Whole frames meanwhile have a FrameBudget of their own: to
+  /// be said once results are taken, and the same until noteFrame().
   void computes(bool previews) noexcept;
   /// How long nothing has to be drawn although active() [s].
   [[nodiscard]] double restsFor_s() const noexcept {

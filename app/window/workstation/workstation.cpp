@@ -136,7 +136,6 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 
 void Workstation::runFrame() {
   WindowPicture& picture = parts_.picture;
-  picture.computes(parts_.filters.computing());
   const bool rehearses = picture.rehearsing() && !window_->minimised();
   window_->poll(actsNow(parts_, input_)        ? 0.0
                 : picture.active()             ? std::min(picture.restsFor_s(), kBusy_s)
@@ -153,6 +152,7 @@ void Workstation::runFrame() {
   }
   releaseHandsWhenAsked();
   takeResults();
+  picture.computes(parts_.filters.computing());
   parts_.showMarksMade();
   headset_.follow(parts_, options_.drawing, documents_);
   window_->setSeenElsewhere(headset_.on());

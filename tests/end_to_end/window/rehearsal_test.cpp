@@ -38,9 +38,12 @@ class RehearsalTest : public WindowTest {
   void pressKeys(const std::string& path, const std::vector<std::string>& keys) {
     const auto program = start({path}, environment());
     User user(display, *program, "rehearsal");
-    (void)opened(*program);
+    const State picture = opened(*program)["picture"];
+    user.at({static_cast<int>(picture[0]) + static_cast<int>(picture[2]) / 2,
+             static_cast<int>(picture[1]) + static_cast<int>(picture[3]) / 2});
     for (const std::string& key : keys) {
-      (void)user.key(key);
+      // Over the middle of the picture.
+      (void)(key == "wheel" ? user.wheel(40) : user.key(key));
       if (key == "p")
         (void)program->until("all of the preview", [](const State& s) { return s["filtering"] == false; });
     }
@@ -83,17 +86,15 @@ TEST_F(RehearsalTest, a_large_field_is_rehearsed_as_it_is_drawn) {
   EXPECT_EQ(compiled(), before);
 }
 
-// Its cells are smaller than a pixel also where those of other fields are not any more.
+// Its cells are smaller than a pixel also where those of other fields are not any more; seen from near, a preview has larger ones, too.
 TEST_F(RehearsalTest, a_long_field_is_rehearsed_from_near) {
   const std::string strip = folder.file("long.tif");
-  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", strip, "--size", "40000x128", "--seed", "5"});
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", strip, "--size", "60000x96", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
   pressKeys(scan, {});
   showUntilRehearsed(strip);
   const std::ptrdiff_t before = compiled();
-  std::vector<std::string> keys(28, "Page_Up");
-  keys.insert(keys.end(), {"c", "d", "c"});
-  pressKeys(strip, keys);
+  pressKeys(strip, {"7", "wheel", "c", "d", "c", "d", "p", "c"});
   EXPECT_EQ(compiled(), before);
 }
 
