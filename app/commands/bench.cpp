@@ -189,7 +189,7 @@ void printLoop(const Report& report) {
   fmt::print("\nhaptic loop over {}: p99 {}, p99.9 {}; target 1.20\n", report["reference"].get<std::string>(),
              ratio("p99_ratio"), ratio("p999_ratio"));
   if (!report["p99_ratio_low"].is_null())
-    fmt::print("in brackets: the 95 %% confidence interval (block bootstrap)\n");
+    fmt::print("in brackets: the 95 % confidence interval (block bootstrap)\n");
 }
 
 engine::Result<Report> stability(const bench::StiffnessSweepOptions& options, engine::JobControl& job) {
