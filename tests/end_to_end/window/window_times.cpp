@@ -1,7 +1,7 @@
-// window_times [--everything | --least] SCAN...: how fast the window follows a hand, printed as a table: frames while the view
+// window_times [--everything | --least] [--adapts] SCAN...: how fast the window follows a hand, printed as a table: frames while the view
 // turns, edits while a brush works, keys while nothing happens, while the view turns, while a filter is computed. Each
 // scan with everything shown and (without --everything) with as little as possible, alone and beside two processes that spin at normal
-// priority, with drawing that adapts to the time it takes and with the fixed one (fettle view --steady), all in one
+// priority, with drawing that adapts to the time it takes and (without --adapts) with the fixed one (fettle view --steady), all in one
 // run. The 1 kHz loop runs in all of it. Before that a row of what a program that draws nothing takes to follow a hand, alone and beside
 // the two. scripts/bench-window builds and starts it.
 //
@@ -299,7 +299,8 @@ void printLeast(const Display& display) {
   }
 }
 
-int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds) {
+int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds,
+        const std::vector<Drawing>& drawings) {
   const TempFolder folder;
   const Display display(kWidth, kHeight, folder.path());
   if (!display.works()) {
@@ -316,7 +317,7 @@ int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds) 
   for (const std::string& scan : scans)
     for (const Shown shown : kinds)
       for (const Beside beside : {Beside::kNothing, Beside::kSpinning})
-        for (const Drawing drawing : {Drawing::kAdapts, Drawing::kSteady}) {
+        for (const Drawing drawing : drawings) {
           const TempFolder home;  // without the work of the run before
           for (const char* kind : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"})
             setenv(kind, home.path().c_str(), 1);
@@ -331,6 +332,7 @@ int run(const std::vector<std::string>& scans, const std::vector<Shown>& kinds) 
 }  // namespace fettle::tests
 
 int main(int argc, char** argv) {
+  using fettle::tests::Drawing;
   using fettle::tests::Shown;
   std::vector<std::string> scans(argv + 1, argv + argc);
   std::vector<Shown> kinds{Shown::kAll};
@@ -338,12 +340,14 @@ int main(int argc, char** argv) {
     kinds = {Shown::kLittle};
   else if (std::erase(scans, "--everything") == 0)
     kinds.push_back(Shown::kLittle);
+  std::vector<Drawing> drawings{Drawing::kAdapts};
+  if (std::erase(scans, "--adapts") == 0) drawings.push_back(Drawing::kSteady);
   if (scans.empty()) {
-    fmt::print(stderr, "window_times [--everything | --least] SCAN...\n");
+    fmt::print(stderr, "window_times [--everything | --least] [--adapts] SCAN...\n");
     return 2;
   }
   try {
-    return fettle::tests::run(scans, kinds);
+    return fettle::tests::run(scans, kinds, drawings);
   } catch (const std::exception& error) {
     fmt::print(stderr, "window_times: {}\n", error.what());
     return 1;
