@@ -8,7 +8,7 @@ namespace fettle::app {
 /// Whether frames of one kind are drawn with less, decided by the time that the last ones took. The mean of them counts, the newest
 /// ones most, and a single one that is longer by far - a pipeline that was compiled - changes nothing.
 ///
-///   all --- mean above slow_ms, `few` frames at least, the last ones above it (two; one of one) --> less
+///   all --- mean above slow_ms, `few` frames at least, the last two above it; of one: that one above it --> less
 ///    ^--- mean below quick_ms, calm() frames in a row ---'
 ///
 /// Where it is assumed that frames are slow, they are drawn with less at first, until
@@ -33,7 +33,8 @@ class FrameBudget {
   static constexpr int kFew = 3, kCalm = 20, kMostCalm = 320, kSoon = 60;
   /// So many times slow_ms is longer by far.
   static constexpr double kFar = 3.0;
-  /// The first of them decides: what is drawn with less is sharp a quarter of a second later, and no frame of that takes long.
+  /// One of them decides, whatever those before took: what is drawn with less is sharp a quarter of a second later, and no frame of that
+  /// takes long.
   static constexpr int kFewWhole = 1;
 
   /// Before the first frame. kSlow: a key must not wait for a frame of which nobody knows how long it takes; a few quick ones show
@@ -88,7 +89,7 @@ class FrameBudget {
   void noteAll() noexcept {
     if (frames_ >= kSoon) calm_ = kCalm;
     const int needed = last_ms_ > kFar * slow_ms_ ? 2 : std::min(few_, 2);
-    if (frames_ < few_ || slow_ < needed || mean_ms_ <= slow_ms_) return;
+    if (frames_ < few_ || slow_ < needed || (few_ > 1 && mean_ms_ <= slow_ms_)) return;
     if (returned_ && frames_ < kSoon) calm_ = std::min(2 * calm_, kMostCalm);
     change(true);
   }

@@ -48,7 +48,10 @@ TEST(FrameBudget, HasItsOwnLimitsForWholeFrames) {
   EXPECT_EQ(framesUntilChange(compiled, 20.0), 0);
   FrameBudget slow = fresh;
   EXPECT_EQ(framesUntilChange(slow, 3.1 * FrameBudget::kSlowWhole_ms), 2);
-  // The first one decides.
+  // One that is slow decides, also among quick ones.
+  FrameBudget among = fresh;
+  for (int i = 0; i < 10; ++i) among.note(15.0);
+  EXPECT_EQ(framesUntilChange(among, 40.0), 1);
   whole = fresh;
   EXPECT_EQ(framesUntilChange(whole, 80.0), 1);
   EXPECT_TRUE(whole.less());
