@@ -128,13 +128,6 @@ std::vector<PatchChoice> cutToRows(int first, int last, std::span<const PatchQue
   return parts;
 }
 
-template <typename Choices>
-std::int64_t verticesOf(const Choices& choices, const auto& choice) {
-  std::int64_t all = 0;
-  for (const auto& each : choices) all += choice(each).vertices();
-  return all;
-}
-
 }  // namespace
 
 CutBands cutToBands(const Bands& bands, std::span<const PatchQuery> queries, std::vector<LivePanel>& panels) {
@@ -144,10 +137,11 @@ CutBands cutToBands(const Bands& bands, std::span<const PatchQuery> queries, std
     next.parts = cutToRows(bands.row(bands.next), bands.row(bands.next + count), queries, panels);
   };
   take(1);
-  const std::int64_t all = verticesOf(panels,
-                                      [](const LivePanel&p) -> const PatchChoice& { return *p.choice; }),
-                     taken =
-                         verticesOf(next.parts, [](const PatchChoice&c) -> const PatchChoice& { return c; });
+  std::int64_t all = 0, taken = 0;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    all += panels[i].choice->vertices();
+    taken += next.parts[i].vertices();
+  }
   const int most = std::min({bands.left, bands.all - bands.next, bands.all / kRoundsOfSteep});
   if (most > 1 && taken > kFrameVertices && 2 * taken > all) take(most);
   for (std::size_t i = 0; i < panels.size(); ++i)
