@@ -17,12 +17,9 @@ namespace {
 
 }  // namespace
 
-SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows, float magnitude,
-                     std::int64_t count) noexcept {
+SumLanes cutsFor(float magnitude, std::int64_t count) noexcept {
   assert(count >= 1 && count <= (std::int64_t{1} << 20));
   SumLanes result;
-  if (magnitude == 0.0F) return result;
-
   // All magnitudes are below 2^top, sums and differences of two sums below 2^(top + bits).
   int top = 0;
   std::ignore = std::frexp(magnitude, &top);
@@ -34,13 +31,22 @@ SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, i
     // from 2^128 to below 2^-149.
     top += bits - 54;
   }
-  const auto count_misfits = FETTLE_AT_LEVEL(bestCpuLevel(), misfits);
+  return result;
+}
+
+bool lanesHold(const SumLanes& cuts, int lanes, const float* samples, int n) noexcept {
+  return FETTLE_AT_LEVEL(bestCpuLevel(), misfits)(samples, n, cuts.cut[0], cuts.cut[1], lanes) == 0;
+}
+
+SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows, float magnitude,
+                     std::int64_t count) noexcept {
+  if (magnitude == 0.0F) return {};
+  SumLanes result = cutsFor(magnitude, count);
   for (const int lanes : {1, 2}) {
     result.lanes = lanes;
-    int wrong = 0;
-    for (int r = 0; r < rows && wrong == 0; ++r)
-      wrong = count_misfits(heights + r * stride, columns, result.cut[0], result.cut[1], lanes);
-    if (wrong == 0) return result;
+    int r = 0;
+    while (r < rows && lanesHold(result, lanes, heights + r * stride, columns)) ++r;
+    if (r == rows) return result;
   }
   result.lanes = SumLanes::kMaxLanes;
   return result;

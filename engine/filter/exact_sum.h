@@ -24,6 +24,13 @@ struct SumLanes {
   double cut[kMaxLanes] = {};
 };
 
+/// How samples of no magnitude above `magnitude` are cut so that sums of up to `count` (1 .. 2^20) of them, and the difference of
+/// two such sums, are exact in each lane but the last one; `lanes` is 1.
+[[nodiscard]] SumLanes cutsFor(float magnitude, std::int64_t count) noexcept;
+
+/// Whether the last of 1 or 2 lanes holds all that the ones above leave of these samples; NaN is left out.
+[[nodiscard]] bool lanesHold(const SumLanes& cuts, int lanes, const float* samples, int n) noexcept;
+
 /// The lanes in which sums of up to `count` (1 .. 2^20) of the given samples, and the difference of two such
 /// sums, are exact. rows x columns, row-major, stride in elements; NaN is left out, no infinity; no magnitude
 /// is above `magnitude`. `lanes` comes out as 1, 2 or kMaxLanes.

@@ -4,26 +4,26 @@
 
 // A hole as a sample of 0 and weight 0.
 template <bool kHoles>
-FETTLE_INLINE void take(const float* from, Doubles& value, Doubles& there) noexcept {
-  value = widened(load<HalfFloats>(from));
+FETTLE_INLINE void take(const float* from, Pack& value, Pack& there) noexcept {
+  value = widened(load<PackFloats>(from));
   if constexpr (kHoles) {
-    there = value == value ? Doubles{} + 1.0 : Doubles{};
-    value = value == value ? value : Doubles{};
+    there = value == value ? Pack{} + 1.0 : Pack{};
+    value = value == value ? value : Pack{};
   }
 }
 
-// Four rows of outputs, rows[i] for i in 0 .. 3 + 2 kRadius, n columns rounded up to 8.
+// Four rows of outputs, rows[i] for i in 0 .. 3 + 2 kRadius, n columns rounded up to kPack.
 template <int kRadius, bool kHoles>
 FETTLE_INLINE void downSmall(const GaussianGroup& g) noexcept {
   constexpr int kRows = 4;
-  Doubles w[kRadius + 1];
-  for (int k = 0; k <= kRadius; ++k) w[k] = spread(g.weights[k]);
-  for (int c = 0; c < g.columns; c += 8) {
-    Doubles sum[kRows] = {};
-    Doubles sum_there[kRows] = {};
+  Pack w[kRadius + 1];
+  for (int k = 0; k <= kRadius; ++k) w[k] = every(g.weights[k]);
+  for (int c = 0; c < g.columns; c += kPack) {
+    Pack sum[kRows] = {};
+    Pack sum_there[kRows] = {};
 #pragma GCC unroll 16
     for (int i = 0; i < kRows + 2 * kRadius; ++i) {
-      Doubles x, t;
+      Pack x, t;
       take<kHoles>(g.rows[i] + c, x, t);
 #pragma GCC unroll 4
       for (int j = 0; j < kRows; ++j) {
@@ -41,26 +41,26 @@ FETTLE_INLINE void downSmall(const GaussianGroup& g) noexcept {
 }
 
 template <int kRadius>
-FETTLE_INLINE Doubles alongSmall(const double* from, const Doubles* w) noexcept {
-  Doubles sum = {};
+FETTLE_INLINE Pack alongSmall(const double* from, const Pack* w) noexcept {
+  Pack sum = {};
 #pragma GCC unroll 16
   for (int i = 0; i <= 2 * kRadius; ++i)
-    sum = fused(w[i < kRadius ? kRadius - i : i - kRadius], load<Doubles>(from + i), sum);
+    sum = fused(w[i < kRadius ? kRadius - i : i - kRadius], load<Pack>(from + i), sum);
   return sum;
 }
 
 template <int kRadius, bool kHoles>
 FETTLE_INLINE void finishSmall(const GaussianGroup& g) noexcept {
   constexpr int kRows = 4;
-  Doubles w[kRadius + 1];
-  for (int k = 0; k <= kRadius; ++k) w[k] = spread(g.weights[k]);
-  for (int c = 0; c < g.out_columns; c += 8) {
-    Doubles inverse;
-    if constexpr (!kHoles) inverse = load<Doubles>(g.inverse + c);
+  Pack w[kRadius + 1];
+  for (int k = 0; k <= kRadius; ++k) w[k] = every(g.weights[k]);
+  for (int c = 0; c < g.out_columns; c += kPack) {
+    Pack inverse;
+    if constexpr (!kHoles) inverse = load<Pack>(g.inverse + c);
 #pragma GCC unroll 4
     for (int j = 0; j < kRows; ++j) {
       if constexpr (kHoles) inverse = 1.0 / alongSmall<kRadius>(g.there + j * g.stride + c, w);
-      const Doubles sum = alongSmall<kRadius>(g.value + j * g.stride + c, w);
+      const Pack sum = alongSmall<kRadius>(g.value + j * g.stride + c, w);
       store(g.out[j] + c, narrowed(sum * inverse));
     }
   }
@@ -82,36 +82,37 @@ void smallFinish(const GaussianGroup& g, bool holes) noexcept {
     finishSmall<kRadius, false>(g);
 }
 
-// How many outputs, and vectors of each, are summed at once: what the registers hold with samples and a
+// How many outputs, and registers of each, are summed at once: what the registers hold with samples and a
 // weight. With 8 x 2 sums a sample is fetched for eight products and a weight for two, so that fetching keeps
 // up with multiplying.
 constexpr int kOutputs = FETTLE_LEVEL == 2 ? 8 : 4;
-constexpr int kVectors = FETTLE_LEVEL == 2 ? 2 : 1;
+constexpr int kPacks = 2;
+constexpr int kAcross = kSide / kPack;  // registers that the columns or rows side by side take
 
 // sum[j] += weights[-j] * x for the outputs j in [from, to), constants after unrolling.
 FETTLE_INLINE void reach(const double* weights, int from, int to, const double* sample,
-                         Doubles (*sum)[kVectors]) noexcept {
-  Doubles x[kVectors];
+                         Pack (*sum)[kPacks]) noexcept {
+  Pack x[kPacks];
 #pragma GCC unroll 2
-  for (int h = 0; h < kVectors; ++h) x[h] = load<Doubles>(sample + 8 * h);
+  for (int h = 0; h < kPacks; ++h) x[h] = load<Pack>(sample + kPack * h);
 #pragma GCC unroll 8
   for (int j = 0; j < kOutputs; ++j) {
     if (j < from || j >= to) continue;
-    const Doubles w = spread(weights[-j]);
+    const Pack w = every(weights[-j]);
 #pragma GCC unroll 2
-    for (int h = 0; h < kVectors; ++h) sum[j][h] = fused(w, x[h], sum[j][h]);
+    for (int h = 0; h < kPacks; ++h) sum[j][h] = fused(w, x[h], sum[j][h]);
   }
 }
 
 // Windows of `taps` >= 8 samples that begin at eight neighbouring samples; a sample is kSide doubles.
 FETTLE_INLINE void windows(const double* weights, int taps, const double* samples,
-                           Doubles (*all)[2]) noexcept {
+                           Pack (*all)[kAcross]) noexcept {
 #pragma GCC unroll 2
   for (int first = 0; first < 8; first += kOutputs)
-#pragma GCC unroll 2
-    for (int half = 0; half < 2; half += kVectors) {
-      Doubles sum[kOutputs][kVectors] = {};
-      const double* sample = samples + first * kSide + half * 8;
+#pragma GCC unroll 4
+    for (int part = 0; part < kAcross; part += kPacks) {
+      Pack sum[kOutputs][kPacks] = {};
+      const double* sample = samples + first * kSide + part * kPack;
       const double* weight = weights;
 #pragma GCC unroll 8
       for (int i = 0; i < kOutputs - 1; ++i, ++weight, sample += kSide) reach(weight, 0, i + 1, sample, sum);
@@ -126,23 +127,33 @@ FETTLE_INLINE void windows(const double* weights, int taps, const double* sample
 #pragma GCC unroll 8
       for (int j = 0; j < kOutputs; ++j)
 #pragma GCC unroll 2
-        for (int h = 0; h < kVectors; ++h) all[first + j][half + h] = sum[j][h];
+        for (int h = 0; h < kPacks; ++h) all[first + j][part + h] = sum[j][h];
     }
 }
 
-// Eight vectors of eight: element j of vector i to element i of vector j.
+// As many vectors as each has elements: element j of vector i to element i of vector j.
 template <class Vector>
 FETTLE_INLINE void transpose(Vector* v) noexcept {
+  constexpr int kHalf = kPack / 2;
+  constexpr int kStages = kPack == 8 ? 3 : kPack == 4 ? 2 : 1;
 #pragma GCC unroll 3
-  for (int stage = 0; stage < 3; ++stage) {
-    Vector t[8];
+  for (int stage = 0; stage < kStages; ++stage) {
+    Vector t[kPack];
 #pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) {
-      t[2 * i] = __builtin_shufflevector(v[i], v[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-      t[2 * i + 1] = __builtin_shufflevector(v[i], v[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
+    for (int i = 0; i < kHalf; ++i) {
+      if constexpr (kPack == 8) {
+        t[2 * i] = __builtin_shufflevector(v[i], v[i + kHalf], 0, 8, 1, 9, 2, 10, 3, 11);
+        t[2 * i + 1] = __builtin_shufflevector(v[i], v[i + kHalf], 4, 12, 5, 13, 6, 14, 7, 15);
+      } else if constexpr (kPack == 4) {
+        t[2 * i] = __builtin_shufflevector(v[i], v[i + kHalf], 0, 4, 1, 5);
+        t[2 * i + 1] = __builtin_shufflevector(v[i], v[i + kHalf], 2, 6, 3, 7);
+      } else {
+        t[2 * i] = __builtin_shufflevector(v[i], v[i + kHalf], 0, 2);
+        t[2 * i + 1] = __builtin_shufflevector(v[i], v[i + kHalf], 1, 3);
+      }
     }
 #pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) v[i] = t[i];
+    for (int i = 0; i < kPack; ++i) v[i] = t[i];
   }
 }
 
@@ -150,18 +161,20 @@ FETTLE_INLINE void transpose(Vector* v) noexcept {
 // for each, and in a plane to[c * kSide + row].
 FETTLE_INLINE void downTurned(const GaussianGroup& g, const double* samples, double* to) noexcept {
   for (int first = 0; first < kLargeRows; first += 8) {
-    Doubles sum[8][2];
+    Pack sum[8][kAcross];
     windows(g.all_weights, g.taps, samples + first * kSide, sum);
     double* at = to + first / kSide * g.stride + first % kSide;
-#pragma GCC unroll 2
-    for (int half = 0; half < 2; ++half) {
-      Doubles turned[8];
 #pragma GCC unroll 8
-      for (int j = 0; j < 8; ++j) turned[j] = sum[j][half];
-      transpose(turned);
+    for (int part = 0; part < kAcross; ++part)
+#pragma GCC unroll 4
+      for (int row = 0; row < 8; row += kPack) {
+        Pack turned[kPack];
 #pragma GCC unroll 8
-      for (int l = 0; l < 8; ++l) store(at + (half * 8 + l) * kSide, turned[l]);
-    }
+        for (int j = 0; j < kPack; ++j) turned[j] = sum[row + j][part];
+        transpose(turned);
+#pragma GCC unroll 8
+        for (int l = 0; l < kPack; ++l) store(at + (part * kPack + l) * kSide + row, turned[l]);
+      }
   }
 }
 
@@ -172,11 +185,11 @@ FETTLE_INLINE void down(const GaussianGroup& g) noexcept {
   double* there = g.strip + rows * kSide;
   for (int c = 0; c < g.columns; c += kSide) {
     for (int i = 0; i < rows; ++i) {
-      for (int h = 0; h < 2; ++h) {
-        Doubles x, t;
-        take<kHoles>(g.rows[i] + c + 8 * h, x, t);
-        store(g.strip + i * kSide + 8 * h, x);
-        if constexpr (kHoles) store(there + i * kSide + 8 * h, t);
+      for (int h = 0; h < kSide; h += kPack) {
+        Pack x, t;
+        take<kHoles>(g.rows[i] + c + h, x, t);
+        store(g.strip + i * kSide + h, x);
+        if constexpr (kHoles) store(there + i * kSide + h, t);
       }
     }
     downTurned(g, g.strip, g.value + c * std::ptrdiff_t{kSide});
@@ -196,28 +209,30 @@ template <bool kHoles>
 FETTLE_INLINE void finishPart(const GaussianGroup& g, const double* value, const double* there,
                               float* const* rows) noexcept {
   for (int c = 0; c < g.out_columns; c += 8) {
-    Doubles sum[8][2];
+    Pack sum[8][kAcross];
     windows(g.all_weights, g.taps, value + c * std::ptrdiff_t{kSide}, sum);
     if constexpr (kHoles) {
-      Doubles weight[8][2];
+      Pack weight[8][kAcross];
       windows(g.all_weights, g.taps, there + c * std::ptrdiff_t{kSide}, weight);
       for (int j = 0; j < 8; ++j)
-        for (int h = 0; h < 2; ++h) sum[j][h] *= 1.0 / weight[j][h];
+        for (int h = 0; h < kAcross; ++h) sum[j][h] *= 1.0 / weight[j][h];
     } else {
 #pragma GCC unroll 8
       for (int j = 0; j < 8; ++j)
-#pragma GCC unroll 2
-        for (int h = 0; h < 2; ++h) sum[j][h] *= spread(g.inverse[c + j]);
-    }
-#pragma GCC unroll 2
-    for (int half = 0; half < 2; ++half) {
-      HalfFloats out[8];
 #pragma GCC unroll 8
-      for (int j = 0; j < 8; ++j) out[j] = narrowed(sum[j][half]);
-      transpose(out);
-#pragma GCC unroll 8
-      for (int j = 0; j < 8; ++j) store(rows[half * 8 + j] + c, out[j]);
+        for (int h = 0; h < kAcross; ++h) sum[j][h] *= every(g.inverse[c + j]);
     }
+#pragma GCC unroll 8
+    for (int part = 0; part < kAcross; ++part)
+#pragma GCC unroll 4
+      for (int column = 0; column < 8; column += kPack) {
+        PackFloats out[kPack];
+#pragma GCC unroll 8
+        for (int j = 0; j < kPack; ++j) out[j] = narrowed(sum[column + j][part]);
+        transpose(out);
+#pragma GCC unroll 8
+        for (int j = 0; j < kPack; ++j) store(rows[part * kPack + j] + c + column, out[j]);
+      }
   }
 }
 

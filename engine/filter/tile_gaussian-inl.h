@@ -1,5 +1,8 @@
 // The kernels of tile_gaussian.cpp; see tile_rows-inl.h.
 #include "engine/filter/tile_rows-inl.h"
+
+constexpr int kGroup = 4;  // rows of outputs at once, which share the samples that are widened
+
 #if FETTLE_LEVEL == 2
 
 // The lanes kBy .. kBy + 7 of `a` and then `b`, kBy in 0 .. 8.
@@ -9,8 +12,6 @@ FETTLE_INLINE __m512d from(__m512d a, __m512d b) noexcept {
   if constexpr (kBy == 8) return b;
   return _mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(b), _mm512_castpd_si512(a), kBy & 7));
 }
-
-constexpr int kGroup = 4;  // rows of outputs at once, which share the samples that are widened
 
 // Sums down eight columns, for a group of rows.
 struct Down {
@@ -22,7 +23,7 @@ FETTLE_INLINE Down downOf(const TileRows<kRadius>& rows, const __m512d* w, int y
   Down down;
 #pragma GCC unroll 16
   for (int i = 0; i < kGroup + 2 * kRadius; ++i) {
-    const __m512d x = _mm512_cvtps_pd(_mm256_loadu_ps(rows.eight(y + i - kRadius, eight)));
+    const __m512d x = _mm512_cvtps_pd(_mm256_loadu_ps(rows.at(y + i - kRadius, 8 * eight)));
 #pragma GCC unroll 4
     for (int j = 0; j < kGroup; ++j) {
       const int k = i - j < kRadius ? kRadius - (i - j) : i - j - kRadius;
@@ -69,6 +70,44 @@ void gaussianTile(const TileAround& around, const double* weights, double invers
       before = here;
       here = after;
     }
+  }
+}
+
+#elif FETTLE_LEVEL == 1
+
+// With 16 registers the sums down wait in the nearest cache for the pass along: shifting lanes would leave too few for the sums.
+template <int kRadius>
+void gaussianTile(const TileAround& around, const double* weights, double inverse, float* out) noexcept {
+  const TileRows<kRadius> rows(around);
+  Pack w[kRadius + 1];
+  for (int k = 0; k <= kRadius; ++k) w[k] = every(weights[k]);
+  const Pack whole = every(inverse);
+  alignas(64) double down[kGroup][kTileSide + 2 * kPack];  // from column -kPack on
+  for (int y = 0; y < kTileSide; y += kGroup) {
+    for (int c = -kPack; c < kTileSide + kPack; c += kPack) {
+      Pack sum[kGroup];
+#pragma GCC unroll 16
+      for (int i = 0; i < kGroup + 2 * kRadius; ++i) {
+        const Pack x = widened(load<PackFloats>(rows.at(y + i - kRadius, c)));
+#pragma GCC unroll 4
+        for (int j = 0; j < kGroup; ++j) {
+          const int k = i - j < kRadius ? kRadius - (i - j) : i - j - kRadius;
+          if (i < j || k > kRadius) continue;
+          sum[j] = i == j ? w[k] * x : fused(w[k], x, sum[j]);
+        }
+      }
+#pragma GCC unroll 4
+      for (int j = 0; j < kGroup; ++j) store(down[j] + c + kPack, sum[j]);
+    }
+    for (int j = 0; j < kGroup; ++j)
+      for (int c = 0; c < kTileSide; c += kPack) {
+        const double* const from = down[j] + c + kPack - kRadius;
+        Pack sum = w[kRadius] * load<Pack>(from);
+#pragma GCC unroll 8
+        for (int i = 1; i <= 2 * kRadius; ++i)
+          sum = fused(w[i < kRadius ? kRadius - i : i - kRadius], load<Pack>(from + i), sum);
+        store(out + (y + j) * kTileSide + c, narrowed(sum * whole));
+      }
   }
 }
 

@@ -1,5 +1,6 @@
 // Gaussians of small windows inside the field, straight from the tiles: the operations of gaussian.cpp, in its order.
 
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -45,14 +46,16 @@ class TileGaussian final : public TileWindow {
 }  // namespace
 
 std::unique_ptr<TileWindow> makeTileGaussian(const FilterSpec& spec, CpuLevel level) {
-  if (level != CpuLevel::kAvx512) return nullptr;
+  if (level == CpuLevel::kPlain) return nullptr;
   std::vector<double> weights = gaussianHalfWeights(spec);
   // Beyond these the turned kernels of gaussian.cpp are faster.
-  constexpr TileGaussian::Kernel kKernels[] = {nullptr, avx512::gaussianTile<1>, avx512::gaussianTile<2>,
-                                               avx512::gaussianTile<3>};
+  using Kernels = std::array<TileGaussian::Kernel, 4>;
+  constexpr Kernels kWide = {nullptr, avx512::gaussianTile<1>, avx512::gaussianTile<2>, avx512::gaussianTile<3>};
+  constexpr Kernels kNarrow = {nullptr, avx2::gaussianTile<1>, avx2::gaussianTile<2>, avx2::gaussianTile<3>};
   const std::size_t radius = weights.size() - 1;
-  if (radius == 0 || radius >= std::size(kKernels)) return nullptr;
-  return std::make_unique<TileGaussian>(std::move(weights), kKernels[radius]);
+  if (radius == 0 || radius >= kWide.size()) return nullptr;
+  return std::make_unique<TileGaussian>(std::move(weights),
+                                        (level == CpuLevel::kAvx512 ? kWide : kNarrow)[radius]);
 }
 
 #else

@@ -34,7 +34,7 @@ FETTLE_INLINE void sortInto(__m512 lower, __m512 upper, __m512 v, __m512* sorted
 }
 
 FETTLE_INLINE ColumnPair columnsOf(const TileRows<2>& rows, int y, int sixteen) noexcept {
-  const auto at = [&](int r) { return _mm512_loadu_ps(rows.eight(r, 2 * sixteen)); };
+  const auto at = [&](int r) { return _mm512_loadu_ps(rows.at(r, 16 * sixteen)); };
   const __m512 b = at(y), c = at(y + 1);
   const __m512 lower = low(b, c), upper = high(b, c);
   ColumnPair pair;

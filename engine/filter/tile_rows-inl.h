@@ -1,5 +1,5 @@
-// Rows of samples across a tile and the two beside it, for the kernels of tile windows; see tile_window.h. AVX-512 alone.
-#if FETTLE_LEVEL == 2
+// Rows of samples across a tile and the two beside it, for the kernels of tile windows; see tile_window.h.
+#if FETTLE_LEVEL >= 1
 
 // Of the rows -kReach .. kTileSide - 1 + kReach of a tile: where the last 16 samples of the tile to the left begin, the row's own,
 // and the first ones of the tile to the right.
@@ -15,12 +15,12 @@ class TileRows {
     }
   }
 
-  // Samples 8 k .. 8 k + 7 of row y, k in -2 .. 9, 0 being the tile's first.
-  [[nodiscard]] FETTLE_INLINE const float* eight(int y, int k) const noexcept {
+  // The samples of row y from this column on, a multiple of 4 in -16 .. kTileSide + 12, up to the next multiple of 16.
+  [[nodiscard]] FETTLE_INLINE const float* at(int y, int column) const noexcept {
     const Row& row = rows_[y + kReach];
-    return k < 0               ? row.left_end + 8 * k
-           : k < kTileSide / 8 ? row.own + 8 * k
-                               : row.right + (8 * k - kTileSide);
+    return column < 0           ? row.left_end + column
+           : column < kTileSide ? row.own + column
+                                : row.right + (column - kTileSide);
   }
 
  private:

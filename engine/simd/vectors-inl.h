@@ -9,6 +9,12 @@ using HalfFloats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(64)));  // 8
 using Longs = long long __attribute__((vector_size(64)));
 
+// As many doubles as one register holds, and as many floats. What a loop carries from one round to the next is of these: GCC 12 keeps
+// wider vectors in memory there, and moves them word by word.
+constexpr int kPack = FETTLE_LEVEL == 2 ? 8 : FETTLE_LEVEL == 1 ? 4 : 2;
+using Pack = double __attribute__((vector_size(8 * kPack)));
+using PackFloats = float __attribute__((vector_size(4 * kPack)));
+
 template <class Vector, class Element>
 FETTLE_INLINE Vector load(const Element* from) noexcept {
   Vector v;
@@ -49,6 +55,16 @@ FETTLE_INLINE Doubles spread(double x) noexcept {
   return _mm512_set1_pd(x);
 #else
   return Doubles{x, x, x, x, x, x, x, x};
+#endif
+}
+
+FETTLE_INLINE Pack every(double x) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_set1_pd(x);
+#elif FETTLE_LEVEL == 1
+  return _mm256_set1_pd(x);
+#else
+  return Pack{x, x};
 #endif
 }
 
@@ -161,3 +177,15 @@ FETTLE_INLINE Doubles fused(const Doubles& a, const Doubles& b, const Doubles& c
   return sum;
 #endif
 }
+
+#if FETTLE_LEVEL < 2
+FETTLE_INLINE Pack widened(const PackFloats& v) noexcept { return __builtin_convertvector(v, Pack); }
+FETTLE_INLINE PackFloats narrowed(const Pack& v) noexcept { return __builtin_convertvector(v, PackFloats); }
+FETTLE_INLINE Pack fused(const Pack& a, const Pack& b, const Pack& c) noexcept {
+#if FETTLE_LEVEL == 1
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  return Pack{__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
+#endif
+}
+#endif

@@ -1,4 +1,4 @@
-// compare_opencv [SIDE [REPEATS]]: box, Gaussian and median by Fettle and by OpenCV, each on one thread and in the same run, in
+// compare_opencv [SIDE [REPEATS [KIND...]]]: box, Gaussian and median, or those named, by Fettle and by OpenCV, each on one thread and in the same run, in
 // alternation with a plain copy. Rates in million samples per second of processor time, medians of the repeats; ratios are
 // medians of the repeats' own. Fettle's rate is all of applyFilter: new tiles, their bounds and the report. OpenCV writes into
 // an array that it has written before. Exit status 1 when a result differs from OpenCV's, away from the borders, by more than
@@ -125,7 +125,9 @@ int main(int argc, char** argv) {
   fmt::print(
       "| filter | window | Fettle | OpenCV | times | asked | copying | of copying "
       "|\n|---|---|---|---|---|---|---|---|\n");
+  const std::vector<std::string> kinds(argv + std::min(argc, 3), argv + argc);
   for (const Row& row : kRows) {
+    if (!kinds.empty() && std::ranges::find(kinds, row.name) == kinds.end()) continue;
     std::vector<double> ours, theirs, ratio, copy;
     double off = 0.0;
     for (int i = -1; i < repeats; ++i) {

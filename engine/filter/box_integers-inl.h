@@ -1,4 +1,4 @@
-// The kernels of box_strip.cpp; see kernel.h. Below AVX-512 there are none.
+// The kernels of box_integers.cpp; see kernel.h. Below AVX-512 there are none.
 #if FETTLE_LEVEL == 2
 
 // Integers of 16 samples; a hole is 0. `misfits` gathers lanes whose sample is no integer after scaling.
