@@ -34,11 +34,11 @@ FETTLE_INLINE Floats sizeOf(const Floats& v) noexcept {
 #ifdef FETTLE_CPU_LEVELS
 FETTLE_INLINE unsigned below(const Floats& a, const Floats& b) noexcept {
   unsigned bits = 0;
-  for (std::size_t at = 0; at < sizeof a; at += sizeof(Register)) {
+  for (std::size_t at = 0; at < sizeof a; at += sizeof(FloatPack)) {
 #if FETTLE_LEVEL == 1
-    const int part = _mm256_movemask_ps(_mm256_cmp_ps(registerOf(a, at), registerOf(b, at), _CMP_LT_OQ));
+    const int part = _mm256_movemask_ps(_mm256_cmp_ps(packOf(a, at), packOf(b, at), _CMP_LT_OQ));
 #else
-    const int part = _mm_movemask_ps(_mm_cmplt_ps(registerOf(a, at), registerOf(b, at)));
+    const int part = _mm_movemask_ps(_mm_cmplt_ps(packOf(a, at), packOf(b, at)));
 #endif
     bits |= static_cast<unsigned>(part) << (at / sizeof(float));
   }
@@ -46,11 +46,11 @@ FETTLE_INLINE unsigned below(const Floats& a, const Floats& b) noexcept {
 }
 FETTLE_INLINE Floats rootOf(const Floats& v) noexcept {
   Floats root;
-  for (std::size_t at = 0; at < sizeof v; at += sizeof(Register)) {
+  for (std::size_t at = 0; at < sizeof v; at += sizeof(FloatPack)) {
 #if FETTLE_LEVEL == 1
-    const Register one = _mm256_sqrt_ps(registerOf(v, at));
+    const FloatPack one = _mm256_sqrt_ps(packOf(v, at));
 #else
-    const Register one = _mm_sqrt_ps(registerOf(v, at));
+    const FloatPack one = _mm_sqrt_ps(packOf(v, at));
 #endif
     std::memcpy(reinterpret_cast<char*>(&root) + at, &one, sizeof one);
   }

@@ -1,14 +1,15 @@
 // Sums of a bilateral window; see each_cpu-inl.h.
 
 /// Weights and weighted differences of two samples opposite each other across each centre.
-FETTLE_INLINE void addOpposites(const Floats& one, const Floats& other, const Floats& centre, float per_range,
-                                float weight, Floats& sum, Floats& sum_weight) noexcept {
-  const Floats beyond = Floats{} + kBeyond, none{};
+FETTLE_INLINE void addOpposites(const FloatPack& one, const FloatPack& other, const FloatPack& centre,
+                                float per_range, float weight, FloatPack& sum,
+                                FloatPack& sum_weight) noexcept {
+  const FloatPack beyond = FloatPack{} + kBeyond, none{};
   // A hole compares false and goes beyond the weights, like a difference that overflows.
-  const Floats a = greater(lesser((one - centre) * per_range, beyond), -beyond);
-  const Floats b = greater(lesser((other - centre) * per_range, beyond), -beyond);
-  Floats wa = greater(1.0F - a * a * 0.03125F, none);
-  Floats wb = greater(1.0F - b * b * 0.03125F, none);
+  const FloatPack a = greater(lesser((one - centre) * per_range, beyond), -beyond);
+  const FloatPack b = greater(lesser((other - centre) * per_range, beyond), -beyond);
+  FloatPack wa = greater(1.0F - a * a * 0.03125F, none);
+  FloatPack wb = greater(1.0F - b * b * 0.03125F, none);
   for (int twice = 0; twice < 4; ++twice) {
     wa *= wa;
     wb *= wb;
@@ -22,23 +23,22 @@ FETTLE_INLINE void addOpposites(const Floats& one, const Floats& other, const Fl
 /// and under the first output; first_dx is 1 for the centre's own row, which is both.
 void addRows(const float* centre, const float* above, const float* below, const float* weights, int first_dx,
              int radius, float per_range, int chunks, double* sum, double* sum_weight) noexcept {
-  for (int chunk = 0; chunk < chunks; ++chunk) {
-    const int c = chunk * kChunk;
-    const Floats z0 = load<Floats>(centre + c), z1 = load<Floats>(centre + c + kLanes);
-    Floats s0{}, s1{}, w0{}, w1{};
+  for (int c = 0; c < chunks * kChunk; c += 2 * kFloatPack) {
+    const FloatPack z0 = load<FloatPack>(centre + c), z1 = load<FloatPack>(centre + c + kFloatPack);
+    FloatPack s0{}, s1{}, w0{}, w1{};
     for (int dx = first_dx; dx <= radius; ++dx) {
       const float* one = above + c + dx;
       const float* other = below + c - dx;
-      addOpposites(load<Floats>(one), load<Floats>(other), z0, per_range, weights[dx], s0, w0);
-      addOpposites(load<Floats>(one + kLanes), load<Floats>(other + kLanes), z1, per_range, weights[dx], s1,
-                   w1);
+      addOpposites(load<FloatPack>(one), load<FloatPack>(other), z0, per_range, weights[dx], s0, w0);
+      addOpposites(load<FloatPack>(one + kFloatPack), load<FloatPack>(other + kFloatPack), z1, per_range,
+                   weights[dx], s1, w1);
     }
     for (int half = 0; half < 4; ++half) {
-      const int at = c + half * kLanes / 2;
-      const Floats& s = half < 2 ? s0 : s1;
-      const Floats& w = half < 2 ? w0 : w1;
-      store(sum + at, load<Doubles>(sum + at) + widened(halfOf(s, half % 2)));
-      store(sum_weight + at, load<Doubles>(sum_weight + at) + widened(halfOf(w, half % 2)));
+      const int at = c + half * kPack;
+      const FloatPack& s = half < 2 ? s0 : s1;
+      const FloatPack& w = half < 2 ? w0 : w1;
+      store(sum + at, load<Pack>(sum + at) + widened(halfOf(s, half % 2)));
+      store(sum_weight + at, load<Pack>(sum_weight + at) + widened(halfOf(w, half % 2)));
     }
   }
 }

@@ -38,7 +38,8 @@ FETTLE_INLINE void addTo(double* sums, const __m256d& more) noexcept {
 // Adds samples to the sums of their columns and takes others away: `columns` of them, a multiple of 16, of which those from
 // `inside` on are holes.
 template <bool kEnter, bool kLeave, bool kHoles, int kLanes>
-void moveFours(const float* enter, const float* leave, int columns, int inside, double cut, const Sums& sums) noexcept {
+void moveFours(const float* enter, const float* leave, int columns, int inside, double cut,
+               const Sums& sums) noexcept {
   const __m256d at = _mm256_set1_pd(cut);
   int i = 0;
   for (const int end = kHoles ? columns : inside / 4 * 4; i < end; i += 4) {
@@ -135,7 +136,8 @@ template <int kDirect, int kLanes, bool kHoles>
 void slideFours(const Slide& s, float* out, int n, int full_begin, int full_end) noexcept {
   Window<kDirect> upper(s.sums.lanes[0], s.fours.lanes[0], s.window);
   Window<kDirect> lower(s.sums.lanes[kLanes - 1], s.fours.lanes[kLanes - 1], s.window);
-  Window<kDirect> counted(kHoles ? s.sums.counts : s.sums.lanes[0], kHoles ? s.fours.counts : s.fours.lanes[0], s.window);
+  Window<kDirect> counted(kHoles ? s.sums.counts : s.sums.lanes[0],
+                          kHoles ? s.fours.counts : s.fours.lanes[0], s.window);
   const __m256d rows = _mm256_set1_pd(s.rows), full = _mm256_set1_pd(s.full_count),
                 inverse = _mm256_set1_pd(1.0 / s.full_count);
   const auto step = [&]<bool kFull>(int c, std::bool_constant<kFull>) __attribute__((always_inline)) {

@@ -5,7 +5,7 @@
 // A hole as a sample of 0 and weight 0.
 template <bool kHoles>
 FETTLE_INLINE void take(const float* from, Pack& value, Pack& there) noexcept {
-  value = widened(load<PackFloats>(from));
+  value = widened(load<HalfPack>(from));
   if constexpr (kHoles) {
     there = value == value ? Pack{} + 1.0 : Pack{};
     value = value == value ? value : Pack{};
@@ -226,7 +226,7 @@ FETTLE_INLINE void finishPart(const GaussianGroup& g, const double* value, const
     for (int part = 0; part < kAcross; ++part)
 #pragma GCC unroll 4
       for (int column = 0; column < 8; column += kPack) {
-        PackFloats out[kPack];
+        HalfPack out[kPack];
 #pragma GCC unroll 8
         for (int j = 0; j < kPack; ++j) out[j] = narrowed(sum[column + j][part]);
         transpose(out);

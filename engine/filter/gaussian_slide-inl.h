@@ -4,22 +4,24 @@
 // out[i] = sum over t of weights[t] * in[i + t * step], i in 0 .. n rounded up to 8; in may be read as far.
 inline void slide(const double* in, std::ptrdiff_t step, const double* weights, int taps, double* out,
                   int n) noexcept {
+  constexpr int kTogether = FETTLE_LEVEL == 2 ? 4 : 8;
+  constexpr int kColumns = kTogether * kPack;
   int i = 0;
-  for (; i + 32 <= n; i += 32) {
-    Doubles sum[4] = {};
+  for (; i + kColumns <= n; i += kColumns) {
+    Pack sum[kTogether] = {};
     const double* at = in + i;
     for (int t = 0; t < taps; ++t, at += step) {
-      const Doubles w = spread(weights[t]);
-#pragma GCC unroll 4
-      for (int k = 0; k < 4; ++k) sum[k] += w * load<Doubles>(at + 8 * k);
+      const Pack w = every(weights[t]);
+#pragma GCC unroll 16
+      for (int k = 0; k < kTogether; ++k) sum[k] += w * load<Pack>(at + kPack * k);
     }
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; ++k) store(out + i + 8 * k, sum[k]);
+#pragma GCC unroll 16
+    for (int k = 0; k < kTogether; ++k) store(out + i + kPack * k, sum[k]);
   }
-  for (; i < n; i += 8) {
-    Doubles sum = {};
+  for (; i < n; i += kPack) {
+    Pack sum = {};
     const double* at = in + i;
-    for (int t = 0; t < taps; ++t, at += step) sum += spread(weights[t]) * load<Doubles>(at);
+    for (int t = 0; t < taps; ++t, at += step) sum += every(weights[t]) * load<Pack>(at);
     store(out + i, sum);
   }
 }
@@ -30,10 +32,10 @@ inline void spreadOut(const double* in, int step, const double* weights, int tap
                       int count) noexcept {
   const int lane = (step + 7) / 8 * 8;
   for (int n = 0; n < count; ++n)
-    for (int p = 0; p < step; p += 8) {
-      Doubles sum = {};
+    for (int p = 0; p < step; p += kPack) {
+      Pack sum = {};
       for (int t = 0; t < taps; ++t)
-        sum += spread(in[n + t]) * load<Doubles>(weights + static_cast<std::ptrdiff_t>(t) * lane + p);
+        sum += every(in[n + t]) * load<Pack>(weights + static_cast<std::ptrdiff_t>(t) * lane + p);
       store(out + static_cast<std::ptrdiff_t>(n) * step + p, sum);
     }
 }

@@ -5,18 +5,19 @@
 void countRow(const float* centre, const float* row, int radius, float range, int chunks, std::int32_t* there,
               std::int32_t* below, std::int32_t* above) noexcept {
   for (int chunk = 0; chunk < chunks; ++chunk) {
-    const int c = chunk * kLanes;
-    const Floats z = load<Floats>(centre + c);
-    Ints n = load<Ints>(there + c), under = load<Ints>(below + c), over = load<Ints>(above + c);
-    for (int dx = -radius; dx <= radius; ++dx) {
-      const Floats s = load<Floats>(row + c + dx);
-      // True is -1; what does not exist compares false.
-      n -= s == s;
-      under -= z - s > range;
-      over -= s - z > range;
+    for (int c = chunk * kLanes; c < (chunk + 1) * kLanes; c += kFloatPack) {
+      const FloatPack z = load<FloatPack>(centre + c);
+      IntPack n = load<IntPack>(there + c), under = load<IntPack>(below + c), over = load<IntPack>(above + c);
+      for (int dx = -radius; dx <= radius; ++dx) {
+        const FloatPack s = load<FloatPack>(row + c + dx);
+        // True is -1; what does not exist compares false.
+        n -= s == s;
+        under -= z - s > range;
+        over -= s - z > range;
+      }
+      store(there + c, n);
+      store(below + c, under);
+      store(above + c, over);
     }
-    store(there + c, n);
-    store(below + c, under);
-    store(above + c, over);
   }
 }

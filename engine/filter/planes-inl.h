@@ -1,25 +1,25 @@
 // The kernels of planes.cpp; see kernel.h. Rows of doubles begin at a first column that is readable 8 elements to its
-// left and are read and written in vectors of 8: 16 elements beyond the last column are readable and finite.
+// left and are read and written in registers: 16 elements beyond the last column are readable and finite.
 
 // Heights of a row above a reference, in noises; holes are 0. n is rounded up to 8 by the caller.
 void heightsInNoises(const float* z, int n, double reference, double per_noise, double tallest,
                      double* __restrict out) noexcept {
-  const Doubles least = spread(-tallest), most = spread(tallest), none{};
-  for (int c = 0; c < n; c += 8) {
-    const Doubles wide = widened(load<HalfFloats>(z + c));
-    const Doubles above = (wide - spread(reference)) * spread(per_noise);
+  const Pack least = every(-tallest), most = every(tallest), none{};
+  for (int c = 0; c < n; c += kPack) {
+    const Pack wide = widened(load<HalfPack>(z + c));
+    const Pack above = (wide - every(reference)) * every(per_noise);
     store(out + c, wide == wide ? lesser(greater(above, least), most) : none);
   }
 }
 
 // What the window of half-width h adds to the sums of its columns beyond the next smaller window.
 template <int kFrom, int kTo>
-FETTLE_INLINE void widenColumns(const double* const* middle, int c, Doubles& sum, Doubles& up,
-                                Doubles& square) noexcept {
+FETTLE_INLINE void widenColumns(const double* const* middle, int c, Pack& sum, Pack& up,
+                                Pack& square) noexcept {
   for (int k = kFrom; k <= kTo; ++k) {
-    const Doubles above = load<Doubles>(middle[k] + c), below = load<Doubles>(middle[-k] + c);
+    const Pack above = load<Pack>(middle[k] + c), below = load<Pack>(middle[-k] + c);
     sum += above + below;
-    up += spread(k) * (above - below);
+    up += every(k) * (above - below);
     square += above * above + below * below;
   }
 }
@@ -27,9 +27,9 @@ FETTLE_INLINE void widenColumns(const double* const* middle, int c, Doubles& sum
 // Of each column of the rows around middle[0], for each window: the sum of z, of z times its row from the middle, and of
 // z squared. to[3 * window + figure]
 void sumColumns(const double* const* middle, int n, double* const* to) noexcept {
-  for (int c = 0; c < n; c += 8) {
-    const Doubles z = load<Doubles>(middle[0] + c);
-    Doubles sum = z, up{}, square = z * z;
+  for (int c = 0; c < n; c += kPack) {
+    const Pack z = load<Pack>(middle[0] + c);
+    Pack sum = z, up{}, square = z * z;
     const auto keep = [&](int window) {
       store(to[3 * window] + c, sum);
       store(to[3 * window + 1] + c, up);
@@ -52,22 +52,22 @@ FETTLE_INLINE void fitRow(const double* sum, const double* up, const double* squ
                           double* __restrict along, double* __restrict across) noexcept {
   constexpr double kCount = (2.0 * h + 1.0) * (2.0 * h + 1.0);
   constexpr double kPerSpread = 3.0 / (kCount * h * (h + 1.0));
-  for (int c = 0; c < n; c += 8) {
-    Doubles z = load<Doubles>(sum + c), x{}, y = load<Doubles>(up + c), zz = load<Doubles>(square + c);
+  for (int c = 0; c < n; c += kPack) {
+    Pack z = load<Pack>(sum + c), x{}, y = load<Pack>(up + c), zz = load<Pack>(square + c);
     for (int k = 1; k <= h; ++k) {
-      const Doubles right = load<Doubles>(sum + c + k), left = load<Doubles>(sum + c - k);
+      const Pack right = load<Pack>(sum + c + k), left = load<Pack>(sum + c - k);
       z += left + right;
-      x += spread(k) * (right - left);
-      y += load<Doubles>(up + c - k) + load<Doubles>(up + c + k);
-      zz += load<Doubles>(square + c - k) + load<Doubles>(square + c + k);
+      x += every(k) * (right - left);
+      y += load<Pack>(up + c - k) + load<Pack>(up + c + k);
+      zz += load<Pack>(square + c - k) + load<Pack>(square + c + k);
     }
-    const Doubles mean = z * spread(1.0 / kCount);
-    const Doubles rest = zz - z * mean - (x * x + y * y) * spread(kPerSpread);
-    const Doubles none{}, w = rest <= spread(most) ? load<Doubles>(count + c) : none;
+    const Pack mean = z * every(1.0 / kCount);
+    const Pack rest = zz - z * mean - (x * x + y * y) * every(kPerSpread);
+    const Pack none{}, w = rest <= every(most) ? load<Pack>(count + c) : none;
     store(weight + c, w);
     store(height + c, w * mean);
-    store(along + c, w * (x * spread(kPerSpread)));
-    store(across + c, w * (y * spread(kPerSpread)));
+    store(along + c, w * (x * every(kPerSpread)));
+    store(across + c, w * (y * every(kPerSpread)));
   }
 }
 
@@ -89,15 +89,15 @@ void fitWindows(int h, const double* sum, const double* up, const double* square
 // rows away: weight, height in that row, slope along it. middle[k] is row k from there, its four figures of this window
 // `stride` elements apart.
 template <int h>
-FETTLE_INLINE void gatherWindow(const double* const* middle, std::ptrdiff_t stride, int c, Doubles& weights,
-                                Doubles& heights, Doubles& slopes) noexcept {
-  const auto at = [&](int k, int figure) { return load<Doubles>(middle[k] + figure * stride + c); };
+FETTLE_INLINE void gatherWindow(const double* const* middle, std::ptrdiff_t stride, int c, Pack& weights,
+                                Pack& heights, Pack& slopes) noexcept {
+  const auto at = [&](int k, int figure) { return load<Pack>(middle[k] + figure * stride + c); };
   weights += at(0, 0);
   heights += at(0, 1);
   slopes += at(0, 2);
   for (int k = 1; k <= h; ++k) {
     weights += at(-k, 0) + at(k, 0);
-    heights += (at(-k, 1) + at(k, 1)) + spread(k) * (at(-k, 3) - at(k, 3));
+    heights += (at(-k, 1) + at(k, 1)) + every(k) * (at(-k, 3) - at(k, 3));
     slopes += at(-k, 2) + at(k, 2);
   }
 }
@@ -108,8 +108,8 @@ void gatherColumns(const double* const* middle, std::ptrdiff_t stride, int n, do
   const double* rows[4][11];
   for (int window = 0; window < 4; ++window)
     for (int k = -5; k <= 5; ++k) rows[window][k + 5] = middle[k] + 4 * window * stride;
-  for (int c = 0; c < n; c += 8) {
-    Doubles weights{}, heights{}, slopes{};
+  for (int c = 0; c < n; c += kPack) {
+    Pack weights{}, heights{}, slopes{};
     const auto keep = [&](int window) {
       store(to[3 * window] + c, weights);
       store(to[3 * window + 1] + c, heights);
@@ -132,16 +132,16 @@ void writeRow(const double* const* from, const double* in_noises, const float* z
               float* __restrict out) noexcept {
   // By distance from the sample: the smallest window that reaches it.
   constexpr int kWindowAt[] = {0, 0, 1, 2, 3, 3};
-  for (int c = 0; c < n; c += 8) {
-    Doubles weight = load<Doubles>(from[0] + c), total = load<Doubles>(from[1] + c);
+  for (int c = 0; c < n; c += kPack) {
+    Pack weight = load<Pack>(from[0] + c), total = load<Pack>(from[1] + c);
     for (int k = 1; k <= 5; ++k) {
       const double* const* window = from + 3 * kWindowAt[k];
-      weight += load<Doubles>(window[0] + c - k) + load<Doubles>(window[0] + c + k);
-      total += (load<Doubles>(window[1] + c - k) + load<Doubles>(window[1] + c + k)) +
-               spread(k) * (load<Doubles>(window[2] + c - k) - load<Doubles>(window[2] + c + k));
+      weight += load<Pack>(window[0] + c - k) + load<Pack>(window[0] + c + k);
+      total += (load<Pack>(window[1] + c - k) + load<Pack>(window[1] + c + k)) +
+               every(k) * (load<Pack>(window[2] + c - k) - load<Pack>(window[2] + c + k));
     }
-    const Doubles none{};
-    const Doubles change = weight > none ? total / weight - load<Doubles>(in_noises + c) : none;
-    store(out + c, narrowed(widened(load<HalfFloats>(z + c)) + spread(noise) * change));
+    const Pack none{};
+    const Pack change = weight > none ? total / weight - load<Pack>(in_noises + c) : none;
+    store(out + c, narrowed(widened(load<HalfPack>(z + c)) + every(noise) * change));
   }
 }

@@ -5,41 +5,44 @@
 inline void takeRough(double* z, int samples, double step, const double* to_height, const double* to_slope,
                       const double* over_variance) noexcept {
   constexpr int kWide = 4;
-  const Doubles part = spread(1.0 / step), whole = spread(step);
-  Doubles height[kWide], slope[kWide];
-  for (int k = 0; k < kWide; ++k) {
-    // The first two determine the line of the prediction.
-    const Doubles first = load<Doubles>(z + 8 * k), second = load<Doubles>(z + 32 + 8 * k);
-    slope[k] = (second - first) * whole;
-    height[k] = second + slope[k] * part;
-  }
-  for (int i = 2; i < samples; ++i) {
-    const Doubles a = spread(to_height[i]), b = spread(to_slope[i]), c = spread(over_variance[i]);
-#pragma GCC unroll 4
+  constexpr int kLines = kWide * kPack;  // at once: what registers hold
+  const Pack part = every(1.0 / step), whole = every(step);
+  for (double* const all = z + 32; z < all; z += kLines) {
+    Pack height[kWide], slope[kWide];
     for (int k = 0; k < kWide; ++k) {
-      double* const at = z + 32 * static_cast<std::ptrdiff_t>(i) + 8 * k;
-      const Doubles off = load<Doubles>(at) - height[k];
-      store(at, off * c);
-      slope[k] = slope[k] + b * off;
-      height[k] = (height[k] + a * off) + slope[k] * part;
+      // The first two determine the line of the prediction.
+      const Pack first = load<Pack>(z + kPack * k), second = load<Pack>(z + 32 + kPack * k);
+      slope[k] = (second - first) * whole;
+      height[k] = second + slope[k] * part;
     }
-  }
-  // The adjoint of all that, from the last sample on.
-  for (int k = 0; k < kWide; ++k) height[k] = slope[k] = Doubles{};
-  for (int i = samples - 1; i >= 2; --i) {
-    const Doubles a = spread(to_height[i]), b = spread(to_slope[i]);
+    for (int i = 2; i < samples; ++i) {
+      const Pack a = every(to_height[i]), b = every(to_slope[i]), c = every(over_variance[i]);
 #pragma GCC unroll 4
-    for (int k = 0; k < kWide; ++k) {
-      double* const at = z + 32 * static_cast<std::ptrdiff_t>(i) + 8 * k;
-      slope[k] = slope[k] + height[k] * part;
-      const Doubles rough = (load<Doubles>(at) - a * height[k]) - b * slope[k];
-      store(at, rough);
-      height[k] = height[k] + rough;
+      for (int k = 0; k < kWide; ++k) {
+        double* const at = z + 32 * static_cast<std::ptrdiff_t>(i) + kPack * k;
+        const Pack off = load<Pack>(at) - height[k];
+        store(at, off * c);
+        slope[k] = slope[k] + b * off;
+        height[k] = (height[k] + a * off) + slope[k] * part;
+      }
     }
-  }
-  for (int k = 0; k < kWide; ++k) {
-    const Doubles turned = (slope[k] + height[k] * part) * whole;
-    store(z + 8 * k, turned);
-    store(z + 32 + 8 * k, -(height[k] + turned));
+    // The adjoint of all that, from the last sample on.
+    for (int k = 0; k < kWide; ++k) height[k] = slope[k] = Pack{};
+    for (int i = samples - 1; i >= 2; --i) {
+      const Pack a = every(to_height[i]), b = every(to_slope[i]);
+#pragma GCC unroll 4
+      for (int k = 0; k < kWide; ++k) {
+        double* const at = z + 32 * static_cast<std::ptrdiff_t>(i) + kPack * k;
+        slope[k] = slope[k] + height[k] * part;
+        const Pack rough = (load<Pack>(at) - a * height[k]) - b * slope[k];
+        store(at, rough);
+        height[k] = height[k] + rough;
+      }
+    }
+    for (int k = 0; k < kWide; ++k) {
+      const Pack turned = (slope[k] + height[k] * part) * whole;
+      store(z + kPack * k, turned);
+      store(z + 32 + kPack * k, -(height[k] + turned));
+    }
   }
 }

@@ -88,7 +88,7 @@ void gaussianTile(const TileAround& around, const double* weights, double invers
       Pack sum[kGroup];
 #pragma GCC unroll 16
       for (int i = 0; i < kGroup + 2 * kRadius; ++i) {
-        const Pack x = widened(load<PackFloats>(rows.at(y + i - kRadius, c)));
+        const Pack x = widened(load<HalfPack>(rows.at(y + i - kRadius, c)));
 #pragma GCC unroll 4
         for (int j = 0; j < kGroup; ++j) {
           const int k = i - j < kRadius ? kRadius - (i - j) : i - j - kRadius;

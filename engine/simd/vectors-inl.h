@@ -9,11 +9,14 @@ using HalfFloats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(64)));  // 8
 using Longs = long long __attribute__((vector_size(64)));
 
-// As many doubles as one register holds, and as many floats. What a loop carries from one round to the next is of these: GCC 12 keeps
-// wider vectors in memory there, and moves them word by word.
+// One register: of doubles, of half as many floats, and of as many floats or integers as it holds. What a loop carries from one round to
+// the next is of these: GCC 12 keeps wider vectors in memory there, and moves them word by word.
 constexpr int kPack = FETTLE_LEVEL == 2 ? 8 : FETTLE_LEVEL == 1 ? 4 : 2;
+constexpr int kFloatPack = 2 * kPack;
 using Pack = double __attribute__((vector_size(8 * kPack)));
-using PackFloats = float __attribute__((vector_size(4 * kPack)));
+using HalfPack = float __attribute__((vector_size(4 * kPack)));
+using FloatPack = float __attribute__((vector_size(8 * kPack)));
+using IntPack = int __attribute__((vector_size(8 * kPack)));
 
 template <class Vector, class Element>
 FETTLE_INLINE Vector load(const Element* from) noexcept {
@@ -78,45 +81,51 @@ FETTLE_INLINE Vector greater(const Vector& a, const Vector& b) noexcept {
   return a > b ? a : b;
 }
 
-// Of floats register by register where one does not hold all: GCC takes a comparison of wider vectors apart to single numbers.
-// The instructions are the expressions above, NaNs and zeros of both signs included.
+// Register by register, the expressions above with instructions of their own, NaNs and zeros of both signs included: left to itself the
+// compiler compares and chooses, and takes a comparison of wider vectors apart to single numbers.
 #if defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL < 2
 #if FETTLE_LEVEL == 1
-using Register = __m256;
-FETTLE_INLINE Register lesserOne(const Register& a, const Register& b) noexcept {
+FETTLE_INLINE FloatPack lesser(const FloatPack& a, const FloatPack& b) noexcept {
   return _mm256_min_ps(a, b);
 }
-FETTLE_INLINE Register greaterOne(const Register& a, const Register& b) noexcept {
+FETTLE_INLINE FloatPack greater(const FloatPack& a, const FloatPack& b) noexcept {
   return _mm256_max_ps(a, b);
 }
+FETTLE_INLINE Pack lesser(const Pack& a, const Pack& b) noexcept {
+  return _mm256_min_pd(a, b);
+}
+FETTLE_INLINE Pack greater(const Pack& a, const Pack& b) noexcept {
+  return _mm256_max_pd(a, b);
+}
 #else
-using Register = __m128;
-FETTLE_INLINE Register lesserOne(const Register& a, const Register& b) noexcept {
+FETTLE_INLINE FloatPack lesser(const FloatPack& a, const FloatPack& b) noexcept {
   return _mm_min_ps(a, b);
 }
-FETTLE_INLINE Register greaterOne(const Register& a, const Register& b) noexcept {
+FETTLE_INLINE FloatPack greater(const FloatPack& a, const FloatPack& b) noexcept {
   return _mm_max_ps(a, b);
 }
+FETTLE_INLINE Pack lesser(const Pack& a, const Pack& b) noexcept {
+  return _mm_min_pd(a, b);
+}
+FETTLE_INLINE Pack greater(const Pack& a, const Pack& b) noexcept {
+  return _mm_max_pd(a, b);
+}
 #endif
-FETTLE_INLINE Register registerOf(const Floats& v, std::size_t at) noexcept {
-  Register part;
+FETTLE_INLINE FloatPack packOf(const Floats& v, std::size_t at) noexcept {
+  FloatPack part;
   std::memcpy(&part, reinterpret_cast<const char*>(&v) + at, sizeof part);
   return part;
 }
 FETTLE_INLINE Floats lesser(const Floats& a, const Floats& b) noexcept {
   Floats all;
-  for (std::size_t at = 0; at < sizeof all; at += sizeof(Register)) {
-    const Register one = lesserOne(registerOf(a, at), registerOf(b, at));
-    std::memcpy(reinterpret_cast<char*>(&all) + at, &one, sizeof one);
-  }
+  for (std::size_t at = 0; at < sizeof all; at += sizeof(FloatPack))
+    store(reinterpret_cast<char*>(&all) + at, lesser(packOf(a, at), packOf(b, at)));
   return all;
 }
 FETTLE_INLINE Floats greater(const Floats& a, const Floats& b) noexcept {
   Floats all;
-  for (std::size_t at = 0; at < sizeof all; at += sizeof(Register)) {
-    const Register one = greaterOne(registerOf(a, at), registerOf(b, at));
-    std::memcpy(reinterpret_cast<char*>(&all) + at, &one, sizeof one);
-  }
+  for (std::size_t at = 0; at < sizeof all; at += sizeof(FloatPack))
+    store(reinterpret_cast<char*>(&all) + at, greater(packOf(a, at), packOf(b, at)));
   return all;
 }
 #endif
@@ -179,8 +188,17 @@ FETTLE_INLINE Doubles fused(const Doubles& a, const Doubles& b, const Doubles& c
 }
 
 #if FETTLE_LEVEL < 2
-FETTLE_INLINE Pack widened(const PackFloats& v) noexcept { return __builtin_convertvector(v, Pack); }
-FETTLE_INLINE PackFloats narrowed(const Pack& v) noexcept { return __builtin_convertvector(v, PackFloats); }
+FETTLE_INLINE Pack widened(const HalfPack& v) noexcept {
+  return __builtin_convertvector(v, Pack);
+}
+FETTLE_INLINE HalfPack narrowed(const Pack& v) noexcept {
+  return __builtin_convertvector(v, HalfPack);
+}
+FETTLE_INLINE HalfPack halfOf(const FloatPack& v, int half) noexcept {
+  HalfPack h;
+  std::memcpy(&h, reinterpret_cast<const char*>(&v) + half * sizeof h, sizeof h);
+  return h;
+}
 FETTLE_INLINE Pack fused(const Pack& a, const Pack& b, const Pack& c) noexcept {
 #if FETTLE_LEVEL == 1
   return _mm256_fmadd_pd(a, b, c);
