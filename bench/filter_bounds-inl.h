@@ -1,63 +1,68 @@
 // The kernels of filter_bounds.cpp; see each_cpu-inl.h. Eight chains at once, more than the latency of an instruction hides; in registers
 // where there are 32 of them, with AVX-512: with AVX2 some are spilled, and the bound is too slow.
 
+constexpr int kProductsAtOnce = 8 * kPack;
 double productsAlone(int rounds) noexcept {
-  Doubles v[8];
-  for (int i = 0; i < 8; ++i) v[i] = spread(0.1 * i);
-  const Doubles a = spread(0.5), b = spread(0.25);
+  Pack v[8];
+  for (int i = 0; i < 8; ++i) v[i] = every(0.1 * i);
+  const Pack a = every(0.5), b = every(0.25);
   for (int k = 0; k < rounds; ++k)
 #pragma GCC unroll 8
     for (int i = 0; i < 8; ++i) v[i] = fused(v[i], a, b);
   double sum = 0.0;
-  for (const Doubles& each : v) sum += each[0];
+  for (const Pack& each : v) sum += each[0];
   return sum;
 }
 
-double extremaAlone(int rounds) noexcept {
-  Floats v[8];
-  for (int i = 0; i < 8; ++i) v[i] = Floats{} + 0.1F * static_cast<float>(i);
-  Floats low = Floats{} + 0.2F, high = Floats{} + 0.4F;
-  for (int k = 0; k < rounds; k += 2)
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i)
+FETTLE_INLINE FloatPack lesserAlone(const FloatPack& a, const FloatPack& b) noexcept {
 #if FETTLE_LEVEL == 2
-      v[i] =
-          _mm512_max_ps(_mm512_min_ps(v[i], high), low);  // left to itself the compiler compares and chooses
-#else
-      v[i] = greater(lesser(v[i], high), low);
-#endif
-  double sum = 0.0;
-  for (const Floats& each : v) sum += each[0];
-  return sum;
-}
-
-// As many chains as registers hold beside what they need.
-constexpr int kChains = FETTLE_LEVEL == 2 ? 8 : FETTLE_LEVEL == 1 ? 4 : 2;
-// The nearest cache holds two of these.
-constexpr int kPlaces = 64;
-
-FETTLE_INLINE Floats lesserAlone(const Floats& a, const Floats& b) noexcept {
-#if FETTLE_LEVEL == 2
-  return _mm512_min_ps(a, b);
+  return _mm512_min_ps(a, b);  // left to itself the compiler compares and chooses
 #else
   return lesser(a, b);
 #endif
 }
+FETTLE_INLINE FloatPack greaterAlone(const FloatPack& a, const FloatPack& b) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_max_ps(a, b);
+#else
+  return greater(a, b);
+#endif
+}
 
-// `rows`: 2 * (kPlaces + kChains) * kLanes floats, at a multiple of 64 bytes: no chord begins farther from a cache line.
+constexpr int kExtremaAtOnce = 8 * kFloatPack;
+double extremaAlone(int rounds) noexcept {
+  FloatPack v[8];
+  for (int i = 0; i < 8; ++i) v[i] = FloatPack{} + 0.1F * static_cast<float>(i);
+  const FloatPack low = FloatPack{} + 0.2F, high = FloatPack{} + 0.4F;
+  for (int k = 0; k < rounds; k += 2)
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i) v[i] = greaterAlone(lesserAlone(v[i], high), low);
+  double sum = 0.0;
+  for (const FloatPack& each : v) sum += each[0];
+  return sum;
+}
+
+// As many chains as registers hold beside what they need.
+constexpr int kChains = 8;
+constexpr int kChordsAtOnce = kChains * kFloatPack;
+// The nearest cache holds two of these.
+constexpr int kPlaces = 64;
+
+// `rows`: 2 * (kPlaces + kChains) * kFloatPack floats, at a multiple of 64 bytes: no chord begins farther from a cache line.
 double chordsAlone(const float* rows, int rounds) noexcept {
-  Floats low[kChains];
-  for (int i = 0; i < kChains; ++i) low[i] = Floats{} + 1e30F;
+  FloatPack low[kChains];
+  for (int i = 0; i < kChains; ++i) low[i] = FloatPack{} + 1e30F;
   for (int k = 0; k < rounds; ++k) {
-    const float* const one = rows + k % kPlaces * kLanes;
-    const float* const other = one + (kPlaces + kChains) * kLanes;
+    const float* const one = rows + k % kPlaces * kFloatPack;
+    const float* const other = one + (kPlaces + kChains) * kFloatPack;
 #pragma GCC unroll 8
     for (int i = 0; i < kChains; ++i)
-      low[i] =
-          lesserAlone(lesserAlone(load<Floats>(one + i * kLanes), load<Floats>(other + i * kLanes)), low[i]);
+      low[i] = lesserAlone(
+          lesserAlone(load<FloatPack>(one + i * kFloatPack), load<FloatPack>(other + i * kFloatPack)),
+          low[i]);
   }
   double sum = 0.0;
-  for (const Floats& each : low) sum += each[0];
+  for (const FloatPack& each : low) sum += each[0];
   return sum;
 }
 
@@ -117,22 +122,24 @@ double sumsAlone(const double* depths, int rounds) noexcept {
   return sum;
 }
 
-// Of 16 samples each: how much lower their bowls can be anywhere on a block of results. `heights`: kPlaces * kLanes floats, `bowls`
+// Of as many samples as a register holds: how much lower their bowls can be anywhere on a block of results. `heights`: kPlaces * kFloatPack floats, `bowls`
 // three times as many: depths and slopes in turn.
+constexpr int kTestsAtOnce = kFloatPack;
 double testsAlone(const float* heights, const float* bowls, int rounds) noexcept {
-  const Floats a = Floats{} + 0.3F, b = Floats{} + 0.4F, half_x = Floats{} + 3.5F, half_y = Floats{} + 1.5F;
-  const auto size = [](const Floats& v) __attribute__((always_inline)) {
-    return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
+  const FloatPack a = FloatPack{} + 0.3F, b = FloatPack{} + 0.4F, half_x = FloatPack{} + 3.5F,
+                  half_y = FloatPack{} + 1.5F;
+  const auto size = [](const FloatPack& v) __attribute__((always_inline)) {
+    return reinterpret_cast<FloatPack>(reinterpret_cast<IntPack>(v) & 0x7fffffff);
   };
-  Floats low[2] = {Floats{} + 1e30F, Floats{} + 1e30F};
+  FloatPack low[2] = {FloatPack{} + 1e30F, FloatPack{} + 1e30F};
   for (int k = 0; k < rounds; k += 2)
 #pragma GCC unroll 2
     for (int i = 0; i < 2; ++i) {
-      const int at = (k + i) % kPlaces * kLanes;
+      const int at = (k + i) % kPlaces * kFloatPack;
       const float* const bowl = bowls + 3 * at;
-      const Floats f = load<Floats>(heights + at) + load<Floats>(bowl);
-      const Floats least = f - size(load<Floats>(bowl + kLanes) - a) * half_x -
-                           size(load<Floats>(bowl + 2 * kLanes) - b) * half_y;
+      const FloatPack f = load<FloatPack>(heights + at) + load<FloatPack>(bowl);
+      const FloatPack least = f - size(load<FloatPack>(bowl + kFloatPack) - a) * half_x -
+                              size(load<FloatPack>(bowl + 2 * kFloatPack) - b) * half_y;
       // As a minimum, which takes no longer than a comparison.
       low[i] = lesserAlone(least, low[i]);
     }

@@ -103,15 +103,15 @@ class OperationTimes {
                          auto&& work) {
       if (any(kind)) times.push_back(secondsFor([&] { kept_ = work(); }) / (kRounds * in_a_round));
     };
-    add(&Operations::products, products_, 8.0 * 8.0,
+    add(&Operations::products, products_, FETTLE_AT_LEVEL(level, kProductsAtOnce),
         [&] { return FETTLE_AT_LEVEL(level, productsAlone)(kRounds); });
-    add(&Operations::extrema, extrema_, 8.0 * 16.0,
+    add(&Operations::extrema, extrema_, FETTLE_AT_LEVEL(level, kExtremaAtOnce),
         [&] { return FETTLE_AT_LEVEL(level, extremaAlone)(kRounds); });
-    add(&Operations::chords, chords_, FETTLE_AT_LEVEL(level, kChains) * 16.0,
+    add(&Operations::chords, chords_, FETTLE_AT_LEVEL(level, kChordsAtOnce),
         [&] { return FETTLE_AT_LEVEL(level, chordsAlone)(floats_.data(), kRounds); });
     add(&Operations::sums, sums_, FETTLE_AT_LEVEL(level, kSumsAtOnce),
         [&] { return FETTLE_AT_LEVEL(level, sumsAlone)(doubles_.data(), kRounds); });
-    add(&Operations::tests, tests_, 16.0, [&] {
+    add(&Operations::tests, tests_, FETTLE_AT_LEVEL(level, kTestsAtOnce), [&] {
       return FETTLE_AT_LEVEL(level, testsAlone)(floats_.data(), floats_.data() + kMostPlaces * kMostLanes,
                                                 kRounds);
     });

@@ -1,14 +1,15 @@
 // The kernels of box_doubles.cpp; see kernel.h. With AVX2 alone.
 #if FETTLE_LEVEL == 1
 
-// The least magnitude of n samples but 0, a multiple of 8: its bits less one. A 0 and a hole are above all others.
-inline std::uint32_t leastBits(const float* samples, int n) noexcept {
+// The least magnitude of a row's samples but 0: its bits less one. A 0 and a hole are above all others.
+inline std::uint32_t leastBits(const Row& row, const Part* parts, std::size_t n) noexcept {
   const __m256i size = _mm256_set1_epi32(0x7fffffff), one = _mm256_set1_epi32(1);
   __m256i least = _mm256_set1_epi32(-1);
-  for (int i = 0; i < n; i += 8) {
-    const __m256i bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(samples + i));
-    least = _mm256_min_epu32(least, _mm256_sub_epi32(_mm256_and_si256(bits, size), one));
-  }
+  for (std::size_t p = 0; p < n; ++p)
+    for (int i = 0; i < parts[p].columns; i += 8) {
+      const __m256i bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.tiles[p] + row.at + i));
+      least = _mm256_min_epu32(least, _mm256_sub_epi32(_mm256_and_si256(bits, size), one));
+    }
   __m128i four = _mm_min_epu32(_mm256_castsi256_si128(least), _mm256_extracti128_si256(least, 1));
   four = _mm_min_epu32(four, _mm_shuffle_epi32(four, 0x4e));
   four = _mm_min_epu32(four, _mm_shuffle_epi32(four, 0xb1));
@@ -35,11 +36,10 @@ FETTLE_INLINE void addTo(double* sums, const __m256d& more) noexcept {
   _mm256_storeu_pd(sums, _mm256_add_pd(_mm256_loadu_pd(sums), more));
 }
 
-// Adds samples to the sums of their columns and takes others away: `columns` of them, a multiple of 16, of which those from
-// `inside` on are holes.
+// Adds samples to the sums of their columns and takes others away.
 template <bool kEnter, bool kLeave, bool kHoles, int kLanes>
-void moveFours(const float* enter, const float* leave, int columns, int inside, double cut,
-               const Sums& sums) noexcept {
+FETTLE_INLINE void moveFours(const float* enter, const float* leave, int columns, int inside, double cut,
+                             const Sums& sums) noexcept {
   const __m256d at = _mm256_set1_pd(cut);
   int i = 0;
   for (const int end = kHoles ? columns : inside / 4 * 4; i < end; i += 4) {
@@ -71,15 +71,27 @@ void moveFours(const float* enter, const float* leave, int columns, int inside, 
     }
 }
 
+template <bool kEnter, bool kLeave, bool kHoles, int kLanes>
+FETTLE_INLINE void moveParts(const Row& enter, const Row& leave, const Part* parts, std::size_t n, double cut,
+                             const Sums& sums) noexcept {
+  for (std::size_t p = 0; p < n; ++p) {
+    const Part& part = parts[p];
+    moveFours<kEnter, kLeave, kHoles, kLanes>(
+        kEnter ? enter.tiles[p] + enter.at : nullptr, kLeave ? leave.tiles[p] + leave.at : nullptr,
+        part.columns, part.inside, cut,
+        {{sums.lanes[0] + part.at, sums.lanes[1] + part.at}, kHoles ? sums.counts + part.at : nullptr});
+  }
+}
+
 template <bool kHoles, int kLanes>
-void moveFoursOf(const float* enter, const float* leave, int columns, int inside, double cut,
-                 const Sums& sums) noexcept {
-  if (enter != nullptr && leave != nullptr)
-    moveFours<true, true, kHoles, kLanes>(enter, leave, columns, inside, cut, sums);
-  else if (enter != nullptr)
-    moveFours<true, false, kHoles, kLanes>(enter, nullptr, columns, inside, cut, sums);
-  else if (leave != nullptr)
-    moveFours<false, true, kHoles, kLanes>(nullptr, leave, columns, inside, cut, sums);
+void moveRow(const Row& enter, const Row& leave, const Part* parts, std::size_t n, double cut,
+             const Sums& sums) noexcept {
+  if (enter.tiles != nullptr && leave.tiles != nullptr)
+    moveParts<true, true, kHoles, kLanes>(enter, leave, parts, n, cut, sums);
+  else if (enter.tiles != nullptr)
+    moveParts<true, false, kHoles, kLanes>(enter, leave, parts, n, cut, sums);
+  else if (leave.tiles != nullptr)
+    moveParts<false, true, kHoles, kLanes>(enter, leave, parts, n, cut, sums);
 }
 
 // to[i] = from[i] + .. + from[i + 3], i in 0 .. n rounded up to 4; four more are read.

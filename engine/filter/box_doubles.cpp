@@ -26,6 +26,18 @@ struct Sums {
   double* counts;
 };
 
+// A row that enters or leaves, or null: the samples of piece i begin at tiles[i] + at.
+struct Row {
+  const float* const* tiles;
+  std::ptrdiff_t at;
+};
+
+// As BoxStrip::Piece.
+struct Part {
+  std::ptrdiff_t at;
+  int columns, inside;
+};
+
 struct Slide {
   Sums sums;                         // from the column that leaves at the first output on
   Sums fours;                        // sums of four of these
@@ -57,26 +69,26 @@ class DoubleStrip final : public BoxStrip {
     constexpr int kLeastFloat = -149, kFraction = 23;
     const float least = last <= kLeastFloat ? 0.0F : std::ldexp(1.0F, last + kFraction);
     every_fits_ = survey.least >= least;
-    least_bits_ = std::bit_cast<std::uint32_t>(least);
+    least_bits_ = std::max(std::bit_cast<std::uint32_t>(least), 1U) - 1;
     two_lanes_for_ = 0;
+    parts_.clear();
+    for (const Piece& piece : pieces()) parts_.push_back({piece.at, piece.columns, piece.inside});
     return true;
   }
 
-  bool move(std::span<const float* const> enter, std::span<const float* const> leave) override {
-    if (!enter.empty() && !every_fits_ && mayMisfit(enter) && !held(enter, 1)) {
-      if (!held(enter, 2)) return false;
+  bool move(const Samples& enter, const Samples& leave) override {
+    const Row in{enter.tiles, enter.at}, out{leave.tiles, leave.at};
+    if (in.tiles != nullptr && !every_fits_ &&
+        avx2::leastBits(in, parts_.data(), parts_.size()) < least_bits_ && !held(in, 1)) {
+      if (!held(in, 2)) return false;
       two_lanes_for_ = window() + 1;  // until it has left
     }
     two_lanes_ = two_lanes_for_ > 0;
     if (two_lanes_) --two_lanes_for_;
-    const auto fours = holes_ ? two_lanes_ ? avx2::moveFoursOf<true, 2> : avx2::moveFoursOf<true, 1>
-                       : two_lanes_ ? avx2::moveFoursOf<false, 2>
-                                    : avx2::moveFoursOf<false, 1>;
-    for (std::size_t i = 0; i < pieces().size(); ++i) {
-      const Piece& piece = pieces()[i];
-      fours(enter.empty() ? nullptr : enter[i], leave.empty() ? nullptr : leave[i], piece.columns, piece.inside,
-            cuts_.cut[0], from(sums_, piece.at));
-    }
+    const auto kernel = holes_       ? two_lanes_ ? avx2::moveRow<true, 2> : avx2::moveRow<true, 1>
+                              : two_lanes_ ? avx2::moveRow<false, 2>
+                                     : avx2::moveRow<false, 1>;
+    kernel(in, out, parts_.data(), parts_.size(), cuts_.cut[0], from(sums_, 0));
     return true;
   }
 
@@ -109,16 +121,9 @@ class DoubleStrip final : public BoxStrip {
     return window() == 3 ? slideOf<3>() : window() == 5 ? slideOf<5>() : slideOf<0>();
   }
 
-  [[nodiscard]] bool mayMisfit(std::span<const float* const> row) const noexcept {
-    std::uint32_t least = ~std::uint32_t{0};
-    for (std::size_t i = 0; i < row.size(); ++i)
-      least = std::min(least, avx2::leastBits(row[i], pieces()[i].columns));
-    return least + 1 < least_bits_ && least != ~std::uint32_t{0};
-  }
-
-  [[nodiscard]] bool held(std::span<const float* const> row, int lanes) const noexcept {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      if (!lanesHold(cuts_, lanes, row[i], pieces()[i].columns)) return false;
+  [[nodiscard]] bool held(const Row& row, int lanes) const noexcept {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (!lanesHold(cuts_, lanes, row.tiles[i] + row.at, parts_[i].columns)) return false;
     return true;
   }
 
@@ -128,11 +133,12 @@ class DoubleStrip final : public BoxStrip {
   }
 
   mutable Numbers sums_, fours_;  // of the first lane, the second one, and counts
+  std::vector<Part> parts_;
   std::size_t room_ = 0;
   bool holes_ = false;
   SumLanes cuts_;
   bool every_fits_ = false;
-  std::uint32_t least_bits_ = 0;  // of magnitudes from here on the first lane holds all
+  std::uint32_t least_bits_ = 0;  // less one, of the magnitudes from which on the first lane holds all
   int two_lanes_for_ = 0;         // rows to come
   bool two_lanes_ = false;
 };

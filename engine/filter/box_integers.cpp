@@ -45,19 +45,19 @@ class IntegerStrip final : public BoxStrip {
     // All magnitudes are below 2^top, all sums below 2^(top + bits).
     int top = 0;
     (void)std::frexp(survey.largest, &top);
-    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(window()) *
-                                                      static_cast<std::uint64_t>(window())));
+    const auto bits = static_cast<int>(
+        std::bit_width(static_cast<std::uint64_t>(window()) * static_cast<std::uint64_t>(window())));
     exponent_ = std::min(63 - top - bits, 126);
     return exponent_ >= 0;
   }
 
-  bool move(std::span<const float* const> enter, std::span<const float* const> leave) override {
+  bool move(const Samples& enter, const Samples& leave) override {
     const float power = std::ldexp(1.0F, exponent_);
     bool fit = true;
     for (std::size_t i = 0; i < pieces().size(); ++i) {
       const Piece& piece = pieces()[i];
-      const float* in = enter.empty() ? nullptr : enter[i];
-      const float* out = leave.empty() ? nullptr : leave[i];
+      const float* in = enter.tiles == nullptr ? nullptr : enter.tiles[i] + enter.at;
+      const float* out = leave.tiles == nullptr ? nullptr : leave.tiles[i] + leave.at;
       fit &= holes_ ? avx512::moveColumnsOf<true>(in, out, piece.columns, power, sums_.data() + piece.at,
                                                   counts_.data() + piece.at)
                     : avx512::moveColumnsOf<false>(in, out, piece.columns, power, sums_.data() + piece.at,

@@ -22,27 +22,25 @@ std::unique_ptr<BoxStrip> BoxStrip::make(int radius, CpuLevel level) {
   return level == CpuLevel::kAvx2 ? makeBoxOfDoubles(radius) : nullptr;
 }
 
-std::span<const float* const> BoxStrip::lookUp(Row& row, std::int32_t y) const {
-  const std::int32_t tile_row = y < 0 || y >= reader_.height() ? -1 : y >> kTileShift;
-  if (tile_row != row.tile_row) {
-    row.tile_row = tile_row;
+BoxStrip::Samples BoxStrip::lookUp(TileRow& row, std::int32_t y) const {
+  if (y < 0 || y >= reader_.height()) return {};
+  const std::int32_t number = y >> kTileShift;
+  if (number != row.number) {
+    row.number = number;
     row.tiles.clear();
-    if (tile_row >= 0)
-      for (const Piece& piece : pieces_)
-        row.tiles.push_back(reader_.tile(piece.tile_column, tile_row).samples.data() + piece.offset);
-    row.samples.resize(row.tiles.size());
+    for (const Piece& piece : pieces_)
+      row.tiles.push_back(reader_.tile(piece.tile_column, number).samples.data() + piece.offset);
   }
-  const std::ptrdiff_t at = std::ptrdiff_t{y & (kTileSide - 1)} * kTileSide;
-  for (std::size_t i = 0; i < row.tiles.size(); ++i) row.samples[i] = row.tiles[i] + at;
-  return row.samples;
+  return {row.tiles.data(), std::ptrdiff_t{y & (kTileSide - 1)} * kTileSide};
 }
 
 bool BoxStrip::moveTo(std::int32_t enter, std::int32_t leave) {
   // Rows ahead that memory is asked for: two cache lines a column of the register, and tiles lie anywhere.
   constexpr std::int32_t kAhead = 16;
-  const auto ahead = lookUp(ahead_, enter + kAhead);
-  for (std::size_t i = 0; i < ahead.size(); ++i)
-    for (std::int32_t c = 0; c < pieces_[i].columns; c += kAtOnce) fetchAhead(ahead[i] + c);
+  if (const Samples ahead = lookUp(ahead_, enter + kAhead); ahead.tiles != nullptr)
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      for (std::int32_t c = 0; c < pieces_[i].columns; c += kAtOnce)
+        fetchAhead(ahead.tiles[i] + ahead.at + c);
   return move(lookUp(enter_, enter), lookUp(leave_, leave));
 }
 
@@ -91,7 +89,8 @@ void BoxStrip::begin(const FieldReader& reader, std::int32_t column0, std::int32
         std::min(column0 + c + radius_ + 1, reader.width()) - std::max(column0 + c - radius_, 0);
   enter_ = leave_ = ahead_ = {};
   started_ = false;
-  fits_ = clear(surveyed(row, rows), static_cast<std::size_t>(floorTo(beyond - first_, kTileSide) + kTileSide));
+  fits_ =
+      clear(surveyed(row, rows), static_cast<std::size_t>(floorTo(beyond - first_, kTileSide) + kTileSide));
   for (std::int32_t y = row - radius_; y < row + radius_ && fits_; ++y) fits_ = moveTo(y, -1);
 }
 
@@ -106,11 +105,9 @@ bool BoxStrip::rows(std::int32_t rows, float* out, std::ptrdiff_t stride) {
     all.count = column1_ - column0_;
     all.rows = std::min(next_ + radius_ + 1, reader_.height()) - std::max(next_ - radius_, 0);
     all.full = all.rows * std::min(window(), reader_.width());
-    all.full_begin =
-        std::min(floorTo(std::max(radius_ - column0_, 0) + kAtOnce - 1, kAtOnce), all.count);
-    all.full_end =
-        std::max(floorTo(std::clamp(reader_.width() - radius_ - column0_, 0, all.count), kAtOnce),
-                 all.full_begin);
+    all.full_begin = std::min(floorTo(std::max(radius_ - column0_, 0) + kAtOnce - 1, kAtOnce), all.count);
+    all.full_end = std::max(floorTo(std::clamp(reader_.width() - radius_ - column0_, 0, all.count), kAtOnce),
+                            all.full_begin);
     slide(all, out);
   }
   return fits_;

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "engine/field/reader.h"
@@ -45,6 +44,11 @@ class BoxStrip {
   struct Piece {
     std::int32_t tile_column, offset, columns, inside, at;
   };
+  /// A row's samples: those of piece i begin at tiles[i] + at; null: no such row in the field.
+  struct Samples {
+    const float* const* tiles = nullptr;
+    std::ptrdiff_t at = 0;
+  };
   /// What is known of all samples that windows of the strip can reach, from the tiles alone.
   struct Survey {
     bool holes = false;
@@ -65,9 +69,8 @@ class BoxStrip {
 
   /// Begins with sums of no samples, `sums` columns of them. False when samples cannot fit.
   [[nodiscard]] virtual bool clear(const Survey& survey, std::size_t sums) = 0;
-  /// Adds a row to the sums of columns and takes one away: for each piece where its samples begin; empty: none. Whether they fit.
-  [[nodiscard]] virtual bool move(std::span<const float* const> enter,
-                                  std::span<const float* const> leave) = 0;
+  /// Adds a row to the sums of columns and takes one away; either may be none. Whether the samples fit.
+  [[nodiscard]] virtual bool move(const Samples& enter, const Samples& leave) = 0;
   /// The means of a row.
   virtual void slide(const Windows& windows, float* out) const = 0;
 
@@ -77,13 +80,12 @@ class BoxStrip {
   [[nodiscard]] const std::int32_t* columnCounts() const noexcept { return column_counts_.data(); }
 
  private:
-  // Where the samples of all pieces lie in one row of the field; of none when the field has no such row.
-  struct Row {
-    std::int32_t tile_row = -1;
-    std::vector<const float*> tiles;    // of each piece, first sample of the piece's columns in the tile
-    std::vector<const float*> samples;  // the same in the row
+  // A row of tiles: of each piece the first sample of its columns.
+  struct TileRow {
+    std::int32_t number = -1;
+    std::vector<const float*> tiles;
   };
-  std::span<const float* const> lookUp(Row& row, std::int32_t y) const;
+  Samples lookUp(TileRow& row, std::int32_t y) const;
   [[nodiscard]] bool moveTo(std::int32_t enter, std::int32_t leave);
   [[nodiscard]] Survey surveyed(std::int32_t row, std::int32_t rows) const;
 
@@ -95,7 +97,7 @@ class BoxStrip {
   std::vector<std::int32_t> column_counts_;
   bool fits_ = false;
   bool started_ = false;
-  Row enter_, leave_, ahead_;
+  TileRow enter_, leave_, ahead_;
 };
 
 /// The two ways of BoxStrip. All samples as integers, multiples of one power of two so small that none loses a bit and so
