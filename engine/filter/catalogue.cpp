@@ -33,7 +33,11 @@ constexpr FilterParameter sigmaElse(std::string_view otherwise) {
 constexpr FilterParameter kNesting{"mm", 1e-12, 1e12, 0.0};
 
 // A strip's scratch follows its width alone, so that it can be long.
-constexpr WindowFilter kBoxWindows{makeBoxFilter, {4, 512, 2048}, {8, 2048, 8192}, BoxStrip::make};
+constexpr WindowFilter kBoxWindows{.make = makeBoxFilter,
+                                   .columns = {4, 512, 2048},
+                                   .rows = {8, 2048, 8192},
+                                   .strip = BoxStrip::make,
+                                   .tile = makeTileBox};
 constexpr WindowFilter kGaussianWindows{
     .make = makeGaussianFilter, .columns = {4, 512, 1024}, .rows = {1, 128, 512}, .tile = makeTileGaussian};
 constexpr WindowFilter kMedianWindows{

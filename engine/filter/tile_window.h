@@ -17,8 +17,8 @@ using TileAround = std::array<std::array<const float*, 3>, 3>;
 /// for a tile that neither a border nor a hole is near. Nothing is gathered, and what is between two steps stays in
 /// registers.
 ///
-/// Samples are taken as they are stored, without the version's sign: medians and weighted means of negated samples are the
-/// negated ones.
+/// Samples are taken as they are stored, without the version's sign: means and medians of negated samples are the negated
+/// ones.
 ///
 /// Threading: any number of threads.
 class TileWindow {
@@ -30,8 +30,9 @@ class TileWindow {
   virtual void run(const TileAround& around, float* out) const noexcept = 0;
 };
 
-/// Of medians and Gaussians; null where the window is too large or the processor has no such path. makeTileStrips: medians by
+/// Of means, medians and Gaussians; null where the window is too large or the processor has no such path. makeTileStrips: medians by
 /// the strips of median_small.cpp.
+[[nodiscard]] std::unique_ptr<TileWindow> makeTileBox(const FilterSpec& spec, CpuLevel level);
 [[nodiscard]] std::unique_ptr<TileWindow> makeTileMedian(const FilterSpec& spec, CpuLevel level);
 [[nodiscard]] std::unique_ptr<TileWindow> makeTileStrips(int window, CpuLevel level);
 [[nodiscard]] std::unique_ptr<TileWindow> makeTileGaussian(const FilterSpec& spec, CpuLevel level);

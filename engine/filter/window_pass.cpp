@@ -41,13 +41,11 @@ class Pass {
     const TileRect to_change = blocks_.toChange(rect);
     if (to_change.empty()) return true;
     const TileRect& filtered = filter_.squares.side > 0 ? rect : to_change;
-    if (filter_.strip != nullptr && radius_ > 0 && blocks_.cuts() == nullptr) {
-      if (!scratch.strip) scratch.strip = filter_.strip(radius_, blocks_.level());
-      if (scratch.strip) return runStrip(filtered, scratch, job, made);
-    }
-    if (filter_.tile != nullptr && radius_ > 0 && blocks_.cuts() == nullptr) {
-      if (!scratch.tile) scratch.tile = filter_.tile(spec_, blocks_.level());
+    if (radius_ > 0 && blocks_.cuts() == nullptr) {
+      if (filter_.tile != nullptr && !scratch.tile) scratch.tile = filter_.tile(spec_, blocks_.level());
+      if (filter_.strip != nullptr && !scratch.strip) scratch.strip = filter_.strip(radius_, blocks_.level());
       if (scratch.tile) return runTiles(filtered, scratch, job, made);
+      if (scratch.strip) return runStrip(filtered, scratch, job, made);
     }
     if (!gatherAndFilter(filtered, scratch, job)) return false;
     // The next block is mostly the right neighbour.
@@ -78,7 +76,7 @@ class Pass {
     return true;
   }
 
-  // As run, with windows over one tile after the other; what they cannot do is gathered in one rectangle.
+  // As run, with windows over one tile after the other; the rectangle of what they cannot do by a strip, or gathered.
   bool runTiles(const TileRect& rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
     TileRect rest{rect.column1, rect.row1, rect.column0, rect.row0};
     for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
@@ -88,13 +86,14 @@ class Pass {
                   std::max(rest.row1, tr + 1)};
     for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
       for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
-        const bool gathered = tc >= rest.column0 && tc < rest.column1 && tr >= rest.row0 && tr < rest.row1;
-        if (gathered || !blocks_.mayChange(tc, tr)) continue;
+        const bool later = tc >= rest.column0 && tc < rest.column1 && tr >= rest.row0 && tr < rest.row1;
+        if (later || !blocks_.mayChange(tc, tr)) continue;
         if (job.cancelled()) return false;
         scratch.tile->run(*blocks_.around(tc, tr), scratch.block.results.data());
         if (!blocks_.mergeTileAt(tc, tr, scratch.block, made)) return false;
       }
     if (rest.empty()) return true;
+    if (scratch.strip) return runStrip(rest, scratch, job, made);
     return gatherAndFilter(rest, scratch, job) &&
            blocks_.merge(rest, blocks_.reader().sign(), 0, scratch.block, made);
   }

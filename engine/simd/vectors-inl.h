@@ -188,11 +188,20 @@ FETTLE_INLINE Doubles fused(const Doubles& a, const Doubles& b, const Doubles& c
 }
 
 #if FETTLE_LEVEL < 2
+// Left to itself the compiler converts one half after the other.
 FETTLE_INLINE Pack widened(const HalfPack& v) noexcept {
+#if FETTLE_LEVEL == 1
+  return _mm256_cvtps_pd(v);
+#else
   return __builtin_convertvector(v, Pack);
+#endif
 }
 FETTLE_INLINE HalfPack narrowed(const Pack& v) noexcept {
+#if FETTLE_LEVEL == 1
+  return _mm256_cvtpd_ps(v);
+#else
   return __builtin_convertvector(v, HalfPack);
+#endif
 }
 FETTLE_INLINE HalfPack halfOf(const FloatPack& v, int half) noexcept {
   HalfPack h;
