@@ -66,4 +66,48 @@ inline void medianTile3(const TileAround& around, float* out) noexcept {
   }
 }
 
+#elif FETTLE_LEVEL == 1
+
+FETTLE_INLINE FloatPack middleOfThree(const FloatPack& a, const FloatPack& b, const FloatPack& c) noexcept {
+  return greater(lesser(a, b), lesser(greater(a, b), c));
+}
+
+// Of two windows below each other that share two rows: the columns of three samples, sorted, of 80 columns.
+struct SortedRows {
+  static constexpr int kBefore = kFloatPack;  // columns of the tile to the left
+  alignas(64) float ranks[2][3][kTileSide + 2 * kFloatPack];
+};
+
+FETTLE_INLINE void sortInto(const FloatPack& lower, const FloatPack& upper, const float* third, int at,
+                            float (*ranks)[kTileSide + 2 * kFloatPack]) noexcept {
+  const FloatPack v = load<FloatPack>(third), rest = greater(lower, v);
+  store(ranks[0] + at, lesser(lower, v));
+  store(ranks[1] + at, lesser(upper, rest));
+  store(ranks[2] + at, greater(upper, rest));
+}
+
+// As with AVX-512, with the sorted columns in the nearest cache, where a lane's neighbours are loaded instead of shifted.
+inline void medianTile3(const TileAround& around, float* out) noexcept {
+  const TileRows<2> rows(around);
+  SortedRows sorted;
+  for (int y = 0; y < kTileSide; y += 2) {
+    for (int c = -kFloatPack; c < kTileSide + kFloatPack; c += kFloatPack) {
+      const FloatPack a = load<FloatPack>(rows.at(y, c)), b = load<FloatPack>(rows.at(y + 1, c));
+      const FloatPack lower = lesser(a, b), upper = greater(a, b);
+      sortInto(lower, upper, rows.at(y - 1, c), c + SortedRows::kBefore, sorted.ranks[0]);
+      sortInto(lower, upper, rows.at(y + 2, c), c + SortedRows::kBefore, sorted.ranks[1]);
+    }
+    for (int j = 0; j < 2; ++j)
+      for (int c = 0; c < kTileSide; c += kFloatPack) {
+        const auto at = [&](int rank, int by) __attribute__((always_inline)) {
+          return load<FloatPack>(sorted.ranks[j][rank] + c + SortedRows::kBefore + by);
+        };
+        const FloatPack lows = greater(greater(at(0, -1), at(0, 0)), at(0, 1));
+        const FloatPack middles = middleOfThree(at(1, -1), at(1, 0), at(1, 1));
+        const FloatPack highs = lesser(lesser(at(2, -1), at(2, 0)), at(2, 1));
+        store(out + (y + j) * kTileSide + c, middleOfThree(lows, middles, highs));
+      }
+  }
+}
+
 #endif

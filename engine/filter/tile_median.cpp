@@ -22,8 +22,9 @@ class TileMedian final : public TileWindow {
 }  // namespace
 
 std::unique_ptr<TileWindow> makeTileMedian(const FilterSpec& spec, CpuLevel level) {
-  if (level == CpuLevel::kAvx512 && spec.window == 3)
+  if (spec.window == 3 && level == CpuLevel::kAvx512)
     return std::make_unique<TileMedian<avx512::medianTile3>>();
+  if (spec.window == 3 && level == CpuLevel::kAvx2) return std::make_unique<TileMedian<avx2::medianTile3>>();
   return makeTileStrips(spec.window, level);
 }
 
