@@ -1,5 +1,4 @@
-// The kernels of filter_bounds.cpp; see each_cpu-inl.h. Eight chains at once, more than the latency of an instruction hides; in registers
-// where there are 32 of them, with AVX-512: with AVX2 some are spilled, and the bound is too slow.
+// The kernels of filter_bounds.cpp; see each_cpu-inl.h. Eight chains at once, more than the latency of an instruction hides.
 
 constexpr int kProductsAtOnce = 8 * kPack;
 double productsAlone(int rounds) noexcept {
@@ -14,21 +13,6 @@ double productsAlone(int rounds) noexcept {
   return sum;
 }
 
-FETTLE_INLINE FloatPack lesserAlone(const FloatPack& a, const FloatPack& b) noexcept {
-#if FETTLE_LEVEL == 2
-  return _mm512_min_ps(a, b);  // left to itself the compiler compares and chooses
-#else
-  return lesser(a, b);
-#endif
-}
-FETTLE_INLINE FloatPack greaterAlone(const FloatPack& a, const FloatPack& b) noexcept {
-#if FETTLE_LEVEL == 2
-  return _mm512_max_ps(a, b);
-#else
-  return greater(a, b);
-#endif
-}
-
 constexpr int kExtremaAtOnce = 8 * kFloatPack;
 double extremaAlone(int rounds) noexcept {
   FloatPack v[8];
@@ -36,7 +20,7 @@ double extremaAlone(int rounds) noexcept {
   const FloatPack low = FloatPack{} + 0.2F, high = FloatPack{} + 0.4F;
   for (int k = 0; k < rounds; k += 2)
 #pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) v[i] = greaterAlone(lesserAlone(v[i], high), low);
+    for (int i = 0; i < 8; ++i) v[i] = greater(lesser(v[i], high), low);
   double sum = 0.0;
   for (const FloatPack& each : v) sum += each[0];
   return sum;
@@ -57,9 +41,8 @@ double chordsAlone(const float* rows, int rounds) noexcept {
     const float* const other = one + (kPlaces + kChains) * kFloatPack;
 #pragma GCC unroll 8
     for (int i = 0; i < kChains; ++i)
-      low[i] = lesserAlone(
-          lesserAlone(load<FloatPack>(one + i * kFloatPack), load<FloatPack>(other + i * kFloatPack)),
-          low[i]);
+      low[i] = lesser(lesser(load<FloatPack>(one + i * kFloatPack), load<FloatPack>(other + i * kFloatPack)),
+                      low[i]);
   }
   double sum = 0.0;
   for (const FloatPack& each : low) sum += each[0];
@@ -141,7 +124,7 @@ double testsAlone(const float* heights, const float* bowls, int rounds) noexcept
       const FloatPack least = f - size(load<FloatPack>(bowl + kFloatPack) - a) * half_x -
                               size(load<FloatPack>(bowl + 2 * kFloatPack) - b) * half_y;
       // As a minimum, which takes no longer than a comparison.
-      low[i] = lesserAlone(least, low[i]);
+      low[i] = lesser(least, low[i]);
     }
   return static_cast<double>(low[0][0]) + static_cast<double>(low[1][0]);
 }

@@ -37,8 +37,8 @@ void addRows(const float* centre, const float* above, const float* below, const 
       const int at = c + half * kPack;
       const FloatPack& s = half < 2 ? s0 : s1;
       const FloatPack& w = half < 2 ? w0 : w1;
-      store(sum + at, load<Pack>(sum + at) + widened(halfOf(s, half % 2)));
-      store(sum_weight + at, load<Pack>(sum_weight + at) + widened(halfOf(w, half % 2)));
+      store(sum + at, load<Pack>(sum + at) + widenedHalf(s, half % 2));
+      store(sum_weight + at, load<Pack>(sum_weight + at) + widenedHalf(w, half % 2));
     }
   }
 }

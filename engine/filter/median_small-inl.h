@@ -1,57 +1,27 @@
 // The kernels of median_small.cpp; see each_cpu-inl.h.
 
-// As many floats as a register has: lists of samples are long enough as they are.
-constexpr int kColumns = FETTLE_LEVEL == 2 ? 16 : FETTLE_LEVEL == 1 ? 8 : 4;
-using Samples = float __attribute__((vector_size(kColumns * sizeof(float))));
-
-// a < b ? a : b and a > b ? a : b, with instructions of their own: both together the compiler makes of one comparison and two
-// choices.
-FETTLE_INLINE Samples smaller(const Samples& a, const Samples& b) noexcept {
-#if FETTLE_LEVEL == 2
-  return _mm512_min_ps(a, b);
-#elif FETTLE_LEVEL == 1
-  return _mm256_min_ps(a, b);
-#elif defined(FETTLE_CPU_LEVELS)
-  return _mm_min_ps(a, b);
-#else
-  return a < b ? a : b;
-#endif
-}
-
-FETTLE_INLINE Samples larger(const Samples& a, const Samples& b) noexcept {
-#if FETTLE_LEVEL == 2
-  return _mm512_max_ps(a, b);
-#elif FETTLE_LEVEL == 1
-  return _mm256_max_ps(a, b);
-#elif defined(FETTLE_CPU_LEVELS)
-  return _mm_max_ps(a, b);
-#else
-  return a > b ? a : b;
-#endif
-}
-
 template <Comparator kStep>
-FETTLE_INLINE void exchange(Samples* v) noexcept {
-  const Samples a = v[kStep.low];
-  const Samples b = v[kStep.high];
-  if constexpr (kStep.wants_low) v[kStep.low] = smaller(a, b);
-  if constexpr (kStep.wants_high) v[kStep.high] = larger(b, a);
+FETTLE_INLINE void exchange(FloatPack* v) noexcept {
+  const FloatPack a = v[kStep.low];
+  const FloatPack b = v[kStep.high];
+  if constexpr (kStep.wants_low) v[kStep.low] = lesser(a, b);
+  if constexpr (kStep.wants_high) v[kStep.high] = greater(b, a);
 }
 
 template <class Network, std::size_t... kIndex>
-FETTLE_INLINE void applySteps(Samples* v, std::index_sequence<kIndex...>) noexcept {
+FETTLE_INLINE void applySteps(FloatPack* v, std::index_sequence<kIndex...>) noexcept {
   (exchange<Network::kList.steps[kIndex]>(v), ...);
 }
 
 template <class Network>
-FETTLE_INLINE void apply(Samples* v) noexcept {
+FETTLE_INLINE void apply(FloatPack* v) noexcept {
   applySteps<Network>(v, std::make_index_sequence<Network::kList.count>());
 }
 
 // Ranks [kBegin, kEnd) of the ascending a and b together, ascending.
 template <int kA, int kB, int kBegin, int kEnd>
-FETTLE_INLINE void mergeHere(const Samples* a, const Samples* b, Samples* out) noexcept {
-  Samples v[kA + kB];
+FETTLE_INLINE void mergeHere(const FloatPack* a, const FloatPack* b, FloatPack* out) noexcept {
+  FloatPack v[kA + kB];
 #pragma GCC unroll 64
   for (int i = 0; i < kA; ++i) v[i] = a[i];
 #pragma GCC unroll 64
@@ -62,14 +32,15 @@ FETTLE_INLINE void mergeHere(const Samples* a, const Samples* b, Samples* out) n
 }
 
 template <int kA, int kB, int kBegin, int kEnd>
-__attribute__((noinline)) void mergeElsewhere(const Samples* a, const Samples* b, Samples* out) noexcept {
+__attribute__((noinline)) void mergeElsewhere(const FloatPack* a, const FloatPack* b,
+                                              FloatPack* out) noexcept {
   mergeHere<kA, kB, kBegin, kEnd>(a, b, out);
 }
 
 // Lists that fit the registers are merged on the spot, longer ones in a function of their own: many copies of
 // them would be more code than the processor keeps.
 template <int kA, int kB, int kBegin = 0, int kEnd = kA + kB>
-FETTLE_INLINE void merge(const Samples* a, const Samples* b, Samples* out) noexcept {
+FETTLE_INLINE void merge(const FloatPack* a, const FloatPack* b, FloatPack* out) noexcept {
   if constexpr (kA + kB <= 20 && FETTLE_LEVEL == 2)
     mergeHere<kA, kB, kBegin, kEnd>(a, b, out);
   else
@@ -79,16 +50,16 @@ FETTLE_INLINE void merge(const Samples* a, const Samples* b, Samples* out) noexc
 // The middle one of the ascending a (kN + 1 samples) and b (kN): at least kN others are no greater than the
 // greater of a[i] and b[kN - 1 - i], and for one i it is the one with exactly kN.
 template <int kN>
-FETTLE_INLINE Samples middle(const Samples* a, const Samples* b) noexcept {
-  Samples least = a[kN];
+FETTLE_INLINE FloatPack middle(const FloatPack* a, const FloatPack* b) noexcept {
+  FloatPack least = a[kN];
 #pragma GCC unroll 16
   for (int i = 0; i < kN; ++i) {
-    least = smaller(larger(a[i], b[kN - 1 - i]), least);
+    least = lesser(greater(a[i], b[kN - 1 - i]), least);
   }
   return least;
 }
 
-// Medians of kN x kN windows, kN = 5 .. 11, kColumns outputs side by side, row after row. Four outputs below
+// Medians of kN x kN windows, kN = 5 .. 11, kFloatPack outputs side by side, row after row. Four outputs below
 // each other share kN - 3 rows of samples, two of them share kN - 1; what is shared is sorted once, and of
 // every sorted list only that part is kept that can still become the median (A. Adams, Fast median filters
 // using separable sorting networks, 2021). Counting rows from 1 at the first window's first, the outputs of
@@ -103,17 +74,17 @@ void medianStrip(const float* corner, std::ptrdiff_t stride, int last_row, int o
   constexpr int kCoreKept = kCoreEnd - kCoreBegin;
   constexpr int kHalfBegin = kMedian - kN - kCoreBegin;
 
-  Samples rows[16][kN];
-  Samples pairs[8][2 * kN];
-  Samples quads[4][4 * kN];
-  Samples core[kCoreKept];
-  Samples half[kN + 1];
+  FloatPack rows[16][kN];
+  FloatPack pairs[8][2 * kN];
+  FloatPack quads[4][4 * kN];
+  FloatPack core[kCoreKept];
+  FloatPack half[kN + 1];
   int row = 1;
   for (int k = 1; 4 * (k - 1) < out_rows; ++k) {
     for (; row < 4 * k + kN; ++row) {
       const float* from = corner + (row - 1 < last_row ? row - 1 : last_row) * stride;
-      Samples v[kN];
-      for (int i = 0; i < kN; ++i) v[i] = load<Samples>(from + i);
+      FloatPack v[kN];
+      for (int i = 0; i < kN; ++i) v[i] = load<FloatPack>(from + i);
       apply<Sorting<kN>>(v);
       for (int i = 0; i < kN; ++i) rows[row & 15][i] = v[i];
       if (row % 2 == 1 && row >= 3)
@@ -122,7 +93,7 @@ void medianStrip(const float* corner, std::ptrdiff_t stride, int last_row, int o
         if (row % 4 == 3 && row >= 7)
           merge<2 * kN, 2 * kN>(pairs[((row >> 1) - 1) & 7], pairs[(row >> 1) & 7], quads[(row >> 2) & 3]);
     }
-    const Samples* shared = core;
+    const FloatPack* shared = core;
     if constexpr (kN == 5) shared = pairs[(2 * k) & 7];
     if constexpr (kN == 7) shared = quads[k & 3] + kCoreBegin;
     if constexpr (kN == 9)
@@ -146,21 +117,22 @@ void medianStrip(const float* corner, std::ptrdiff_t stride, int last_row, int o
 // 3 x 3: sort each column; the median of nine is the median of the largest low, the middle middle and the
 // smallest high (J. L. Smith, Implementing median filters in XC4000E FPGAs, 1996). Two outputs below each
 // other share the comparison of the two rows they share.
-FETTLE_INLINE void threeColumns(const Samples& low, const Samples& high, const Samples& v, Samples* sorted) {
-  sorted[0] = smaller(low, v);
-  const Samples rest = larger(low, v);
-  sorted[1] = smaller(high, rest);
-  sorted[2] = larger(high, rest);
+FETTLE_INLINE void threeColumns(const FloatPack& low, const FloatPack& high, const FloatPack& v,
+                                FloatPack* sorted) {
+  sorted[0] = lesser(low, v);
+  const FloatPack rest = greater(low, v);
+  sorted[1] = lesser(high, rest);
+  sorted[2] = greater(high, rest);
 }
 
-FETTLE_INLINE Samples middleOfThree(const Samples& a, const Samples& b, const Samples& c) {
-  return larger(smaller(a, b), smaller(larger(a, b), c));
+FETTLE_INLINE FloatPack middleOfThree(const FloatPack& a, const FloatPack& b, const FloatPack& c) {
+  return greater(lesser(a, b), lesser(greater(a, b), c));
 }
 
-FETTLE_INLINE Samples middleOfNine(const Samples (*sorted)[3]) {
-  const Samples low = larger(larger(sorted[0][0], sorted[1][0]), sorted[2][0]);
-  const Samples mid = middleOfThree(sorted[0][1], sorted[1][1], sorted[2][1]);
-  const Samples high = smaller(smaller(sorted[0][2], sorted[1][2]), sorted[2][2]);
+FETTLE_INLINE FloatPack middleOfNine(const FloatPack (*sorted)[3]) {
+  const FloatPack low = greater(greater(sorted[0][0], sorted[1][0]), sorted[2][0]);
+  const FloatPack mid = middleOfThree(sorted[0][1], sorted[1][1], sorted[2][1]);
+  const FloatPack high = lesser(lesser(sorted[0][2], sorted[1][2]), sorted[2][2]);
   return middleOfThree(low, mid, high);
 }
 
@@ -169,33 +141,33 @@ void medianStrip<3>(const float* corner, std::ptrdiff_t stride, int last_row, in
                     std::ptrdiff_t out_stride) noexcept {
   const auto row = [&](int i) { return corner + (i < last_row ? i : last_row) * stride; };
   for (int r = 0; r < out_rows; r += 2) {
-    Samples first[3][3];
-    Samples second[3][3];
+    FloatPack first[3][3];
+    FloatPack second[3][3];
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      const auto b = load<Samples>(row(r + 1) + i);
-      const auto c = load<Samples>(row(r + 2) + i);
-      const Samples low = smaller(b, c);
-      const Samples high = larger(b, c);
-      threeColumns(low, high, load<Samples>(row(r) + i), first[i]);
-      threeColumns(low, high, load<Samples>(row(r + 3) + i), second[i]);
+      const auto b = load<FloatPack>(row(r + 1) + i);
+      const auto c = load<FloatPack>(row(r + 2) + i);
+      const FloatPack low = lesser(b, c);
+      const FloatPack high = greater(b, c);
+      threeColumns(low, high, load<FloatPack>(row(r) + i), first[i]);
+      threeColumns(low, high, load<FloatPack>(row(r + 3) + i), second[i]);
     }
-    const Samples medians[2] = {middleOfNine(first), middleOfNine(second)};
+    const FloatPack medians[2] = {middleOfNine(first), middleOfNine(second)};
     for (int j = 0; j < 2 && r + j < out_rows; ++j) store(out + (r + j) * out_stride, medians[j]);
   }
 }
 
-// The middle one of kCount samples of each lane, to lanes[0 .. kColumns - 1]; sample i of a lane is lanes[i * kColumns + lane].
+// The middle one of kCount samples of each lane, to lanes[0 .. kFloatPack - 1]; sample i of a lane is lanes[i * kFloatPack + lane].
 template <int kCount>
 void middleOfLanes(float* lanes) noexcept {
-  Samples v[kCount];
-  for (int i = 0; i < kCount; ++i) v[i] = load<Samples>(lanes + i * kColumns);
+  FloatPack v[kCount];
+  for (int i = 0; i < kCount; ++i) v[i] = load<FloatPack>(lanes + i * kFloatPack);
   apply<Selecting<kCount>>(v);
   store(lanes, v[kCount / 2]);
 }
 
 inline int medianColumns() noexcept {
-  return kColumns;
+  return kFloatPack;
 }
 
 // Bit i: row[i] is a hole, i < n <= 64.

@@ -1,199 +1,38 @@
 // The kernel of merge.cpp; see each_cpu-inl.h.
 
-// Sixteen samples register by register where one does not hold them all: GCC takes comparisons and choices of wider vectors apart to
-// single numbers, which took twelve times as long.
-#if defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 1
-using FloatPart = __m256;
-using IntPart = __m256i;
-using DoublePart = __m256d;
-FETTLE_INLINE IntPart unequal(FloatPart a, FloatPart b) noexcept {
-  return _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_NEQ_UQ));
-}
-FETTLE_INLINE IntPart thereIn(FloatPart a) noexcept {
-  return _mm256_castps_si256(_mm256_cmp_ps(a, a, _CMP_ORD_Q));
-}
-FETTLE_INLINE IntPart both(IntPart a, IntPart b) noexcept {
-  return _mm256_and_si256(a, b);
-}
-FETTLE_INLINE IntPart oneMore(IntPart counts, IntPart where) noexcept {
-  return _mm256_add_epi32(counts, where);
-}
-FETTLE_INLINE FloatPart chosen(IntPart where, FloatPart a, FloatPart b) noexcept {
-  return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(where));
-}
-FETTLE_INLINE FloatPart withoutNegativeZero(FloatPart a) noexcept {
-  return _mm256_add_ps(a, _mm256_setzero_ps());
-}
-FETTLE_INLINE FloatPart negated(FloatPart a) noexcept {
-  return _mm256_xor_ps(a, _mm256_set1_ps(-0.0F));
-}
-FETTLE_INLINE FloatPart lower(FloatPart a, FloatPart b) noexcept {
-  return _mm256_min_ps(a, b);
-}
-FETTLE_INLINE FloatPart higher(FloatPart a, FloatPart b) noexcept {
-  return _mm256_max_ps(a, b);
-}
-FETTLE_INLINE void streamPart(float* to, FloatPart a) noexcept {
-  _mm256_stream_ps(to, a);
-}
-FETTLE_INLINE IntPart truthsOf(int bits) noexcept {
-  const IntPart own = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-  return _mm256_cmpeq_epi32(_mm256_and_si256(own, _mm256_set1_epi32(bits)), own);
-}
-FETTLE_INLINE DoublePart wideHalf(FloatPart a, int half) noexcept {
-  return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
-}
-FETTLE_INLINE DoublePart differenceOf(DoublePart a, DoublePart b) noexcept {
-  return _mm256_sub_pd(a, b);
-}
-FETTLE_INLINE DoublePart zeroIfNan(DoublePart a) noexcept {
-  return _mm256_and_pd(a, _mm256_cmp_pd(a, a, _CMP_ORD_Q));
-}
-FETTLE_INLINE DoublePart productOf(DoublePart a, DoublePart b) noexcept {
-  return _mm256_mul_pd(a, b);
-}
-FETTLE_INLINE DoublePart sumOf(DoublePart a, DoublePart b) noexcept {
-  return _mm256_add_pd(a, b);
-}
-FETTLE_INLINE DoublePart higher(DoublePart a, DoublePart b) noexcept {
-  return _mm256_max_pd(a, b);
-}
-#elif defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 0
-using FloatPart = __m128;
-using IntPart = __m128i;
-using DoublePart = __m128d;
-FETTLE_INLINE IntPart unequal(FloatPart a, FloatPart b) noexcept {
-  return _mm_castps_si128(_mm_cmpneq_ps(a, b));
-}
-FETTLE_INLINE IntPart thereIn(FloatPart a) noexcept {
-  return _mm_castps_si128(_mm_cmpord_ps(a, a));
-}
-FETTLE_INLINE IntPart both(IntPart a, IntPart b) noexcept {
-  return _mm_and_si128(a, b);
-}
-FETTLE_INLINE IntPart oneMore(IntPart counts, IntPart where) noexcept {
-  return _mm_add_epi32(counts, where);
-}
-FETTLE_INLINE FloatPart chosen(IntPart where, FloatPart a, FloatPart b) noexcept {
-  const FloatPart mask = _mm_castsi128_ps(where);
-  return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
-}
-FETTLE_INLINE FloatPart withoutNegativeZero(FloatPart a) noexcept {
-  return _mm_add_ps(a, _mm_setzero_ps());
-}
-FETTLE_INLINE FloatPart negated(FloatPart a) noexcept {
-  return _mm_xor_ps(a, _mm_set1_ps(-0.0F));
-}
-FETTLE_INLINE FloatPart lower(FloatPart a, FloatPart b) noexcept {
-  return _mm_min_ps(a, b);
-}
-FETTLE_INLINE FloatPart higher(FloatPart a, FloatPart b) noexcept {
-  return _mm_max_ps(a, b);
-}
-FETTLE_INLINE void streamPart(float* to, FloatPart a) noexcept {
-  _mm_storeu_ps(to, a);
-}
-FETTLE_INLINE IntPart truthsOf(int bits) noexcept {
-  const IntPart own = _mm_setr_epi32(1, 2, 4, 8);
-  return _mm_cmpeq_epi32(_mm_and_si128(own, _mm_set1_epi32(bits)), own);
-}
-FETTLE_INLINE DoublePart wideHalf(FloatPart a, int half) noexcept {
-  return _mm_cvtps_pd(half == 0 ? a : _mm_movehl_ps(a, a));
-}
-FETTLE_INLINE DoublePart differenceOf(DoublePart a, DoublePart b) noexcept {
-  return _mm_sub_pd(a, b);
-}
-FETTLE_INLINE DoublePart zeroIfNan(DoublePart a) noexcept {
-  return _mm_and_pd(a, _mm_cmpord_pd(a, a));
-}
-FETTLE_INLINE DoublePart productOf(DoublePart a, DoublePart b) noexcept {
-  return _mm_mul_pd(a, b);
-}
-FETTLE_INLINE DoublePart sumOf(DoublePart a, DoublePart b) noexcept {
-  return _mm_add_pd(a, b);
-}
-FETTLE_INLINE DoublePart higher(DoublePart a, DoublePart b) noexcept {
-  return _mm_max_pd(a, b);
-}
+constexpr int kParts = kLanes / kFloatPack;  // registers that 16 samples take
+
+// Bit k of `bits` as the truth of lane k: all bits set.
+FETTLE_INLINE IntPack truthsOf(int bits) noexcept {
+#if FETTLE_LEVEL == 2
+  constexpr IntPack kOwn = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
+                            1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
+#elif FETTLE_LEVEL == 1
+  constexpr IntPack kOwn = {1, 1 << 1, 1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6, 1 << 7};
 #else
-using FloatPart = Floats;
-using IntPart = Ints;
-using DoublePart = Doubles;
-FETTLE_INLINE IntPart unequal(const FloatPart& a, const FloatPart& b) noexcept {
-  return a != b;
-}
-FETTLE_INLINE IntPart thereIn(const FloatPart& a) noexcept {
-  return a == a;
-}
-FETTLE_INLINE IntPart both(const IntPart& a, const IntPart& b) noexcept {
-  return a & b;
-}
-FETTLE_INLINE IntPart oneMore(const IntPart& counts, const IntPart& where) noexcept {
-  return counts + where;
-}
-FETTLE_INLINE FloatPart chosen(const IntPart& where, const FloatPart& a, const FloatPart& b) noexcept {
-  return where ? a : b;
-}
-FETTLE_INLINE FloatPart withoutNegativeZero(const FloatPart& a) noexcept {
-  return a + 0.0F;
-}
-FETTLE_INLINE FloatPart negated(const FloatPart& a) noexcept {
-  return -a;
-}
-FETTLE_INLINE FloatPart lower(const FloatPart& a, const FloatPart& b) noexcept {
-  return lesser(a, b);
-}
-FETTLE_INLINE FloatPart higher(const FloatPart& a, const FloatPart& b) noexcept {
-  return greater(a, b);
-}
-FETTLE_INLINE void streamPart(float* to, const FloatPart& a) noexcept {
-  storePast(to, a);
-}
-// Bit k of `bits` as the truth of lane k.
-FETTLE_INLINE IntPart truthsOf(int bits) noexcept {
-  constexpr Ints kOwn = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
-                         1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
-  return (kOwn & bits) != 0;
-}
-FETTLE_INLINE DoublePart wideHalf(const FloatPart& a, int half) noexcept {
-  return widened(halfOf(a, half));
-}
-FETTLE_INLINE DoublePart differenceOf(const DoublePart& a, const DoublePart& b) noexcept {
-  return a - b;
-}
-FETTLE_INLINE DoublePart zeroIfNan(const DoublePart& a) noexcept {
-  return a == a ? a : Doubles{};
-}
-FETTLE_INLINE DoublePart productOf(const DoublePart& a, const DoublePart& b) noexcept {
-  return a * b;
-}
-FETTLE_INLINE DoublePart sumOf(const DoublePart& a, const DoublePart& b) noexcept {
-  return a + b;
-}
-FETTLE_INLINE DoublePart higher(const DoublePart& a, const DoublePart& b) noexcept {
-  return greater(a, b);
-}
+  constexpr IntPack kOwn = {1, 1 << 1, 1 << 2, 1 << 3};
 #endif
-constexpr int kParts = sizeof(Floats) / sizeof(FloatPart), kPartLanes = kLanes / kParts;
+  return (kOwn & bits) == kOwn;
+}
 
 // Sums go to one of 16 places by column, so that their order is fixed and they can be taken side by side.
 struct Changes {
-  DoublePart squares[2 * kParts] = {};
-  DoublePart largest[2 * kParts] = {};  // of the squares
-  IntPart changed[kParts] = {};
+  Pack squares[2 * kParts] = {};
+  Pack largest[2 * kParts] = {};  // of the squares
+  IntPack changed[kParts] = {};
 };
 
 template <bool kHoles>
-FETTLE_INLINE void count(Changes& changes, int part, const FloatPart& before,
-                         const FloatPart& after) noexcept {
+FETTLE_INLINE void count(Changes& changes, int part, const FloatPack& before,
+                         const FloatPack& after) noexcept {
 #pragma GCC unroll 2
   for (int h = 0; h < 2; ++h) {
-    DoublePart d = differenceOf(wideHalf(after, h), wideHalf(before, h));
-    if constexpr (kHoles) d = zeroIfNan(d);  // a hole stays a hole
-    const DoublePart square = productOf(d, d);
+    Pack d = widenedHalf(after, h) - widenedHalf(before, h);
+    if constexpr (kHoles) d = d == d ? d : Pack{};  // a hole stays a hole
+    const Pack square = d * d;
     const int at = 2 * part + h;
-    changes.largest[at] = higher(square, changes.largest[at]);
-    changes.squares[at] = sumOf(changes.squares[at], square);
+    changes.largest[at] = greater(square, changes.largest[at]);
+    changes.squares[at] = changes.squares[at] + square;
   }
 }
 
@@ -218,18 +57,18 @@ inline TileReport reportOf(const Changes& changes) noexcept {
 
 // What `best` makes of the lanes 0 .. 7 and of 8 .. 15, to to[0] and to[1].
 template <class Best>
-FETTLE_INLINE void bestOfEight(const Best& best, const FloatPart* of, float* to) noexcept {
+FETTLE_INLINE void bestOfEight(const Best& best, const FloatPack* of, float* to) noexcept {
 #if defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 1
 #pragma GCC unroll 2
   for (int i = 0; i < 2; ++i) {
-    FloatPart v = best(of[i], _mm256_permute2f128_ps(of[i], of[i], 1));
+    FloatPack v = best(of[i], _mm256_permute2f128_ps(of[i], of[i], 1));
     v = best(v, _mm256_permute_ps(v, 0x4e));
     to[i] = _mm256_cvtss_f32(best(v, _mm256_permute_ps(v, 0xb1)));
   }
 #elif defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 0
 #pragma GCC unroll 2
   for (int i = 0; i < 2; ++i) {
-    FloatPart v = best(of[2 * i], of[2 * i + 1]);
+    FloatPack v = best(of[2 * i], of[2 * i + 1]);
     v = best(v, _mm_shuffle_ps(v, v, 0x4e));
     to[i] = _mm_cvtss_f32(best(v, _mm_shuffle_ps(v, v, 0xb1)));
   }
@@ -257,18 +96,18 @@ TileReport mergeRows(const Tile& before, const float* results, std::ptrdiff_t st
                                                         -kInf, -kInf, -kInf, -kInf, -kInf, -kInf,
                                                         -kInf, -kInf, -kInf, -kInf};
   Changes changes;
-  FloatPart tile_low[kParts], tile_high[kParts];
+  FloatPack tile_low[kParts], tile_high[kParts];
   for (int part = 0; part < kParts; ++part) {
-    tile_low[part] = load<FloatPart>(kHighest);
-    tile_high[part] = load<FloatPart>(kLowest);
+    tile_low[part] = load<FloatPack>(kHighest);
+    tile_high[part] = load<FloatPack>(kLowest);
   }
   const float* old_row = before.samples.data();
   float* new_row = after.samples.data();
   for (int band = 0; band < kTileSide / kBlockSide; ++band) {
-    FloatPart low[kAcross * kParts], high[kAcross * kParts];
+    FloatPack low[kAcross * kParts], high[kAcross * kParts];
     for (int q = 0; q < kAcross * kParts; ++q) {
-      low[q] = load<FloatPart>(kHighest);
-      high[q] = load<FloatPart>(kLowest);
+      low[q] = load<FloatPack>(kHighest);
+      high[q] = load<FloatPack>(kLowest);
     }
     for (int r = 0; r < kBlockSide; ++r, old_row += kTileSide, new_row += kTileSide, results += stride) {
       const std::uint64_t may = before.marks[static_cast<std::size_t>(band * kBlockSide + r)] ^ flip;
@@ -278,35 +117,34 @@ TileReport mergeRows(const Tile& before, const float* results, std::ptrdiff_t st
       }
 #pragma GCC unroll 16
       for (int q = 0; q < kAcross * kParts; ++q) {
-        const auto old = load<FloatPart>(old_row + q * kPartLanes);
-        auto fresh = load<FloatPart>(results + q * kPartLanes);
-        if constexpr (kTurned) fresh = negated(fresh);
-        IntPart differs = unequal(fresh, old);
-        if constexpr (kHoles) differs = both(differs, thereIn(old));
-        if constexpr (kSomeStay)
-          differs = both(differs, truthsOf(static_cast<int>((may >> (q * kPartLanes)) & 0xffffU)));
-        const FloatPart now = chosen(differs, withoutNegativeZero(fresh), old);
-        streamPart(new_row + q * kPartLanes, now);
+        const auto old = load<FloatPack>(old_row + q * kFloatPack);
+        auto fresh = load<FloatPack>(results + q * kFloatPack);
+        if constexpr (kTurned) fresh = -fresh;
+        IntPack differs = fresh != old;
+        if constexpr (kHoles) differs &= old == old;
+        if constexpr (kSomeStay) differs &= truthsOf(static_cast<int>((may >> (q * kFloatPack)) & 0xffffU));
+        const FloatPack now = differs ? fresh + 0.0F : old;
+        storePast(new_row + q * kFloatPack, now);
         // A comparison with NaN is false, so a hole never replaces a bound.
-        low[q] = lower(now, low[q]);
-        high[q] = higher(now, high[q]);
-        changes.changed[q % kParts] = oneMore(changes.changed[q % kParts], differs);
+        low[q] = lesser(now, low[q]);
+        high[q] = greater(now, high[q]);
+        changes.changed[q % kParts] += differs;
         count<kHoles>(changes, q % kParts, old, now);
       }
     }
 #pragma GCC unroll 16
     for (int q = 0; q < kAcross * kParts; ++q) {
-      tile_low[q % kParts] = lower(low[q], tile_low[q % kParts]);
-      tile_high[q % kParts] = higher(high[q], tile_high[q % kParts]);
+      tile_low[q % kParts] = lesser(low[q], tile_low[q % kParts]);
+      tile_high[q % kParts] = greater(high[q], tile_high[q % kParts]);
     }
 #pragma GCC unroll 4
     for (int q = 0; q < kAcross; ++q) {
       const auto block = static_cast<std::size_t>(band * kBlockSide + q * kLanes / kBlockSide);
       bestOfEight(
-          [](const FloatPart& a, const FloatPart& b) __attribute__((always_inline)) { return lower(a, b); },
+          [](const FloatPack& a, const FloatPack& b) __attribute__((always_inline)) { return lesser(a, b); },
           low + q * kParts, &after.block_min[block]);
       bestOfEight(
-          [](const FloatPart& a, const FloatPart& b) __attribute__((always_inline)) { return higher(a, b); },
+          [](const FloatPack& a, const FloatPack& b) __attribute__((always_inline)) { return greater(a, b); },
           high + q * kParts, &after.block_max[block]);
     }
   }
@@ -344,10 +182,10 @@ inline TileReport compare(const Tile& before, const Tile& after) noexcept {
   for (int i = 0; i < kTileSamples; i += kLanes)
 #pragma GCC unroll 4
     for (int part = 0; part < kParts; ++part) {
-      const auto a = load<FloatPart>(before.samples.data() + i + part * kPartLanes);
-      const auto b = load<FloatPart>(after.samples.data() + i + part * kPartLanes);
-      const IntPart differs = both(unequal(a, b), both(thereIn(a), thereIn(b)));
-      changes.changed[part] = oneMore(changes.changed[part], differs);
+      const auto a = load<FloatPack>(before.samples.data() + i + part * kFloatPack);
+      const auto b = load<FloatPack>(after.samples.data() + i + part * kFloatPack);
+      const IntPack differs = (a != b) & (a == a) & (b == b);
+      changes.changed[part] += differs;
       count<true>(changes, part, a, b);
     }
   return reportOf(changes);
