@@ -94,7 +94,7 @@ void moveRow(const Row& enter, const Row& leave, const Part* parts, std::size_t 
     moveParts<false, true, kHoles, kLanes>(enter, leave, parts, n, cut, sums);
 }
 
-// to[i] = from[i] + .. + from[i + 3], i in 0 .. n rounded up to 4; four more are read.
+// to[i] = from[i] + .. + from[i + 3], i in 0 .. n rounded up to 4; five more are read.
 inline void sumFours(const double* from, int n, double* to) noexcept {
   const auto pairs = [&](int i) __attribute__((always_inline)) {
     return _mm256_add_pd(_mm256_loadu_pd(from + i), _mm256_loadu_pd(from + i + 1));
@@ -142,7 +142,7 @@ class Window {
   __m256d sum_{};
 };
 
-// out[c] = sum of the window / count, as a division in double and a rounding to float, for c in 0 .. n rounded up to 16.
+// out[c] = sum of the window / count, as a division in double and a rounding to float, for c in 0 .. n rounded up to 4.
 // Where all windows are full the division is a multiplication and a correction, which has its bits: box_integers-inl.h.
 template <int kDirect, int kLanes, bool kHoles>
 void slideFours(const Slide& s, float* out, int n, int full_begin, int full_end) noexcept {

@@ -34,7 +34,7 @@ class BoxStrip {
              std::int32_t rows);
 
   /// The next `rows` rows of outputs, row-major; stride at least column1 - column0 rounded up to kTileSide,
-  /// so many are written, unspecified at holes and beyond column1. False when samples do not fit: `out` is
+  /// so many may be written, unspecified at holes and beyond column1. False when samples do not fit: `out` is
   /// unspecified then, and begin() has to be called before the next rows().
   [[nodiscard]] bool rows(std::int32_t rows, float* out, std::ptrdiff_t stride);
 
@@ -76,7 +76,7 @@ class BoxStrip {
 
   [[nodiscard]] int window() const noexcept { return 2 * radius_ + 1; }
   [[nodiscard]] const std::vector<Piece>& pieces() const noexcept { return pieces_; }
-  /// Columns in the window of each output that lie in the field, 16 more than there are outputs.
+  /// Columns in the window of each output that lie in the field, for outputs rounded up to kTileSide.
   [[nodiscard]] const std::int32_t* columnCounts() const noexcept { return column_counts_.data(); }
 
  private:

@@ -1,6 +1,6 @@
 // The kernels of disk_erosion.cpp; see each_cpu-inl.h.
 
-// out[i] = the lesser of a[i] and b[i], i in 0 .. n rounded up to 16.
+// out[i] = the lesser of a[i] and b[i], i in 0 .. n rounded up to kFloatPack.
 inline void lesserOf(const float* a, const float* b, float* out, int n) noexcept {
   for (int i = 0; i < n; i += kFloatPack)
     store(out + i, lesser(load<FloatPack>(a + i), load<FloatPack>(b + i)));

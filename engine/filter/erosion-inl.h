@@ -1,12 +1,12 @@
 // The kernels of erosion.cpp; see each_cpu-inl.h.
 
-// line[i] = the lesser of line[i] and line[i + shift], i in 0 .. n rounded up to 16.
+// line[i] = the lesser of line[i] and line[i + shift], i in 0 .. n rounded up to kFloatPack.
 inline void lowerByShift(float* line, int shift, int n) noexcept {
   for (int i = 0; i < n; i += kFloatPack)
     store(line + i, lesser(load<FloatPack>(line + i), load<FloatPack>(line + i + shift)));
 }
 
-// out[i] = the lesser of a[i] and b[i], i in 0 .. n rounded up to 16.
+// out[i] = the lesser of a[i] and b[i], i in 0 .. n rounded up to kFloatPack.
 inline void lesserOf(const float* a, const float* b, float* out, int n) noexcept {
   for (int i = 0; i < n; i += kFloatPack)
     store(out + i, lesser(load<FloatPack>(a + i), load<FloatPack>(b + i)));

@@ -4,7 +4,7 @@
 #include "engine/filter/gaussian_slide-inl.h"
 #include "engine/filter/gaussian_weigh-inl.h"
 
-// to[i] += weight * from[i], i in 0 .. n rounded up to 8.
+// to[i] += weight * from[i], i in 0 .. n rounded up to kPack.
 inline void accumulate(const double* from, double weight, double* to, int n) noexcept {
   const Pack w = every(weight);
   for (int i = 0; i < n; i += kPack) store(to + i, load<Pack>(to + i) + w * load<Pack>(from + i));

@@ -1,7 +1,7 @@
 // Of the kernels of gaussian_plane.cpp and gaussian_regression.cpp; see each_cpu-inl.h. Products and sums are rounded each by itself,
 // in the order of the taps, so that every level has the same bits.
 
-// out[i] = sum over t of weights[t] * in[i + t * step], i in 0 .. n rounded up to 8; in may be read as far.
+// out[i] = sum over t of weights[t] * in[i + t * step], i in 0 .. n rounded up to kPack; in may be read as far.
 inline void slide(const double* in, std::ptrdiff_t step, const double* weights, int taps, double* out,
                   int n) noexcept {
   constexpr int kTogether = FETTLE_LEVEL == 2 ? 4 : 8;
@@ -27,7 +27,7 @@ inline void slide(const double* in, std::ptrdiff_t step, const double* weights, 
 }
 
 // Samples between nodes: out[n * step + p] = sum over t of in[n + t] * weights[t * lane + p], p in 0 .. step; lane is step
-// rounded up to 8, and so much of out may be written.
+// rounded up to kPack, and so much of out may be written.
 inline void spreadOut(const double* in, int step, const double* weights, int taps, double* out,
                       int count) noexcept {
   const int lane = (step + 7) / 8 * 8;

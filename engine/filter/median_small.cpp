@@ -257,7 +257,7 @@ class TileStrips final : public TileWindow {
         strip_(chooseStrip(window, level)),
         columns_at_once_(FETTLE_AT_LEVEL(level, medianColumns)()) {}
 
-  void run(const TileAround& around, float* out) const noexcept override {
+  bool run(const TileAround& around, float* out) const noexcept override {
     constexpr int kBeside = 16;  // samples of the tiles to the left and right: a cache line
     constexpr std::ptrdiff_t kStride = kTileSide + 2 * kBeside;
     constexpr int kMostRows = kTileSide + 2 * (kSmallMedianWindow / 2);
@@ -273,6 +273,7 @@ class TileStrips final : public TileWindow {
     for (int c = 0; c < kTileSide; c += columns_at_once_)
       strip_(samples + kBeside + c - radius_, kStride, kTileSide + 2 * radius_ - 1, kTileSide, out + c,
              kTileSide);
+    return true;
   }
 
  private:

@@ -58,22 +58,22 @@ inline TileReport reportOf(const Changes& changes) noexcept {
 // What `best` makes of the lanes 0 .. 7 and of 8 .. 15, to to[0] and to[1].
 template <class Best>
 FETTLE_INLINE void bestOfEight(const Best& best, const FloatPack* of, float* to) noexcept {
-#if defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 1
+#if FETTLE_LEVEL == 1
 #pragma GCC unroll 2
   for (int i = 0; i < 2; ++i) {
     FloatPack v = best(of[i], _mm256_permute2f128_ps(of[i], of[i], 1));
     v = best(v, _mm256_permute_ps(v, 0x4e));
     to[i] = _mm256_cvtss_f32(best(v, _mm256_permute_ps(v, 0xb1)));
   }
-#elif defined(FETTLE_CPU_LEVELS) && FETTLE_LEVEL == 0
+#elif FETTLE_LEVEL == 0
 #pragma GCC unroll 2
   for (int i = 0; i < 2; ++i) {
     FloatPack v = best(of[2 * i], of[2 * i + 1]);
-    v = best(v, _mm_shuffle_ps(v, v, 0x4e));
-    to[i] = _mm_cvtss_f32(best(v, _mm_shuffle_ps(v, v, 0xb1)));
+    v = best(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
+    to[i] = best(v, __builtin_shufflevector(v, v, 1, 0, 3, 2))[0];
   }
 #else
-  Floats v = of[0];
+  FloatPack v = of[0];
   v = best(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
   v = best(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
   v = best(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));

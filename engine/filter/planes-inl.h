@@ -1,7 +1,7 @@
 // The kernels of planes.cpp; see kernel.h. Rows of doubles begin at a first column that is readable 8 elements to its
 // left and are read and written in registers: 16 elements beyond the last column are readable and finite.
 
-// Heights of a row above a reference, in noises; holes are 0. n is rounded up to 8 by the caller.
+// Heights of a row above a reference, in noises; holes are 0. n rounded up to kPack.
 void heightsInNoises(const float* z, int n, double reference, double per_noise, double tallest,
                      double* __restrict out) noexcept {
   const Pack least = every(-tallest), most = every(tallest), none{};

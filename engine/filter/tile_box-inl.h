@@ -90,17 +90,13 @@ void boxTile(const TileAround& around, double cut, float* out) noexcept {
 }
 
 template <int kRadius>
-void boxTileOf(const TileAround& around, float* out) noexcept {
-  const TileRows<kRadius> rows(around);
-  const BoxCuts<kRadius> cuts(magnitudesOf<kRadius>(rows));
-  if (cuts.lanes == 1) return boxTile<kRadius, 1>(around, 0.0, out);
-  if (cuts.lanes == 2) return boxTile<kRadius, 2>(around, cuts.all.cut[0], out);
-  for (int y = 0; y < kTileSide; ++y)
-    for (int x = 0; x < kTileSide; ++x)
-      out[y * kTileSide + x] = cuts.mean([&](int dy, int dx) {
-        const int column = x + dx, base = column < 0 ? -16 : column < kTileSide ? 0 : kTileSide;
-        return rows.at(y + dy, base)[column - base];
-      });
+bool boxTileOf(const TileAround& around, float* out) noexcept {
+  const BoxCuts cuts = cutsOf(magnitudesOf<kRadius>(TileRows<kRadius>(around)), 2 * kRadius + 1);
+  if (cuts.lanes == 1)
+    boxTile<kRadius, 1>(around, 0.0, out);
+  else if (cuts.lanes == 2)
+    boxTile<kRadius, 2>(around, cuts.first, out);
+  return cuts.lanes != 0;
 }
 
 #endif

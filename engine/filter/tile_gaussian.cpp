@@ -33,8 +33,9 @@ class TileGaussian final : public TileWindow {
     inverse_ = 1.0 / sumOf(sumOf(1.0));
   }
 
-  void run(const TileAround& around, float* out) const noexcept override {
+  bool run(const TileAround& around, float* out) const noexcept override {
     kernel_(around, weights_.data(), inverse_, out);
+    return true;
   }
 
  private:
@@ -50,7 +51,8 @@ std::unique_ptr<TileWindow> makeTileGaussian(const FilterSpec& spec, CpuLevel le
   std::vector<double> weights = gaussianHalfWeights(spec);
   // Beyond these the turned kernels of gaussian.cpp are faster.
   using Kernels = std::array<TileGaussian::Kernel, 4>;
-  constexpr Kernels kWide = {nullptr, avx512::gaussianTile<1>, avx512::gaussianTile<2>, avx512::gaussianTile<3>};
+  constexpr Kernels kWide = {nullptr, avx512::gaussianTile<1>, avx512::gaussianTile<2>,
+                             avx512::gaussianTile<3>};
   constexpr Kernels kNarrow = {nullptr, avx2::gaussianTile<1>, avx2::gaussianTile<2>, avx2::gaussianTile<3>};
   const std::size_t radius = weights.size() - 1;
   if (radius == 0 || radius >= kWide.size()) return nullptr;

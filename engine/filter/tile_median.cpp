@@ -16,7 +16,10 @@ namespace {
 template <void (*kRun)(const TileAround&, float*) noexcept>
 class TileMedian final : public TileWindow {
  public:
-  void run(const TileAround& around, float* out) const noexcept override { kRun(around, out); }
+  bool run(const TileAround& around, float* out) const noexcept override {
+    kRun(around, out);
+    return true;
+  }
 };
 
 }  // namespace

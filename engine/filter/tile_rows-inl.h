@@ -15,7 +15,8 @@ class TileRows {
     }
   }
 
-  // The samples of row y from this column on, a multiple of 4 in -16 .. kTileSide + 12, up to the next multiple of 16.
+  // The samples of row y from this column on, a multiple of 4 in -16 .. kTileSide + 12: up to the end of the tile's row,
+  // or of 16 columns of the ones beside.
   [[nodiscard]] FETTLE_INLINE const float* at(int y, int column) const noexcept {
     const Row& row = rows_[y + kReach];
     return column < 0           ? row.left_end + column

@@ -26,8 +26,9 @@ class TileWindow {
   TileWindow& operator=(TileWindow&&) = delete;
   virtual ~TileWindow() = default;
 
-  /// kTileSide x kTileSide results, row-major, at a multiple of 64 bytes.
-  virtual void run(const TileAround& around, float* out) const noexcept = 0;
+  /// kTileSide x kTileSide results, row-major, at a multiple of 64 bytes. False where these samples are not for it: `out` is
+  /// unspecified then.
+  [[nodiscard]] virtual bool run(const TileAround& around, float* out) const noexcept = 0;
 };
 
 /// Of means, medians and Gaussians; null where the window is too large or the processor has no such path. makeTileStrips: medians by

@@ -76,26 +76,50 @@ class Pass {
     return true;
   }
 
-  // As run, with windows over one tile after the other; the rectangle of what they cannot do by a strip, or gathered.
+  // As run, with windows over one tile after the other, and by strips or from one rectangle that is gathered where tiles are near
+  // a border or a hole.
   bool runTiles(const TileRect& rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
+    const auto reached = [&](std::int32_t tc, std::int32_t tr) {
+      return !blocks_.mayChange(tc, tr) || blocks_.around(tc, tr).has_value();
+    };
+    if (scratch
+            .strip) {  // what strips are left with may be narrow: they begin anew for each run of tiles of a row
+      for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+        for (std::int32_t tc = rect.column0, end = tc; tc < rect.column1; tc = std::max(end, tc + 1)) {
+          for (end = tc; end < rect.column1 && !reached(end, tr);) ++end;
+          if (end > tc ? !runStrip({tc, tr, end, tr + 1}, scratch, job, made)
+                       : !runTile(tc, tr, scratch, job, made))
+            return false;
+        }
+      return true;
+    }
     TileRect rest{rect.column1, rect.row1, rect.column0, rect.row0};
     for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
       for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc)
-        if (blocks_.mayChange(tc, tr) && !blocks_.around(tc, tr))
+        if (!reached(tc, tr))
           rest = {std::min(rest.column0, tc), std::min(rest.row0, tr), std::max(rest.column1, tc + 1),
                   std::max(rest.row1, tr + 1)};
     for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
       for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
-        const bool later = tc >= rest.column0 && tc < rest.column1 && tr >= rest.row0 && tr < rest.row1;
-        if (later || !blocks_.mayChange(tc, tr)) continue;
-        if (job.cancelled()) return false;
-        scratch.tile->run(*blocks_.around(tc, tr), scratch.block.results.data());
-        if (!blocks_.mergeTileAt(tc, tr, scratch.block, made)) return false;
+        const bool gathered = tc >= rest.column0 && tc < rest.column1 && tr >= rest.row0 && tr < rest.row1;
+        if (!gathered && !runTile(tc, tr, scratch, job, made)) return false;
       }
     if (rest.empty()) return true;
-    if (scratch.strip) return runStrip(rest, scratch, job, made);
     return gatherAndFilter(rest, scratch, job) &&
            blocks_.merge(rest, blocks_.reader().sign(), 0, scratch.block, made);
+  }
+
+  // A tile far from borders and holes, or one in which nothing may change.
+  bool runTile(std::int32_t tc, std::int32_t tr, Scratch& scratch, const JobControl& job,
+               std::vector<NewTile>& made) {
+    if (!blocks_.mayChange(tc, tr)) return true;
+    if (job.cancelled()) return false;
+    if (scratch.tile->run(*blocks_.around(tc, tr), scratch.block.results.data()))
+      return blocks_.mergeTileAt(tc, tr, scratch.block, made);
+    const TileRect own{tc, tr, tc + 1, tr + 1};
+    if (scratch.strip) return runStrip(own, scratch, job, made);
+    return gatherAndFilter(own, scratch, job) &&
+           blocks_.merge(own, blocks_.reader().sign(), 0, scratch.block, made);
   }
 
   bool gatherAndFilter(const TileRect& rect, Scratch& scratch, const JobControl& job) {

@@ -28,7 +28,9 @@
    : (level) == ::fettle::engine::CpuLevel::kAvx2 ? avx2::__VA_ARGS__   \
                                                   : plain::__VA_ARGS__)
 #else
-#define FETTLE_AT_LEVEL(level, ...) ((void)(level), plain::__VA_ARGS__)
+// Both the same, so that a function template among them has a context to be resolved in.
+#define FETTLE_AT_LEVEL(level, ...) \
+  ((level) == ::fettle::engine::CpuLevel::kPlain ? plain::__VA_ARGS__ : plain::__VA_ARGS__)
 #endif
 
 /// For what a kernel calls: a call that is not inlined could leave for another level's version.

@@ -72,8 +72,9 @@ std::vector<Case> cases() {
   };
   std::vector<Case> all;
   Noise noise;
-  for (const Kind& kind : {Kind{"plain", false, false, 0}, Kind{"holed", true, true, 0},
-                           Kind{"wide", false, false, 20}, Kind{"widest", true, false, 100}}) {
+  for (const Kind& kind :
+       {Kind{"plain", false, false, 0}, Kind{"holed", true, true, 0}, Kind{"wide", false, false, 20},
+        Kind{"wide holed", true, true, 20}, Kind{"widest", true, false, 100}}) {
     std::vector<float> z;
     std::vector<std::uint8_t> marks;
     for (int i = 0; i < kWidth * kHeight; ++i) {
