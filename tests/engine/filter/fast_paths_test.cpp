@@ -92,7 +92,15 @@ TEST(FastPaths, OverWholeTilesHaveThePlainBitsWhateverTheMagnitudes) {
       {"one sample that no two lanes hold",
        [](int c, int r) { return c == 100 && r == 90 ? 1e-38F : coarse(c, r); }},
       {"a large one beyond the windows", [](int c, int r) { return c == 58 ? 1e30F : coarse(c, r); }},
-      {"a large one at their rim", [](int c, int r) { return c == 62 || r == 129 ? 1e30F : coarse(c, r); }},
+      // Large ones that cancel in windows whose last column they are in, so that what is beside them counts.
+      {"large ones at the rim of 3",
+       [](int c, int r) {
+         return (c == 63 || c == 128) && r % 3 < 2 ? (r % 3 == 0 ? 1e30F : -1e30F) : coarse(c, r);
+       }},
+      {"large ones at the rim of 5",
+       [](int c, int r) {
+         return (c == 62 || c == 129) && r % 5 < 4 ? (r % 5 % 2 == 0 ? 1e30F : -1e30F) : coarse(c, r);
+       }},
       {"denormals", [](int c, int r) { return static_cast<float>(hashOf(c, r) % 1000) * 1e-45F - 3e-43F; }},
       {"denormals among the smallest normal ones",
        [](int c, int r) {
