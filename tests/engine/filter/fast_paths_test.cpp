@@ -57,6 +57,14 @@ float coarse(int c, int r) {
   return 0.125F * static_cast<float>(hashOf(c, r) % (1U << 23)) - 1e5F;
 }
 
+// Samples in one column that cancel in windows of so many rows, so that what is beside them counts.
+std::function<float(int, int)> largeAt(int column, int window) {
+  return [=](int c, int r) {
+    const int row = r % window;
+    return c != column || row == window - 1 ? coarse(c, r) : row % 2 == 0 ? 1e30F : -1e30F;
+  };
+}
+
 TEST(FastPaths, OfABoxTakeASecondLaneForRowsThatNeedItAndGiveItUpAgain) {
   for (const bool holes : {false, true}) {
     const PlainField plain = formed(300, 300, [&](int c, int r) {
@@ -92,15 +100,11 @@ TEST(FastPaths, OverWholeTilesHaveThePlainBitsWhateverTheMagnitudes) {
       {"one sample that no two lanes hold",
        [](int c, int r) { return c == 100 && r == 90 ? 1e-38F : coarse(c, r); }},
       {"a large one beyond the windows", [](int c, int r) { return c == 58 ? 1e30F : coarse(c, r); }},
-      // Large ones that cancel in windows whose last column they are in, so that what is beside them counts.
-      {"large ones at the rim of 3",
-       [](int c, int r) {
-         return (c == 63 || c == 128) && r % 3 < 2 ? (r % 3 == 0 ? 1e30F : -1e30F) : coarse(c, r);
-       }},
-      {"large ones at the rim of 5",
-       [](int c, int r) {
-         return (c == 62 || c == 129) && r % 5 < 4 ? (r % 5 % 2 == 0 ? 1e30F : -1e30F) : coarse(c, r);
-       }},
+      // The tile in the middle has the columns 64 to 127.
+      {"large ones left of it in windows of 3", largeAt(63, 3)},
+      {"large ones right of it in windows of 3", largeAt(128, 3)},
+      {"large ones left of it in windows of 5", largeAt(62, 5)},
+      {"large ones right of it in windows of 5", largeAt(129, 5)},
       {"denormals", [](int c, int r) { return static_cast<float>(hashOf(c, r) % 1000) * 1e-45F - 3e-43F; }},
       {"denormals among the smallest normal ones",
        [](int c, int r) {
