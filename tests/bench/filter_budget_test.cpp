@@ -33,10 +33,10 @@ struct FilterBudget {
 };
 
 constexpr FilterBudget kFilterBudgets[] = {
-    {"box11", engine::FilterKind::kBox, 11, 63.5},
-    {"Gaussian3", engine::FilterKind::kGaussian, 3, 50.5},
-    {"Gaussian11", engine::FilterKind::kGaussian, 11, 179.7},
-    {"Gaussian31", engine::FilterKind::kGaussian, 31, 412.2},
+    {"box11", engine::FilterKind::kBox, 11, 49.3},
+    {"Gaussian3", engine::FilterKind::kGaussian, 3, 47.6},
+    {"Gaussian11", engine::FilterKind::kGaussian, 11, 86.2},
+    {"Gaussian31", engine::FilterKind::kGaussian, 31, 136.6},
     {"median3", engine::FilterKind::kMedian, 3, 59.1},
     {"median5", engine::FilterKind::kMedian, 5, 128.3},
     {"median31", engine::FilterKind::kMedian, 31, 408.7},

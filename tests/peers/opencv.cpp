@@ -126,6 +126,11 @@ int main(int argc, char** argv) {
       "| filter | window | Fettle | OpenCV | times | asked | copying | of copying "
       "|\n|---|---|---|---|---|---|---|---|\n");
   const std::vector<std::string> kinds(argv + std::min(argc, 3), argv + argc);
+  for (const std::string& kind : kinds)
+    if (std::ranges::none_of(kRows, [&](const Row& row) { return kind == row.name; })) {
+      std::fprintf(stderr, "compare_opencv: no kind %s: box, Gaussian or median\n", kind.c_str());
+      return 2;
+    }
   for (const Row& row : kRows) {
     if (!kinds.empty() && std::ranges::find(kinds, row.name) == kinds.end()) continue;
     std::vector<double> ours, theirs, ratio, copy;
