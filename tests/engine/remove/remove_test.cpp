@@ -54,6 +54,7 @@ void expectRemoved(const Version& before, const RemoveOptions& options) {
   EXPECT_EQ(counted->spared, done->counts.spared);
   const FieldReader was = before.reader(), is = done->field.reader();
   RemoveCounts expected;
+  std::int64_t marked_still = 0;
   for (int r = 0; r < was.height(); ++r)
     for (int c = 0; c < was.width(); ++c) {
       const float z = was.heightAt(c, r);
@@ -67,6 +68,7 @@ void expectRemoved(const Version& before, const RemoveOptions& options) {
       if (!std::isnan(z) && !gone) {
         ASSERT_EQ(is.heightAt(c, r), z);
       }
+      marked_still += marked && !gone ? 1 : 0;
       ASSERT_EQ(is.markedAt(c, r), marked && !gone) << "a hole that was removed keeps no mark, all else does";
     }
   EXPECT_EQ(done->counts.heights, expected.heights);
@@ -75,6 +77,7 @@ void expectRemoved(const Version& before, const RemoveOptions& options) {
   // Bounds and counts are those of a field that was built so.
   const FieldSummary summary = summarize(done->field);
   EXPECT_EQ(summary.no_data, summarize(before).no_data + expected.removed);
+  EXPECT_EQ(summary.marked, marked_still);
   EXPECT_EQ(is.bounds(), (HeightBounds{static_cast<float>(summary.min), static_cast<float>(summary.max)}));
 }
 
