@@ -27,6 +27,8 @@ LEFT_ALONE = {Kind.STATIC_ASSERT, Kind.FUNCTION_TEMPLATE, Kind.CLASS_TEMPLATE, K
 Type = cindex.TypeKind
 FLOAT = {Type.FLOAT, Type.DOUBLE, Type.LONGDOUBLE}
 INTEGERS = range(Type.CHAR_U.value, Type.INT128.value + 1)
+# Calls that only make room beforehand or give it back: without them everything is the same, with more copies.
+OF_ROOM = {"reserve", "shrink_to_fit"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -121,7 +123,7 @@ class Finder:
             self.least(cursor)
         if cursor.kind == Kind.COMPOUND_STMT:
             for child in children:
-                if child.kind == Kind.CALL_EXPR and child.type.kind == Type.VOID:
+                if child.kind == Kind.CALL_EXPR and child.type.kind == Type.VOID and child.spelling not in OF_ROOM:
                     self.add(child, "call", "")
         for child in children:
             self.runs(child)
