@@ -20,7 +20,7 @@ namespace fettle::engine {
 
 namespace {
 
-// Of columns: samples in one lane or two, and how many there are, kept only where there are holes.
+// Of columns: samples in one lane or two, and how many there are. Without holes there is nothing at `counts`.
 struct Sums {
   std::array<double*, 2> lanes;
   double* counts;
@@ -129,7 +129,7 @@ class DoubleStrip final : public BoxStrip {
 
   [[nodiscard]] Sums from(Numbers& numbers, std::ptrdiff_t at) const noexcept {
     double* const begin = numbers.data() + at;
-    return {{begin, begin + room_}, holes_ ? begin + 2 * room_ : nullptr};
+    return {{begin, begin + room_}, begin + 2 * room_};
   }
 
   mutable Numbers sums_, fours_;  // of the first lane, the second one, and counts

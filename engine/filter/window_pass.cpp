@@ -85,11 +85,13 @@ class Pass {
     if (scratch
             .strip) {  // what strips are left with may be narrow: they begin anew for each run of tiles of a row
       for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
-        for (std::int32_t tc = rect.column0, end = tc; tc < rect.column1; tc = std::max(end, tc + 1)) {
-          for (end = tc; end < rect.column1 && !reached(end, tr);) ++end;
+        for (std::int32_t tc = rect.column0; tc < rect.column1;) {
+          std::int32_t end = tc;
+          while (end < rect.column1 && !reached(end, tr)) ++end;
           if (end > tc ? !runStrip({tc, tr, end, tr + 1}, scratch, job, made)
                        : !runTile(tc, tr, scratch, job, made))
             return false;
+          tc = std::max(end, tc + 1);
         }
       return true;
     }
