@@ -107,7 +107,7 @@ inline void sumFours(const double* from, int n, double* to) noexcept {
   }
 }
 
-// Sums of the windows of four outputs side by side, then of the next four. Of windows of kDirect columns these are added up anew; else
+// Sums of the windows of four outputs side by side, then of the next four. Of windows of kDirect columns each is a sum of its own; else
 // (kDirect 0) the four outputs before gain four sums of four columns and lose four.
 template <int kDirect>
 class Window {

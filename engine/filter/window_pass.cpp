@@ -82,8 +82,8 @@ class Pass {
     const auto reached = [&](std::int32_t tc, std::int32_t tr) {
       return !blocks_.mayChange(tc, tr) || blocks_.around(tc, tr).has_value();
     };
-    if (scratch
-            .strip) {  // what strips are left with may be narrow: they begin anew for each run of tiles of a row
+    // What is left for strips may be narrow, so each run of such tiles in a row has a strip of its own.
+    if (scratch.strip) {
       for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
         for (std::int32_t tc = rect.column0; tc < rect.column1;) {
           std::int32_t end = tc;
