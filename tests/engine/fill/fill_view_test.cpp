@@ -1,5 +1,6 @@
 #include "engine/fill/fill_view.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -7,9 +8,12 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <glm/vec2.hpp>
 
 #include "engine/field/builder.h"
 #include "engine/field/means.h"
@@ -292,6 +296,52 @@ TEST(FillView, OfALargeFieldIsOfMeansWithTheirMeasuredError) {
   ASSERT_FALSE(part.empty());
   EXPECT_EQ(part.back().step, 1);
   EXPECT_EQ(part.back().exact, 1.0);
+}
+
+// How far cells of means are off in the holes nearest to the middle of the view, as many of them as have 30,000 samples.
+double offNearest(const EarlyPicture& picture, const Version& scan, const Version& all, const FieldView& view,
+                  std::int32_t* right) {
+  JobControl job;
+  const auto found = findHoles(scan, job);
+  EXPECT_TRUE(found);
+  const auto distance = [&](const Hole& hole) {
+    return std::hypot(hole.box.column + 0.5 * hole.box.columns - view.column,
+                      hole.box.row + 0.5 * hole.box.rows - view.row);
+  };
+  std::vector<Hole> holes = found->holes;
+  std::ranges::stable_sort(holes, {}, distance);
+  const std::int32_t step = picture.step;
+  const Version means = meansOf(all, {0, 0, scan.grid().width, scan.grid().height}, step);
+  std::set<std::pair<std::int32_t, std::int32_t>> cells;
+  std::int64_t samples = 0;
+  for (auto hole = holes.begin(); samples < 30'000 && hole != holes.end(); samples += hole->samples, ++hole) {
+    *right = std::max(*right, hole->box.column + hole->box.columns);
+    for (const HoleRun& run : found->runsOf(*hole))
+      for (std::int32_t c = run.first; c <= run.last; ++c) cells.emplace(c / step, run.row / step);
+  }
+  double squares = 0.0;
+  for (const auto& [c, r] : cells)
+    squares += std::pow(static_cast<double>(picture.field.reader().heightAt(c, r)) -
+                            static_cast<double>(means.reader().heightAt(c, r)),
+                        2);
+  return std::sqrt(squares / static_cast<double>(cells.size()));
+}
+
+TEST(FillView, HowFarMeansAreOffIsMeasuredInTheHolesNearestToTheMiddle) {
+  const Version scan = viewedScan(gridOf(3000, 3000), [](int c, int r) {
+    return (c % 60 - 30) * (c % 60 - 30) + (r % 60 - 30) * (r % 60 - 30) <= 225;
+  });
+  const Version all = whole(scan, {});
+  for (const glm::ivec2 middle : {glm::ivec2(2303, 1211), glm::ivec2(701, 2590)}) {
+    const FieldView view{allTiles(scan.grid()), middle.x, middle.y};
+    const auto pictures = shown(scan, {}, view);
+    ASSERT_EQ(pictures.size(), 1U);
+    ASSERT_TRUE(pictures.back().off);
+    std::int32_t right = 0;
+    const double off = offNearest(pictures.back(), scan, all, view, &right);
+    EXPECT_EQ(right % pictures.back().step, 1) << "the last cell reaches beyond the last hole";
+    EXPECT_NEAR(pictures.back().off->rms, off, 1e-9 * off);
+  }
 }
 
 TEST(FillView, ALargeHoleOfALargeFieldSaysAboutHowFarItIsOff) {

@@ -152,6 +152,29 @@ TEST_P(BallErosion, IsTheLeastOverAllSamplesToTheBit) {
   EXPECT_GT(without_table, 0);
 }
 
+// Where the ball rests on a slope of that, all samples of the block lie within it.
+TEST(BallElement, ItsSteepestSlopeKeepsABlockWithinTheBall) {
+  for (const double radius : {0.35, 1.4, 2.5})
+    for (const double along_y : {0.05, 0.2}) {
+      Grid grid;
+      grid.width = grid.height = 200;
+      grid.spacing_x = 0.05;
+      grid.spacing_y = along_y;
+      const BallElement ball(radius, 0.0, 10.0, grid);
+      for (std::int32_t side = 1; side <= 16; ++side) {
+        const double squared = static_cast<double>(ball.steepest(side)),
+                     corner = 0.5 * (side - 1) * std::hypot(0.05, along_y);
+        ASSERT_GE(squared, 0.0);
+        if (corner < 0.9 * radius) {
+          EXPECT_GT(squared, 0.0) << side;
+        }
+        if (squared > 0.0) {
+          EXPECT_LE(radius * std::sqrt(squared / (1.0 + squared)) + corner, radius) << radius << ' ' << side;
+        }
+      }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Levels, BallErosion,
                          testing::Values(CpuLevel::kPlain, CpuLevel::kAvx2, CpuLevel::kAvx512));
 

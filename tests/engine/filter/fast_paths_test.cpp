@@ -137,5 +137,14 @@ TEST(FastPaths, OverTilesBetweenHolesHaveThePlainBits) {
     }
 }
 
+// Nine times eight tiles: what is asked for ahead of the last rows of tiles that are taken by themselves lies in the field.
+TEST(FastPaths, UpToTheLastTilesHaveThePlainBits) {
+  const PlainField plain = formed(9 * kTileSide, 8 * kTileSide, coarse);
+  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian}) {
+    SCOPED_TRACE(std::string(name(kind)));
+    expectPlainBits(plain, makeSpec(kind, 3), {0});
+  }
+}
+
 }  // namespace
 }  // namespace fettle::engine::tests

@@ -203,6 +203,23 @@ TEST(Spline, OverHolesIsTheLeastSumOverTheSamplesThereAre) {
   }
 }
 
+// The search ends by errors relative to the surface's height: heights 2^30 times smaller have the same results, 2^30 times smaller.
+TEST(Spline, OverHolesIsTheSameInAnyUnit) {
+  for (const FilterKind kind : {FilterKind::kSpline, FilterKind::kRobustSpline})
+    for (const MadeScan& scan : holedScans()) {
+      MadeScan small = scan;
+      small.z = [&](int c, int r) { return 0x1p-30 * scan.z(c, r); };
+      const PlainField one = toPlain(filtered(versionOf(scan), nestingSpec(kind, scan.nesting)).field),
+                       other = toPlain(filtered(versionOf(small), nestingSpec(kind, scan.nesting)).field);
+      for (std::size_t i = 0; i < one.z.size(); ++i) {
+        ASSERT_EQ(std::isnan(one.z[i]), std::isnan(other.z[i]));
+        if (!std::isnan(one.z[i])) {
+          ASSERT_EQ(one.z[i], 0x1p30 * other.z[i]) << scan.name << ", " << i;
+        }
+      }
+    }
+}
+
 // 1 / (1 + (sin(pi / l) / sin(pi / L))^4) along an axis, half at the cut-off, and the product of both askew.
 TEST(Spline, TransmitsWhatTheStandardStates) {
   for (const double cut_off : {2.5, 10.0, 25.0})

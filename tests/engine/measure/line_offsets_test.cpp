@@ -124,6 +124,29 @@ TEST(LineOffsets, MatchingIsNearerThanTheMedianOfDifferences) {
   EXPECT_NEAR(std::sqrt(by_matching / (20 * 130)), 0.2 * std::sqrt(2.0 / 150.0), 0.004);
 }
 
+// Weights are of ratios: in a unit 2^30 times as large the same offsets are found, to the bit.
+TEST(LineOffsets, AreTheSameInAnyUnit) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.3);
+  const std::vector<double> offsets = randomOffsets(kHigh, 1.0);
+  std::vector<float> z;
+  for (int r = 0; r < kHigh; ++r)
+    for (int c = 0; c < kWide; ++c)
+      z.push_back(static_cast<float>(grating(c) * (1.0 + 0.01 * r) + offsets[static_cast<std::size_t>(r)] +
+                                     normal(random)));
+  const auto inUnit = [&](double unit) {
+    return fieldOf(kWide, kHigh, [&](int c, int r) {
+      return unit * static_cast<double>(z[static_cast<std::size_t>(r * kWide + c)]);
+    });
+  };
+  for (const LineMethod method : kAllMethods) {
+    const LineOffsets one = offsetsOf(inUnit(1.0), {method}), other = offsetsOf(inUnit(0x1p-30), {method});
+    ASSERT_EQ(one.coefficients.size(), other.coefficients.size());
+    for (std::size_t k = 0; k < one.coefficients.size(); ++k)
+      ASSERT_EQ(one.coefficients[k], 0x1p30 * other.coefficients[k]) << static_cast<int>(method) << ' ' << k;
+  }
+}
+
 TEST(LineOffsets, APolynomialIsThatOfTheSamplesInLongDouble) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -94,6 +95,31 @@ TEST(Probe, StatedErrorsCountRowsAndColumnsThatAreOff) {
   }
 }
 
+// Rows that are off say how much more than the noise of samples may be left, and no more than that: noise three times as large as
+// stated is seen beside them.
+TEST(Probe, MoreNoiseThanStatedIsSeenBesideRowsThatAreOff) {
+  constexpr double kOff = 0.01, kSample = 0.03;
+  double stated = 0.0, seen = 0.0;
+  for (int seed = 0; seed < 40; ++seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+    std::normal_distribution<double> normal;
+    std::vector<double> off(61);
+    for (double& each : off) each = kOff * normal(random);
+    const Version field = probedField([&](double, double y) {
+      return off[static_cast<std::size_t>(std::lround(y / 0.2))] + kSample * normal(random);
+    });
+    const auto error = [&](double sample_mm) {
+      const auto p = probeAt(field, {4.03, 6.11}, 2.0, Region::kAll, {sample_mm, kOff, 0.0});
+      EXPECT_TRUE(p) << p.error().line();
+      return p ? p->height_mm.error : 0.0;
+    };
+    stated += error(kSample) / 40.0;
+    seen += error(kSample / 3.0) / 40.0;
+  }
+  // The mean of 40 roots of a variance that each is known to 5 %, of about 150 samples.
+  EXPECT_NEAR(seen / stated, 1.0, 0.1);
+}
+
 // At every border and beyond: by the samples within the radius that there are.
 TEST(Probe, AtABorderIsByTheSamplesThereAre) {
   const auto z = [](double x, double y) { return 0.1 * x * x - 0.05 * x * y + 0.2 * y; };
@@ -130,6 +156,14 @@ TEST(Probe, RefusesWhatShowsNoSurface) {
   EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 1e9, Region::kAll, {0.0}));
   const Version holes = probedField([](double, double) { return std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_FALSE(probeAt(holes, {4.0, 6.0}, 1.0, Region::kAll, {0.0}));
+  // Without samples because of holes, or because it lies beside the scan: up to its first and last samples it is in it.
+  for (const double x : {-0.1, 0.0, 0.3, 7.7, 8.0, 8.1})
+    for (const double y : {-0.1, 0.0, 0.3, 11.7, 12.0, 12.1}) {
+      const auto none = probeAt(holes, {x, y}, 1.0, Region::kAll, {0.0});
+      ASSERT_FALSE(none);
+      const bool in = x >= 0.0 && x <= 8.0 && y >= 0.0 && y <= 12.0;
+      EXPECT_EQ(none.error().line().find("outside of the scan") == std::string::npos, in) << x << ' ' << y;
+    }
 }
 
 }  // namespace

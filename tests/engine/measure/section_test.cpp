@@ -106,6 +106,28 @@ TEST(Section, StatesTheCovarianceOfItsHeights) {
   }
 }
 
+// Rows off alone, columns alone, or both: each place by the lines that its height is of.
+TEST(Section, IsOffByTheRowsAndColumnsThatItsHeightsAreOf) {
+  const Version field = sectionField(30, 20, 0.5, 0.25, [](double x, double y) { return x + y; });
+  std::vector<double> rows(20), columns(30);
+  for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = 0.25 * static_cast<double>(r * r % 7);
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = 0.125 * static_cast<double>(c * c % 11);
+  // Along row 6 from column 4 to 20, sample by sample.
+  const Section section = taken(field, {{2.0, 1.5}, {10.0, 1.5}});
+  const std::vector<Section::LineOffsets> offsets{{rows, {}}, {{}, columns}, {rows, columns}};
+  const auto off = section.offBy(offsets);
+  ASSERT_EQ(off.size(), 3U);
+  for (std::size_t i = 0; i < section.size(); ++i) {
+    const double column = section.along(i) / 0.5 + 4.0;
+    const auto left = static_cast<std::size_t>(column);
+    const double share = column - static_cast<double>(left);
+    const double by_column = (1.0 - share) * columns[left] + (share > 0.0 ? share * columns[left + 1] : 0.0);
+    EXPECT_NEAR(off[0][i], rows[6], 1e-12) << i;
+    EXPECT_NEAR(off[1][i], by_column, 1e-12) << i;
+    EXPECT_NEAR(off[2][i], rows[6] + by_column, 1e-12) << i;
+  }
+}
+
 TEST(Section, HasNoHeightNextToHolesAndMarksThatAreLeftOut) {
   const auto flat = [](double x, double y) { return x == 10.0 && y == 5.0 ? double{kSectionHole} : 1.0; };
   const Version field = sectionField(30, 11, 1.0, 1.0, flat, [](int c, int) { return c == 20; });

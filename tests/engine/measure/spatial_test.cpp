@@ -209,6 +209,19 @@ TEST(Spatial, OfARandomSurfaceOfKnownSpectrumIsItsClosedForm) {
   }
 }
 
+// Of lengths only their ratios count: on a grid 1024 times as fine lengths are so much shorter, and ratios have the same bits.
+TEST(Spatial, RatiosAreTheSameOnAnyScale) {
+  Surface surface = randomTexture(96, 1.5, 4.0, 30.0, 1.0, 3);
+  const SpatialParameters coarse = analysed(surface).parameters;
+  surface.spacing_x *= 0x1p-10;
+  surface.spacing_y *= 0x1p-10;
+  const SpatialParameters fine = analysed(surface).parameters;
+  EXPECT_GT(coarse.str, 0.0);
+  EXPECT_EQ(fine.str, coarse.str);
+  EXPECT_EQ(fine.str_lowered, coarse.str_lowered);
+  EXPECT_EQ(fine.sal, coarse.sal * 0x1p-10);
+}
+
 // Of all directions, also on small fields of noise, whose autocorrelation goes up and down about 0.2.
 TEST(Spatial, NoDirectionDecaysFasterThanTheFastestOrSlowerThanTheSlowest) {
   for (unsigned seed = 1; seed <= 40; ++seed) {

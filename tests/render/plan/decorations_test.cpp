@@ -29,12 +29,15 @@ class Decorated {
     warnings.clear();
     return decorationQuads(layout(), view_, content, palette, glyphs_, warnings);
   }
-  [[nodiscard]] Layout layout() const { return layOut(view_, Decoration::kFull, panels_, Titles::kAbove); }
+  [[nodiscard]] Layout layout() const {
+    return layOut(view_, Decoration::kFull, panels_, Titles::kAbove, scale_);
+  }
   [[nodiscard]] const Palette& palette() const { return palette_; }
   void setWidth(int width, int panels = 1) {
     view_.width = width;
     panels_ = panels;
   }
+  void setScale(double scale) { scale_ = scale; }
 
   DecorationContent content;
   std::vector<std::string> warnings;
@@ -42,6 +45,7 @@ class Decorated {
  private:
   View view_;
   int panels_ = 1;
+  double scale_ = 0.0;  // as large as the picture
   Glyphs glyphs_;
   Palette palette_;
 };
@@ -178,6 +182,16 @@ TEST(Legend, NamesTheColoursOfLinesWhereThereAreAnyAndMovesNothingForThem) {
     EXPECT_LT(rim.pixels.x, box->pixels.x);
     EXPECT_GT(rim.pixels.w, box->pixels.w);
   }
+  // As thick as the text is large.
+  for (const double scale : {1.0, 1.6, 2.0}) {
+    picture.setScale(scale);
+    const std::vector<gpu::Quad> quads = picture.quads();
+    const auto box = std::ranges::find_if(quads, [&](const gpu::Quad& q) { return hasColour(q, orange); });
+    ASSERT_NE(box, quads.end());
+    EXPECT_NEAR(box->pixels.w - box->pixels.y, 4.0 * scale, 0.5) << scale;
+    EXPECT_NEAR(box->pixels.z - box->pixels.x, 18.0 * scale, 0.5) << scale;
+  }
+  picture.setScale(0.0);
   // A colour without its word would explain nothing.
   for (int width = 200; width < 1280; width += 20) {
     picture.setWidth(width);

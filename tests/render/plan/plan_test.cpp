@@ -424,6 +424,8 @@ TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
   EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove).text_px, 15);
   for (const double scale : {0.87, 1.0, 1.74, 2.5})
     EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, scale).text_px, std::lround(15.0 * scale));
+  // Smaller than ten pixels it could not be read.
+  EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, 0.6).text_px, 10);
   // The display says how large, not the picture: a larger one has the same text.
   view.width = 2560;
   view.height = 1600;

@@ -122,6 +122,32 @@ TEST(AsciiGrid, ThePrjBesideItNamesTheCoordinateSystem) {
   EXPECT_TRUE(warned(nonsense.warnings, "a.prj"));
 }
 
+// The registry (PROJ's table of EPSG's) has this system twice: as a zone of six degrees and as one of three.
+TEST(AsciiGrid, APrjThatEqualsTwoSystemsOfTheRegistryTakesTheNameOfNone) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.asc"), kTwoSamples);
+  const auto named = [&](const std::string& name) {
+    writeBytes(
+        folder.file("a.prj"),
+        "PROJCS[\"" + name + "\"," +
+            R"(GEOGCS["GCS_Pulkovo_1995",DATUM["D_Pulkovo_1995",SPHEROID["Krasovsky_1940",6378245.0,298.3]],)"
+            R"(PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Gauss_Kruger"],)"
+            R"(PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],)"
+            R"(PARAMETER["Central_Meridian",93.0],PARAMETER["Scale_Factor",1.0],)"
+            R"(PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])");
+    const auto scan = load(folder.file("a.asc"));
+    EXPECT_TRUE(scan) << scan.error().line();
+    return scan ? scan->field.grid().crs_wkt : std::string();
+  };
+  const std::string either = named("unknown");
+  EXPECT_TRUE(either.starts_with("PROJCRS[\"unknown\"")) << either;
+  // By its name each is found.
+  const std::string six = named("Pulkovo_1995_Gauss-Kruger_CM_93E"),
+                    three = named("Pulkovo_1995_3_Degree_GK_CM_93E");
+  EXPECT_NE(six.find("ID[\"EPSG\",2475]"), std::string::npos) << six;
+  EXPECT_NE(three.find("ID[\"EPSG\",2723]"), std::string::npos) << three;
+}
+
 TEST(AsciiGrid, ACoordinateSystemIsWrittenToAPrjAndComesBack) {
   const TempFolder folder;
   writeBytes(folder.file("in.asc"), kTwoSamples);

@@ -345,6 +345,25 @@ TEST_F(LoneValues, ZeroesOfALineOfALargeFieldAreSaid) {
     }
 }
 
+// What is near to a height is a tenth of the others' range, with the one height above it: so 1.105 has others near it. Were it a
+// third lone height beside 0.35 and 0.84, nothing would be said of any.
+TEST_F(LoneValues, TwoAmongNoiseAreSaidBesideAFrequentTopOfIt) {
+  std::mt19937 random(4);
+  std::vector<float> z(30000);
+  constexpr float kLowest[] = {0.0F, 0.5F, 0.98F}, kRange[] = {0.2F, 0.2F, 0.02F};
+  for (float& height : z) {
+    const std::size_t cluster = random() % 3;
+    height = kLowest[cluster] + kRange[cluster] * static_cast<float>(random() % 10000) * 1e-4F;
+  }
+  for (std::size_t i = 0; i < z.size(); ++i)
+    if (i % 50 < 3) z[i] = i % 50 == 0 ? 0.35F : i % 50 == 1 ? 0.84F : 1.105F;
+  z[15025] = 1.109F;
+  const auto warnings = said(z);
+  EXPECT_TRUE(warned(warnings, "--no-data 0.35"));
+  EXPECT_TRUE(warned(warnings, "--no-data 0.84"));
+  EXPECT_FALSE(warned(warnings, "1.105"));
+}
+
 // Rare counts at the ends of noise, counts of every other number, and tops that are flat but for their rims.
 TEST_F(LoneValues, RareHeightsThatOthersLieBesideAreNotDoubted) {
   std::mt19937 random(14);
