@@ -256,6 +256,24 @@ class SplineSurface {
   std::vector<double> lack_, found_, rest_, direction_;
 };
 
+// What the rounds of the robust Gaussian find. The memory of the rounds is given back before the spline takes its own.
+struct RobustWeights {
+  std::vector<float> weights;  // none: all are 1
+  std::ptrdiff_t stride = 0;
+  double limit = 0.0;  // [height_unit]; 0 where nothing is left out
+  std::int64_t weightless = 0;
+};
+
+// None when the job was cancelled.
+std::optional<RobustWeights> robustWeights(const Version& input, const FilterSpec& spec, CpuLevel level,
+                                           const FilterTuning& tuning, JobControl& job) {
+  RobustRegression rounds(input, spec, level);
+  if (!rounds.find(tuning.work, job)) return std::nullopt;
+  RobustWeights found{{}, rounds.stride(), rounds.limit(), rounds.weightless()};
+  found.weights = rounds.takeWeights();
+  return found;
+}
+
 Result<PassResult> passOfWhole(const std::vector<float>& surface, const FieldReader& field,
                                const Version& input, const Version& original, const FilterSpec& spec,
                                const FilterTuning& tuning, JobControl& job) {
@@ -285,28 +303,21 @@ Result<PassResult> splinePass(const Version& input, const Version& original, con
 Result<PassResult> robustSplinePass(const Version& input, const Version& original, const FilterSpec& spec,
                                     const FilterTuning& tuning, JobControl& job) {
   const CpuLevel level = std::min(tuning.level, bestCpuLevel());
-  std::vector<float> surface, weights;
-  std::ptrdiff_t stride = 0;
-  double limit = 0.0;
-  std::int64_t weightless = 0;
-  {
-    RobustRegression rounds(input, spec, level);
-    if (!rounds.find(tuning.work, job)) return cancelled();
-    stride = rounds.stride();
-    limit = rounds.limit();
-    weightless = rounds.weightless();
-    weights = rounds.takeWeights();
-  }
+  std::optional<RobustWeights> robust = robustWeights(input, spec, level, tuning, job);
+  if (!robust) return cancelled();
+  std::vector<float> surface;
   {
     SplineSurface filter(input, spec, level);
     using Weights = SplineSurface::Weights;
-    const double scale = limit > 0.0 ? limit : filter.deviation();
-    if (!filter.solve(weights.empty() ? std::nullopt : std::optional(Weights{weights.data(), stride, scale}),
+    const std::vector<float>& z = robust->weights;
+    const double scale = robust->limit > 0.0 ? robust->limit : filter.deviation();
+    if (!filter.solve(z.empty() ? std::nullopt : std::optional(Weights{z.data(), robust->stride, scale}),
                       job))
       return cancelled();
     filter.copyTo(surface);
   }
-  weights = {};
+  const std::int64_t weightless = robust->weightless;
+  robust.reset();
   Result<PassResult> result = passOfWhole(surface, input.reader(), input, original, spec, tuning, job);
   if (result) result->weightless = weightless;
   return result;

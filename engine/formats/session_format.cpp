@@ -63,7 +63,8 @@ Result<Session> openedForReading(const std::string& path, JobControl& job) {
   reading.history_bytes = 0;
   reading.journal = JournalReading::kLeave;
   Result<Session> session = openSession(path, reading, importField, job);
-  if (!session || session->history.number() < 2) return session;
+  if (!session) return session;
+  if (session->history.number() < 2) return session;
   const Result<bool> removed = mayHaveRemoved(path);
   if (!removed) return tl::unexpected(removed.error());
   if (!*removed) return session;

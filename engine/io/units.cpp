@@ -113,7 +113,7 @@ std::optional<LengthUnit> lengthUnitFromComment(std::string_view comment) {
   const std::string lower = lowerCase(comment);
   for (std::size_t at = lower.find("unit"); at != std::string::npos; at = lower.find("unit", at + 1)) {
     std::size_t begin = at + 4;
-    if (begin < lower.size() && lower[begin] == 's') ++begin;
+    if (std::string_view(lower).substr(begin).starts_with('s')) ++begin;
     const std::size_t word = lower.find_first_not_of(" \t:=", begin);
     if (word == std::string::npos || word == begin) continue;
     const std::size_t end = lower.find_first_of(" \t,;)]\r\n", word);

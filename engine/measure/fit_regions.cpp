@@ -37,8 +37,8 @@ void addSegment(const glm::dvec2& a, const glm::dvec2& b, double margin, const G
         take(end.x - std::sqrt(across));
         take(end.x + std::sqrt(across));
       }
-    // The two straight borders, beside the segment.
-    if (length > 0.0 && along.y != 0.0)
+    // The two straight borders, beside the segment; along a row they lie where its ends reach.
+    if (along.y != 0.0)
       for (const double side : {-margin, margin}) {
         const glm::dvec2 start = a + side / length * glm::dvec2(-along.y, along.x);
         if (const double share = (row - start.y) / along.y; share >= 0.0 && share <= 1.0)

@@ -41,7 +41,7 @@ MeshTopology joinedCorners(std::vector<TriangleCorners>&& triangles) {
     if (i == 0 || at(order[i]) != at(order[i - 1])) mesh.corners.push_back(at(order[i]));
     joined[order[i]] = static_cast<std::uint32_t>(mesh.corners.size() - 1);
   }
-  order = {};
+  order = std::vector<std::uint32_t>();
   mesh.triangles.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const glm::dvec3 normal = areaNormal(triangles[t][0], triangles[t][1], triangles[t][2]);
@@ -52,7 +52,7 @@ MeshTopology joinedCorners(std::vector<TriangleCorners>&& triangles) {
     }
     mesh.triangles.push_back({joined[3 * t], joined[3 * t + 1], joined[3 * t + 2]});
   }
-  triangles = {};
+  triangles = std::vector<TriangleCorners>();
   return mesh;
 }
 

@@ -40,13 +40,14 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
                 head.next_tile,
                 0};
   if (history.last() > history.first()) start.info.time = history.info(history.first() + 1).time;
-  std::vector<TileToStore> tiles;
-  if (original.storage == OriginalStorage::kEmbedded) tiles = allTiles(session.original);
-  start.tiles = static_cast<std::int64_t>(tiles.size());
-  if (Status status = tables.insertStep(start); !status) return status;
-  job.begin("writing the session", tiles.size());
-  if (Status status = storeTiles(tables, tiles, 0, head, size.tile_bytes, job); !status) return status;
-  tiles.clear();
+  {
+    std::vector<TileToStore> tiles;
+    if (original.storage == OriginalStorage::kEmbedded) tiles = allTiles(session.original);
+    start.tiles = static_cast<std::int64_t>(tiles.size());
+    if (Status status = tables.insertStep(start); !status) return status;
+    job.begin("writing the session", tiles.size());
+    if (Status status = storeTiles(tables, tiles, 0, head, size.tile_bytes, job); !status) return status;
+  }
   if (session.original.lines())
     if (Status status = tables.insertLines(0, packLines(session.original.lines())); !status) return status;
   if (session.original.form())

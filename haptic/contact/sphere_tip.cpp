@@ -351,7 +351,6 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   const double rest = tolerance * (kRest / kTolerance);
   Projection step;
   int seen = 0;
-  int cuts = 0;
   int made_from = here_;  // the list that the last step's half-spaces are of
   int steps = 0;
   oldest_cut_ = 0;
@@ -362,7 +361,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
                                              : std::numeric_limits<int>::max();
   const int last_work = most_work_ > 0 ? first_work_ + most_work_ : std::numeric_limits<int>::max();
   const Unfinished begun = std::exchange(unfinished_, {});
-  cuts = begun.cuts;
+  int cuts = begun.cuts;
   int tries = 0;  // in this tick
   const auto limited = [this](const glm::dvec3& a) { return plan_ ? glm::dvec3(a.x, a.y, 0.0) : a; };
   for (; steps < most_steps_ && searches_ < last_search && (steps == 0 || work_ < last_work) &&

@@ -103,8 +103,8 @@ void ExchangeSlots::sent() noexcept {
   const std::int64_t took = engine::steadyNs() - exchange_since_.load(std::memory_order_relaxed);
   exchange_since_.store(0, std::memory_order_relaxed);
   // No compare-and-swap: only the link writes it.
-  if (took > longest_output_ns_.load(std::memory_order_relaxed))
-    longest_output_ns_.store(took, std::memory_order_relaxed);
+  longest_output_ns_.store(std::max(took, longest_output_ns_.load(std::memory_order_relaxed)),
+                           std::memory_order_relaxed);
   sent_ns_.store(sending_ns_, std::memory_order_relaxed);
   countOne(outputs_);
   if (sending_forced_zero_) countOne(forced_zeros_);
