@@ -2,7 +2,9 @@
 // it dearer fails here. Of a release build alone, for processors with AVX2: others have other instructions.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "engine/field/tile.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/pass.h"
+#include "engine/filter/tile_window.h"
 
 namespace fettle::bench {
 namespace {
@@ -40,7 +43,32 @@ constexpr FilterBudget kFilterBudgets[] = {
     {"median3", engine::FilterKind::kMedian, 3, 59.1},
     {"median5", engine::FilterKind::kMedian, 5, 128.3},
     {"median31", engine::FilterKind::kMedian, 31, 408.7},
+    {"Gaussian101", engine::FilterKind::kGaussian, 101, 258.9},
+    {"median101", engine::FilterKind::kMedian, 101, 482.9},
 };
+
+// The same of a tile's window alone, where it is taken by itself: neither planning nor marks.
+struct TileBudget {
+  FilterBudget budget;
+  std::unique_ptr<engine::TileWindow> (*make)(const engine::FilterSpec&, engine::CpuLevel);
+};
+
+constexpr TileBudget kTileBudgets[] = {
+    {{"box3", engine::FilterKind::kBox, 3, 5.9}, engine::makeTileBox},
+    {{"box5", engine::FilterKind::kBox, 5, 8.2}, engine::makeTileBox},
+    {{"Gaussian3", engine::FilterKind::kGaussian, 3, 4.6}, engine::makeTileGaussian},
+    {{"Gaussian7", engine::FilterKind::kGaussian, 7, 9.4}, engine::makeTileGaussian},
+    {{"median3", engine::FilterKind::kMedian, 3, 6.0}, engine::makeTileMedian},
+    {{"median5", engine::FilterKind::kMedian, 5, 20.3}, engine::makeTileMedian},
+};
+
+void expectWithin(const FilterBudget& budget, std::int64_t instructions) {
+  const double each = static_cast<double>(instructions) / static_cast<double>(engine::kTileSamples);
+  std::printf("%s: %.1f instructions a sample\n", budget.name, each);
+  testing::Test::RecordProperty("instructions_a_sample", std::to_string(each));
+  EXPECT_LE(each, 1.1 * budget.instructions) << budget.name << ": dearer than it was";
+  EXPECT_GE(each, 0.75 * budget.instructions) << budget.name << ": cheaper; write the new figure down";
+}
 
 class FilterInstructions : public testing::TestWithParam<FilterBudget> {};
 
@@ -68,15 +96,43 @@ TEST_P(FilterInstructions, StayWithinTheirBudget) {
   run();  // what is made once is there
   const auto count = countInstructions(run);
   if (!count.instructions) GTEST_SKIP() << "instructions cannot be counted here";
-  const double each = static_cast<double>(*count.instructions) / static_cast<double>(grid.samples());
-  std::printf("%s: %.1f instructions a sample\n", budget.name, each);
-  RecordProperty("instructions_a_sample", std::to_string(each));
-  EXPECT_LE(each, 1.1 * budget.instructions) << budget.name << ": dearer than it was";
-  EXPECT_GE(each, 0.75 * budget.instructions) << budget.name << ": cheaper; write the new figure down";
+  expectWithin(budget, *count.instructions);
 }
 
 INSTANTIATE_TEST_SUITE_P(Filters, FilterInstructions, testing::ValuesIn(kFilterBudgets),
                          [](const auto& tried) { return std::string(tried.param.name); });
+
+class TileInstructions : public testing::TestWithParam<TileBudget> {};
+
+TEST_P(TileInstructions, StayWithinTheirBudget) {
+  if (!kReleased) GTEST_SKIP() << "not a release build";
+  if (engine::bestCpuLevel() < engine::CpuLevel::kAvx2) GTEST_SKIP() << "the budgets are of AVX2";
+  const FilterBudget& budget = GetParam().budget;
+  engine::FilterSpec spec;
+  spec.kind = budget.kind;
+  spec.window = budget.window;
+  const auto window = GetParam().make(spec, engine::CpuLevel::kAvx2);
+  ASSERT_NE(window, nullptr);
+  // Nine tiles, and room for results.
+  std::vector<engine::Tile> tiles(10);
+  for (std::size_t k = 0; k < 9; ++k)
+    for (std::size_t i = 0; i < engine::kTileSamples; ++i)
+      tiles[k].samples[i] =
+          0.02F * static_cast<float>(whiteNoise(1, static_cast<std::int32_t>(i % engine::kTileSide),
+                                                static_cast<std::int32_t>(i / engine::kTileSide)));
+  engine::TileAround around;
+  for (std::size_t k = 0; k < 9; ++k) around[k / 3][k % 3] = tiles[k].samples.data();
+  bool taken = false;
+  const auto run = [&] { taken = window->run(around, tiles[9].samples.data()); };
+  run();
+  ASSERT_TRUE(taken);
+  const auto count = countInstructions(run);
+  if (!count.instructions) GTEST_SKIP() << "instructions cannot be counted here";
+  expectWithin(budget, *count.instructions);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tiles, TileInstructions, testing::ValuesIn(kTileBudgets),
+                         [](const auto& tried) { return std::string(tried.param.budget.name); });
 
 }  // namespace
 }  // namespace fettle::bench
