@@ -36,9 +36,9 @@ def arguments() -> argparse.Namespace:
 
 def settings(options: argparse.Namespace) -> dict:
     """What a run that was cut goes on with: the plants are the same for these. Tests may have come since."""
-    sources = planting.sources(options.rooms)
+    read = [*planting.sources(options.rooms), planting.HERE / "places.py"]
     return {"plants": options.plants, "seed": options.seed, "rooms": options.rooms,
-            "sources": planting.run("git", "hash-object", *sources, cwd=planting.ROOT).split()}
+            "sources": planting.run("git", "hash-object", *read, cwd=planting.ROOT).split()}
 
 
 def mapped(folder: pathlib.Path, labels: list[str], out: pathlib.Path,

@@ -109,10 +109,15 @@ class Finder:
         children = list(cursor.get_children())
         if cursor.kind in LEFT_ALONE or not self.here(cursor):
             return
-        if cursor.kind == Kind.VAR_DECL and "constexpr" in self.slice(*self.of(cursor)).split("=")[0]:
+        if cursor.kind == Kind.DECL_STMT and re.match(r"(static\s+)?constexpr\b", self.slice(*self.of(cursor))):
             return
         if cursor.kind == Kind.CASE_STMT:
             children = children[1:]
+        if cursor.kind == Kind.VAR_DECL and cursor.type.kind == Type.CONSTANTARRAY:
+            children = [c for c in children if c.kind == Kind.INIT_LIST_EXPR]
+        # A number of a vector's lanes: beyond the last one nothing is defined.
+        if cursor.kind == Kind.ARRAY_SUBSCRIPT_EXPR and children[0].type.get_canonical().kind == Type.VECTOR:
+            children = children[:1]
         if cursor.kind in (Kind.BINARY_OPERATOR, Kind.COMPOUND_ASSIGNMENT_OPERATOR) and len(children) == 2:
             self.binary(cursor, *children)
         elif cursor.kind == Kind.UNARY_OPERATOR:

@@ -7,6 +7,7 @@ import collections
 import concurrent.futures
 import dataclasses
 import hashlib
+import itertools
 import json
 import pathlib
 import re
@@ -48,7 +49,8 @@ def find_all(files: list[str], arguments: dict[str, list[str]], out: pathlib.Pat
     """The places of all files; those of a file that has not changed are kept from before."""
     path = out / "places.json"
     kept = json.loads(path.read_text()) if path.exists() else {}
-    sums = {f: hashlib.sha256((ROOT / f).read_bytes()).hexdigest() for f in files}
+    rules = (HERE / "places.py").read_bytes()
+    sums = {f: hashlib.sha256(rules + (ROOT / f).read_bytes()).hexdigest() for f in files}
     read = [f for f in files if kept.get(f, {}).get("sum") != sums[f]]
     with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
         for file, some in zip(read, pool.map(found_in, read, [arguments[f] for f in read])):
@@ -123,14 +125,23 @@ def lines_of(place: places.Place) -> set[int]:
 
 
 def plant(options: argparse.Namespace, out: pathlib.Path) -> dict[int, places.Place]:
-    """Chooses the plants and writes them into a copy of the source tree; the same for the same source and seed."""
+    """Chooses the plants; the same places for the same source and seed."""
     arguments = arguments_of(ROOT / "build" / "lint")
     files = [f for f in sources(options.rooms) if f in arguments]
     found = find_all(files, arguments, out, options.jobs)
-    plants = dict(enumerate(chosen(found, options.plants, options.seed)))
+    plants = numbered(chosen(found, options.plants, options.seed), planted_before(out))
     print(f"{len(found)} places in {len(files)} files, {len(plants)} chosen", flush=True)
     keep(plants, out)
     return plants
+
+
+def numbered(chosen_places: list[places.Place], before: dict[int, places.Place]) -> dict[int, places.Place]:
+    """The numbers that they had before, and those that are free for the others: a file whose plants are the same is not
+    compiled again."""
+    known = {place: number for number, place in before.items()}
+    numbers = {known[place]: place for place in chosen_places if place in known}
+    free = (number for number in itertools.count() if number not in numbers)
+    return dict(sorted([*numbers.items(), *zip(free, (p for p in chosen_places if p not in known))]))
 
 
 def grow(tree: pathlib.Path, plants: dict[int, places.Place]) -> None:
@@ -160,5 +171,6 @@ def keep(plants: dict[int, places.Place], out: pathlib.Path) -> None:
 
 
 def planted_before(out: pathlib.Path) -> dict[int, places.Place]:
-    rows = json.loads((out / "plants.json").read_text())
+    path = out / "plants.json"
+    rows = json.loads(path.read_text()) if path.exists() else {}
     return {int(n): places.Place(**{k: v for k, v in row.items() if k != "change"}) for n, row in rows.items()}
