@@ -249,6 +249,10 @@ TEST(Spatial, OfHardSurfacesIsAFigureOrAReason) {
     EXPECT_EQ(std::isfinite(p.sal), p.no_sal.empty()) << p.no_sal;
     EXPECT_EQ(std::isfinite(p.str), p.no_str.empty()) << p.no_str;
     EXPECT_EQ(std::isfinite(p.lay), p.no_lay.empty()) << p.no_lay;
+    // Without a lay there is none either were a part of it noise.
+    if (!p.no_lay.empty()) {
+      for (const double lay : p.lay_less) EXPECT_TRUE(std::isnan(lay));
+    }
     return p;
   };
   EXPECT_FALSE(check(surfaceOf(0, 0, {})).no_sal.empty());

@@ -190,6 +190,11 @@ TEST(Legend, NamesTheColoursOfLinesWhereThereAreAnyAndMovesNothingForThem) {
     ASSERT_NE(box, quads.end());
     EXPECT_NEAR(box->pixels.w - box->pixels.y, 4.0 * scale, 0.5) << scale;
     EXPECT_NEAR(box->pixels.z - box->pixels.x, 18.0 * scale, 0.5) << scale;
+    // The row ends under the plot's right side, but for the space in the last letter.
+    float last = 0.0F;
+    for (auto quad = box; quad != quads.end(); ++quad) last = std::max(last, quad->pixels.z);
+    const Rectangle& plot = picture.layout().plots.back();
+    EXPECT_NEAR(last, plot.x + plot.width - std::round(scale), 1.5 * scale) << scale;
   }
   picture.setScale(0.0);
   // A colour without its word would explain nothing.
