@@ -1,8 +1,6 @@
 // The drivers of makers' libraries, threads and all, on replacements of these libraries that check each call. Nothing here asserts a time:
 // things are waited for, with a deadline far beyond any machine's load.
-#include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -51,7 +49,6 @@ class MakerLibraryTest : public testing::Test {
     touch.has_gimbal = true;
     touch.nominal_n = 3.3;
     touch.low[1] = -60.0;
-    touch.high[1] = 60.0;
     for (fake::Triple* t : {&touch.position, &touch.other_position, &touch.force}) t->set(0.0, 0.0, 0.0);
     touch.rules.forget();
     fake::FakeDhd& omega = dhdFake();
@@ -194,11 +191,6 @@ TEST_F(TouchLibraryTest, ItsLimitsAreTheTablesAndNeverMoreThanItStates) {
   EXPECT_EQ(device->profile().workspace_radius_mm, 35.0);
   hd().nominal_n = 40.0;
   EXPECT_EQ(opened("touch")->profile().max_force_n, 3.3);
-  // A workspace that no device has is as good as none: the table's, without the 35 mm to the library's front and back.
-  for (const double high : {-60.0, -55.0, 2000.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    hd().high[1] = high;
-    EXPECT_GT(opened("touch")->profile().workspace_radius_mm, 35.0) << high;
-  }
   EXPECT_EQ(allRules(hd().rules), "");
 }
 
