@@ -124,7 +124,7 @@ TEST(LineOffsets, MatchingIsNearerThanTheMedianOfDifferences) {
   EXPECT_NEAR(std::sqrt(by_matching / (20 * 130)), 0.2 * std::sqrt(2.0 / 150.0), 0.004);
 }
 
-// Weights are of ratios: in a unit 2^30 times as large the same offsets are found, to the bit.
+// Weights depend on ratios alone: heights 2^30 times smaller have offsets 2^30 times smaller, bit for bit.
 TEST(LineOffsets, AreTheSameInAnyUnit) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, 0.3);
